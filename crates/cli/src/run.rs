@@ -17,7 +17,9 @@ use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Stepper, 
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
-use peridyne_io::drive::{AtomsPlan, ExodusPlan, Plan, default_dir, drive, too_many_threads};
+use peridyne_io::drive::{
+    AtomsPlan, ExodusPlan, Plan, default_dir, drive, refused_threads, too_many_threads,
+};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
@@ -73,6 +75,9 @@ pub fn with_threads(
     if threads == Some(0) {
         return Err(Failure::input("--threads 0: at least one thread must run"));
     }
+    if let Some(text) = threads.and_then(refused_threads) {
+        return Err(Failure::input(text));
+    }
     if let Some(text) = threads.and_then(too_many_threads) {
         note(&format!("warning: {text}"));
     }
@@ -99,6 +104,8 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
+    plan.replaces_nothing()
+        .map_err(|e| Failure::input(e.to_string()))?;
     if let Some(asked) = &mut plan.continuum {
         efforts(sim.as_mut(), asked).map_err(|e| Failure::input(format!("[[fields]] {e}")))?;
         asked.stop = || signals::received().is_some();

@@ -9,6 +9,7 @@ use peridyne_fields::{Cell, FieldsError, Kernel, Method, PairForce, Partition, S
 use peridyne_io::continuum::potential::{ModelError, Words as PotentialWords};
 use peridyne_io::continuum::{Masses, Model, Units, model, of_deck};
 use peridyne_io::read::molecules::molecules;
+use peridyne_io::read::source;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -274,8 +275,8 @@ fn room_for(flag: &str, points: f64) -> Result<(), Failure> {
 /// x y z in each row; a first row of words names the columns, `#` begins a comment.
 fn points(path: &Path) -> Result<Vec<[f64; 3]>, Failure> {
     let name = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| Failure::input(format!("{name}: cannot read it: {e}")))?;
+    let text =
+        source::text(path).map_err(|e| Failure::input(format!("{name}: cannot read it: {e}")))?;
     let mut all = vec![];
     for (n, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or("").trim();

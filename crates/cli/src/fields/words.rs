@@ -1,6 +1,7 @@
 //! What a user says: flags, or a file with the same keys.
 
 use crate::failure::Failure;
+use peridyne_io::read::source;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -385,8 +386,8 @@ impl FieldsArguments {
 
 fn read(path: &Path) -> Result<Keys, Failure> {
     let name = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| Failure::input(format!("{name}: cannot read it: {e}")))?;
+    let text =
+        source::text(path).map_err(|e| Failure::input(format!("{name}: cannot read it: {e}")))?;
     toml::from_str(&text).map_err(|e| {
         let line = e
             .span()

@@ -4,6 +4,7 @@
 use super::kinds::Kind;
 use super::units::Units;
 use crate::deck::{Deck, DeckError, Flag};
+use crate::read::source;
 use peridyne::law::descriptor::{Descriptor, Value};
 use peridyne::law::terms::Sites;
 use peridyne::run::Shelf;
@@ -202,8 +203,7 @@ fn flags(words: &Words, of: &Descriptor, units: Units) -> Result<Vec<Flag>, Mode
 /// The deck is wrong, or its materials are no atoms.
 pub fn of_deck(path: &Path) -> Result<(Model, Units), ModelError> {
     let name = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| format!("--model {name}: cannot read it: {e}"))?;
+    let text = source::text(path).map_err(|e| format!("--model {name}: cannot read it: {e}"))?;
     // what is wrong with the text the deck says, with its line
     let written: toml::Table = toml::from_str(&text).unwrap_or_default();
     let bare = !written.contains_key("body");

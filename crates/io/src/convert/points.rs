@@ -1,11 +1,11 @@
 //! The points of a deck of Peridigm or PeriLab: text files, Exodus meshes, grids; blocks and node sets.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use super::tree::Entry;
 use crate::read::exodus::parse_touching;
+use crate::read::source;
 use crate::write::exodus::Layout;
 use peridyne::expression::Expression;
 
@@ -27,7 +27,7 @@ pub struct Points {
 
 /// Text of a file that a deck names.
 fn read(path: &Path) -> Result<Vec<u8>, String> {
-    fs::read(path).map_err(|e| format!("{}: cannot read it: {e}", path.display()))
+    source::bytes(path).map_err(|e| format!("{}: cannot read it: {e}", path.display()))
 }
 
 fn text(path: &Path) -> Result<String, String> {

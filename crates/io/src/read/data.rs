@@ -12,7 +12,7 @@ use std::path::Path;
 /// File and line of the first mistake; another atom style.
 pub fn data(path: &Path) -> Result<Atoms, ReadError> {
     let name = path.display().to_string();
-    let text = std::fs::read_to_string(path)
+    let text = super::source::text(path)
         .map_err(|e| lammps::error(&name, None, format!("cannot read it: {e}")))?;
     parse_data(&text, &name)
 }

@@ -21,6 +21,8 @@ mod linear;
 mod lines;
 mod mesh;
 pub mod molecules;
+pub(crate) mod npz;
+pub mod source;
 pub mod stl;
 mod stream;
 pub mod tag;
@@ -155,7 +157,7 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     if extension == "npz" {
         return linear::read(path);
     }
-    let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
+    let bytes = source::bytes(path).map_err(|e| error(format!("cannot read it: {e}")))?;
     if extension == "msh" {
         return whole(gmsh::read(&bytes, &name)?, &name);
     }
@@ -168,7 +170,7 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
 
 /// Is the second line of a file that of extended XYZ?
 fn begins_extended(path: &Path) -> bool {
-    let Ok(file) = std::fs::File::open(path) else {
+    let Ok(file) = source::open(path) else {
         return false;
     };
     // a line of a frame is short; what is not a text file may have none

@@ -1,8 +1,7 @@
 //! Lines of a file one at a time: trajectories do not fit in memory.
 
-use super::ReadError;
+use super::{ReadError, source};
 use flate2::bufread::MultiGzDecoder;
-use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
@@ -31,7 +30,7 @@ impl Stream<Source> {
             line: None,
             message: format!("cannot read it: {e}"),
         };
-        let mut file = BufReader::with_capacity(ROOM, File::open(path).map_err(wrong)?);
+        let mut file = BufReader::with_capacity(ROOM, source::open(path).map_err(wrong)?);
         let packed = file.fill_buf().map_err(wrong)?.starts_with(&GZIP);
         let source: Source = match packed {
             true => Box::new(BufReader::with_capacity(ROOM, MultiGzDecoder::new(file))),
@@ -56,8 +55,7 @@ impl<R: BufRead> Stream<R> {
 
     /// The next line, without its end; `None` at the end of the file.
     pub fn next(&mut self) -> Result<Option<&str>, ReadError> {
-        self.line.clear();
-        match self.reader.read_line(&mut self.line) {
+        match source::line(&mut self.reader, &mut self.line) {
             Ok(0) => Ok(None),
             Ok(_) => {
                 self.number += 1;
@@ -100,6 +98,14 @@ impl<R: BufRead> Stream<R> {
             line: None,
             ..self.error(message)
         }
+    }
+
+    /// Room for so many atoms of so many columns, before the first is read: the header is not trusted with memory.
+    pub fn room(&self, atoms: usize, columns: usize) -> Result<(), ReadError> {
+        // rows as they are read and sorted, and the columns that are made of them
+        let bytes = atoms as f64 * (250.0 + 16.0 * columns as f64);
+        source::room(&format!("a frame of {atoms} atoms"), bytes)
+            .map_err(|e| self.error(e.to_string()))
     }
 
     pub fn finite(&self, word: &str, what: &str) -> Result<f64, ReadError> {

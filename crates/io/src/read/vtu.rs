@@ -2,7 +2,7 @@
 //! VTU files in general.
 
 use std::cell::RefCell;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -79,7 +79,7 @@ impl Frame {
     /// # Errors
     /// The operating system's, or what is missing in the file.
     pub fn open(path: &Path) -> Result<Frame, ReadError> {
-        let file = File::open(path).map_err(|e| ReadError::file(path, e.to_string()))?;
+        let file = super::source::open(path).map_err(|e| ReadError::file(path, e.to_string()))?;
         Frame::of(file).map_err(|what| ReadError::file(path, what))
     }
 }
@@ -215,7 +215,7 @@ fn array(
 /// # Errors
 /// It cannot be read.
 pub fn collection(path: &Path) -> Result<Vec<(f64, String)>, ReadError> {
-    let text = fs::read_to_string(path).map_err(|e| ReadError::file(path, e.to_string()))?;
+    let text = super::source::text(path).map_err(|e| ReadError::file(path, e.to_string()))?;
     let entries = text.split("<DataSet ").skip(1).map(|tag| {
         let time = attribute(tag, "timestep")?.parse().ok()?;
         let file = attribute(tag, "file")?;

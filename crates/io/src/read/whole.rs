@@ -6,7 +6,7 @@ use std::path::Path;
 /// Text and name of a file; old comments may be in Latin-1.
 pub(crate) fn text_of(path: &Path) -> Result<(String, String), ReadError> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| ReadError {
+    let bytes = super::source::bytes(path).map_err(|e| ReadError {
         file: name.clone(),
         line: None,
         message: format!("cannot read it: {e}"),

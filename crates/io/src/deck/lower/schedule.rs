@@ -435,15 +435,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         }
     });
     if let Some(name) = written.dump.as_ref().filter(|_| atoms) {
-        let path = PathBuf::from(&name.value);
-        if trajectories.iter().any(|(other, _)| *other == path) {
-            return Err(context.error_with(
-                &name.span,
-                "the dump and the trajectory are one file",
-                "drop one of them, or give them different names",
-            ));
-        }
-        trajectories.push((path, Format::Dump));
+        trajectories.push((PathBuf::from(&name.value), Format::Dump));
     }
     let data = match &written.data {
         Some(name) if !atoms => {
@@ -465,6 +457,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
             ));
         }
     }
+    super::names::apart(context, written)?;
     let names = [
         ("dir", written.dir.as_ref()),
         ("dump", written.dump.as_ref().map(|n| &n.value)),

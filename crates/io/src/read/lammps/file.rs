@@ -1,5 +1,6 @@
 //! Data files of `atom_style peri`, `atomic`, `molecular` and `full` without charges.
 
+use super::super::source;
 use super::lines::{Lines, Result, finite};
 use std::io::BufRead;
 
@@ -93,6 +94,9 @@ impl DataAtoms {
         self.position.is_empty()
     }
 }
+
+/// Bytes of an atom: as a row, and in columns.
+const OF_AN_ATOM: f64 = 150.0;
 
 const SECTIONS: [&str; 3] = ["Masses", "Atoms", "Velocities"];
 /// What bonds atoms.
@@ -330,6 +334,8 @@ fn read_atoms<R: BufRead>(
     had_images: &mut bool,
 ) -> Result<DataAtoms> {
     // the header is not trusted with memory
+    source::room(&format!("{count} atoms"), OF_AN_ATOM * count as f64)
+        .map_err(|e| lines.fail(e.to_string()))?;
     let mut rows: Vec<(u32, u32, [f64; 5], usize)> = Vec::with_capacity(count.min(1 << 20));
     for k in 0..count {
         let words = row(lines, "Atoms", k, count)?;

@@ -1,12 +1,11 @@
 //! `history.csv` as a report shows it.
 
-use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::short;
-use crate::read::ReadError;
+use crate::read::{ReadError, source};
 use crate::write::history::ledger_columns;
 
 /// Rows of a report.
@@ -38,7 +37,7 @@ pub struct Column {
 /// # Errors
 /// It cannot be read, or a row is not one of numbers.
 pub fn read(path: &Path) -> Result<Vec<Column>, ReadError> {
-    let text = fs::read_to_string(path).map_err(|e| ReadError::file(path, e.to_string()))?;
+    let text = source::text(path).map_err(|e| ReadError::file(path, e.to_string()))?;
     let mut lines = text.lines();
     let mut columns: Vec<Column> = cells(lines.next().unwrap_or(""))
         .into_iter()
@@ -213,7 +212,7 @@ mod tests {
     fn a_torn_row_is_told() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("history.csv");
-        fs::write(&path, "step,time [s]\n1,2\n3\n").unwrap();
+        std::fs::write(&path, "step,time [s]\n1,2\n3\n").unwrap();
         let text = read(&path).unwrap_err().to_string();
         assert!(text.contains("line 3: not 2 numbers"), "{text}");
     }
