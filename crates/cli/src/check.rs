@@ -179,7 +179,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         }
         let dir = deck.output.dir.clone();
         let dir = dir.unwrap_or_else(|| default_dir(&input.file));
-        enough_disk(&deck, sim.as_ref(), &dir)?;
+        enough_disk(&deck, sim.as_mut(), &dir)?;
         let subject = Subject {
             steps: deck.steps(sim.info().time_step) - deck.increments(),
             increments: deck.increments(),

@@ -95,7 +95,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         .clone()
         .or(deck.output.dir.clone())
         .unwrap_or_else(|| default_dir(&arguments.input.file));
-    enough_disk(deck, sim.as_ref(), &dir)?;
+    enough_disk(deck, sim.as_mut(), &dir)?;
     let pictures = pictures(deck, sim.as_mut())?;
     say(&deck.describe());
     let warnings = deck::warnings(deck, sim.info());
@@ -169,8 +169,18 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
 }
 
 /// Does the disk have room for what the deck asks to write?
-pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), Failure> {
+pub fn enough_disk(deck: &Deck, sim: &mut dyn Simulation, dir: &Path) -> Result<(), Failure> {
+    let columns = match deck.output.dump {
+        Some(_) => sim.columns(),
+        None => vec![],
+    };
+    let written = fields(deck);
+    let written = columns
+        .iter()
+        .filter(|c| written.contains(&c.name.to_string()));
+    let numbers = written.map(|c| c.shape.components().len().max(1) as u64);
     let (info, output) = (sim.info(), &deck.output);
+    let films = || output.pictures.iter().filter(|p| p.film);
     let steps = deck.steps(info.time_step);
     let amount = Amount {
         steps,
@@ -184,12 +194,23 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
             0
         },
         atoms: info.points * output.trajectories.len() as u64,
+        // number, type and place of a point, too
+        dump: if output.dump.is_some() {
+            5 + numbers.sum::<u64>()
+        } else {
+            0
+        },
+        films: films().count() as u64,
+        arrows: films().filter(|p| p.arrows.is_some()).count() as u64,
+        probes: sim.probe_columns().len() as u64,
     };
     let Some(free) = free(dir) else {
         return Ok(());
     };
     let what = [
         ("output.every", "frames"),
+        ("output.every", "frames of output.dump"),
+        ("output.every", "frames of films"),
         ("output.history", "rows of history.csv"),
     ];
     let fields: f64 = deck.fields.iter().map(|f| f.bytes(steps)).sum();

@@ -26,6 +26,7 @@ use crate::write::data::write_data;
 use crate::write::folder::Folder;
 use crate::write::history::History;
 use crate::write::linear::write_linear;
+use crate::write::picture::film::HURRY;
 use crate::write::picture::shown::About;
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{
@@ -354,12 +355,21 @@ pub fn drive(
             None => About::Motion,
         },
     };
+    let hurried = ended.is_some();
+    if hurried && series.hurry() {
+        let text = format!(
+            "the run was ended: films have no more frames than are drawn in {} s",
+            HURRY.as_secs()
+        );
+        progress.warning(&text);
+        warnings.push(text);
+    }
     let pictures = series.finish(&snapshot, about)?;
     let pictures = pictures.iter().filter_map(|p| p.file_name());
     let pictures: Vec<String> = pictures.map(|p| p.to_string_lossy().into_owned()).collect();
     history.finish()?;
     let slices = match running {
-        Some(running) => running.finish()?,
+        Some(running) => running.finish(hurried)?,
         None => vec![],
     };
     for mut trajectory in trajectories {

@@ -1,5 +1,6 @@
 //! What fields a deck asks for.
 
+use crate::write::space::film_frames;
 use peridyne_fields::{PairForce, Partition, Quantity, Shape};
 
 /// Fields of the running model.
@@ -73,8 +74,11 @@ impl FieldsSpec {
     pub fn bytes(&self, steps: u64) -> f64 {
         let numbers: usize = Quantity::ALL.iter().map(|q| q.components()).sum();
         let frames = if self.each { self.frames(steps) } else { 0 };
+        // slices of stress and temperature
+        let films = if self.film { 2 * self.frames(steps) } else { 0 };
         // 8 in an array, about 24 as text
-        32.0 * numbers as f64 * self.place.points() as f64 * (2 + frames) as f64
+        film_frames(films)
+            + 32.0 * numbers as f64 * self.place.points() as f64 * (2 + frames) as f64
     }
 }
 

@@ -100,13 +100,14 @@ pub(super) fn is_temporary(name: &OsStr) -> bool {
 
 /// A temporary file with the rights that any other new file gets (tempfile's own are private), and with errors
 /// free of its name: the user knows the path that was asked for.
-fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
+pub(super) fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
     let mut code = None;
     let made = tempfile::Builder::new()
         .prefix(PREFIX)
         .rand_bytes(RANDOM)
         .make_in(directory, |path| {
-            let file = File::options().write(true).create_new(true).open(path);
+            let mut options = File::options();
+            let file = options.read(true).write(true).create_new(true).open(path);
             file.inspect_err(|e| code = e.raw_os_error())
         });
     made.map_err(|e| code.map_or(e, io::Error::from_raw_os_error))

@@ -8,6 +8,7 @@ use crate::deck::document::{
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Number, Or, Written};
 use crate::deck::{OutputSpec, PictureSpec};
+use crate::drive::refused_threads;
 use crate::write::folder::stays;
 use crate::write::trajectory::Format;
 use peridyne::spec::{Control, Cycles, Method, Newmark, Schedule, Solver, Stepper, TimeStep};
@@ -314,7 +315,11 @@ fn threads(context: &Context, written: &Option<At<usize>>) -> Result<Option<usiz
             "a run needs a thread",
             "leave threads out to use all cores",
         )),
-        other => Ok(other.as_ref().map(|t| t.value)),
+        Some(threads) => match refused_threads(threads.value) {
+            Some(why) => Err(context.error(&threads.span, why)),
+            None => Ok(Some(threads.value)),
+        },
+        None => Ok(None),
     }
 }
 
