@@ -9,9 +9,10 @@ mod report;
 
 use crate::Input;
 use crate::deck;
+use crate::enough::enough;
 use crate::failure::{Failure, note, printed, say};
 use crate::law;
-use crate::run::{enough_disk, pictures, with_threads};
+use crate::run::{pictures, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Info, Simulation};
@@ -179,7 +180,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         }
         let dir = deck.output.dir.clone();
         let dir = dir.unwrap_or_else(|| default_dir(&input.file));
-        enough_disk(&deck, sim.as_mut(), &dir)?;
+        enough(&deck, sim.as_mut(), &dir)?;
         let subject = Subject {
             steps: deck.steps(sim.info().time_step) - deck.increments(),
             increments: deck.increments(),

@@ -2,6 +2,7 @@
 
 use crate::Input;
 use crate::deck;
+use crate::enough::enough;
 use crate::failure::{Failure, note, say};
 use crate::law;
 use crate::progress::Terminal;
@@ -9,7 +10,7 @@ use crate::report;
 use crate::script;
 use crate::signals;
 use peridyne::columns::Shape;
-use peridyne::error::{BuildError, size};
+use peridyne::error::BuildError;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne::space::rigid::RigidShape;
@@ -26,8 +27,7 @@ use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::marks::Marks;
 use peridyne_io::write::picture::shown::{About, component_of};
 use peridyne_io::write::run_json::{MarkNotes, MovingBall, Status};
-use peridyne_io::write::space::{Amount, free};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct RunArguments {
@@ -95,7 +95,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         .clone()
         .or(deck.output.dir.clone())
         .unwrap_or_else(|| default_dir(&arguments.input.file));
-    enough_disk(deck, sim.as_mut(), &dir)?;
+    enough(deck, sim.as_mut(), &dir)?;
     let pictures = pictures(deck, sim.as_mut())?;
     say(&deck.describe());
     let warnings = deck::warnings(deck, sim.info());
@@ -165,90 +165,6 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
             }
         }
         Err(e) => Err(Failure::Run(e.to_string())),
-    }
-}
-
-/// Does the disk have room for what the deck asks to write?
-pub fn enough_disk(deck: &Deck, sim: &mut dyn Simulation, dir: &Path) -> Result<(), Failure> {
-    let columns = match deck.output.dump {
-        Some(_) => sim.columns(),
-        None => vec![],
-    };
-    let written = fields(deck);
-    let written = columns
-        .iter()
-        .filter(|c| written.contains(&c.name.to_string()));
-    let numbers = written.map(|c| c.shape.components().len().max(1) as u64);
-    let (info, output) = (sim.info(), &deck.output);
-    let films = || output.pictures.iter().filter(|p| p.film);
-    let steps = deck.steps(info.time_step);
-    let amount = Amount {
-        steps,
-        every: output.every,
-        history: output.history.unwrap_or((steps / 100).max(1)),
-        points: info.points,
-        files: u64::from(output.vtu) + u64::from(output.exodus.is_some()),
-        bonds: if output.bonds {
-            info.directed_bonds / 2
-        } else {
-            0
-        },
-        atoms: info.points * output.trajectories.len() as u64,
-        // number, type and place of a point, too
-        dump: if output.dump.is_some() {
-            5 + numbers.sum::<u64>()
-        } else {
-            0
-        },
-        films: films().count() as u64,
-        arrows: films().filter(|p| p.arrows.is_some()).count() as u64,
-        probes: sim.probe_columns().len() as u64,
-    };
-    let Some(free) = free(dir) else {
-        return Ok(());
-    };
-    let what = [
-        ("output.every", "frames"),
-        ("output.every", "frames of output.dump"),
-        ("output.every", "frames of films"),
-        ("output.history", "rows of history.csv"),
-    ];
-    let fields: f64 = deck.fields.iter().map(|f| f.bytes(steps)).sum();
-    if fields > free {
-        let error = BuildError::too_large(
-            "fields",
-            (fields, Some(free)),
-            format!(
-                "{steps} steps would write up to {} of continuum fields; the disk has {} left",
-                size(fields),
-                size(free)
-            ),
-        )
-        .help("fewer points (`grid`), no file for each frame (`each = false`), a larger `every`; or --out on another disk".to_string());
-        return Err(Failure::Input(deck.explain(&error).into()));
-    }
-    match amount
-        .bytes()
-        .into_iter()
-        .zip(what)
-        .find(|(b, _)| *b > free)
-    {
-        None => Ok(()),
-        Some((bytes, (key, what))) => {
-            let error = BuildError::too_large(
-                key,
-                (bytes, Some(free)),
-                format!(
-                    "{steps} steps would write about {} of {what}; the disk has {} left",
-                    size(bytes),
-                    size(free)
-                ),
-            )
-            .help(format!(
-                "write a larger {key}, or fewer steps; or --out on another disk"
-            ));
-            Err(Failure::Input(deck.explain(&error).into()))
-        }
     }
 }
 
@@ -391,7 +307,7 @@ fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
 }
 
 /// Columns of a frame.
-fn fields(deck: &Deck) -> Vec<String> {
+pub fn fields(deck: &Deck) -> Vec<String> {
     let usual = || USUAL.map(String::from).to_vec();
     let spread = deck.spec.transfers.iter().map(|t| t.quantity.column());
     let spread = || spread.map(str::to_string).chain(usual()).collect();
