@@ -95,3 +95,60 @@ fn shape(head: &[u8]) -> Option<Vec<f64>> {
         .map(|n| n.trim_end_matches('L').parse().ok())
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Array1, Array2, array};
+    use ndarray_npy::{NpzWriter, WriteNpyExt};
+    use std::io::Write;
+    use zip::ZipWriter;
+    use zip::write::SimpleFileOptions;
+
+    #[test]
+    fn a_header_promises_what_is_there() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.npz");
+        let told = |rows: &str| {
+            let mut text = vec![];
+            let two = array![[1.0, 2.0], [3.0, 4.0]];
+            two.write_npy(&mut text).unwrap();
+            // blanks at the end of the header make room
+            let at = text.windows(2).position(|w| w == b"(2").unwrap();
+            let end = text.windows(2).rposition(|w| w == b" \n").unwrap();
+            text.drain(end + 2 - rows.len()..=end);
+            text.splice(at + 1..at + 2, rows.bytes());
+            let file = File::create(&path).unwrap();
+            let mut zip = ZipWriter::new(file);
+            let stored = zip::CompressionMethod::Stored;
+            let options = SimpleFileOptions::default().compression_method(stored);
+            zip.start_file("x.npy", options).unwrap();
+            zip.write_all(&text).unwrap();
+            zip.finish().unwrap();
+            Npz::open(&path).unwrap().array::<f64, ndarray::Ix2>("x")
+        };
+        let said = told("1000000000000").unwrap_err();
+        assert!(said.contains("1000000000000 × 2"), "{said}");
+        assert!(said.contains("32 bytes are there"), "{said}");
+    }
+
+    #[test]
+    fn arrays_of_all_shapes_are_read() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.npz");
+        let mut all = NpzWriter::new_compressed(File::create(&path).unwrap());
+        let (one, two) = (
+            array![1i64, 2, 3],
+            array![[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]],
+        );
+        all.add_array("one", &one).unwrap();
+        all.add_array("two", &two).unwrap();
+        all.finish().unwrap();
+        let mut npz = Npz::open(&path).unwrap();
+        assert!(npz.has("one") && !npz.has("three"));
+        let read: Array1<i64> = npz.array("one").unwrap();
+        assert_eq!(read, one);
+        let read: Array2<f64> = npz.array("two").unwrap();
+        assert_eq!(read, two);
+    }
+}

@@ -130,7 +130,10 @@ impl Session<'_> {
         let atoms = self.population.count();
         for dump in &self.watch.dumps {
             let path = self.folder.path(&dump.file)?;
-            let (bytes, left) = (dump.bytes(steps, atoms), free(path.parent().unwrap_or(&path)));
+            let (bytes, left) = (
+                dump.bytes(steps, atoms),
+                free(path.parent().unwrap_or(&path)),
+            );
             if let Some(left) = left.filter(|left| bytes > *left) {
                 return Err(Problem::new(format!(
                     "{steps} steps would write about {} into the dump `{}`, {}; the disk has {} left",
