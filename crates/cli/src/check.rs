@@ -6,13 +6,14 @@ mod continuum;
 mod directions;
 mod json;
 mod report;
+mod ties;
 
 use crate::Input;
 use crate::deck;
 use crate::enough::enough;
 use crate::failure::{Failure, note, printed, say};
 use crate::law;
-use crate::run::{pictures, with_threads};
+use crate::run::{pictures, until, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Info, Simulation};
@@ -80,6 +81,8 @@ struct Findings<'a> {
     threads: usize,
     /// Continuum fields that the deck asks for.
     fields: Vec<continuum::Found>,
+    /// Points of each indenter that two of its sides push alike.
+    ties: Vec<usize>,
 }
 
 impl Findings<'_> {
@@ -316,7 +319,10 @@ fn find<'a>(
         trial: Trial::default(),
         threads,
         fields: vec![],
+        ties: vec![],
     };
+    let until = until(found.spec, found.steps, found.info.time_step);
+    found.ties = ties::ties(found.spec, reference, found.info.spacing, until);
     found.materials = materials(&subject.spec, &found.info, None, found.thin());
     found
 }

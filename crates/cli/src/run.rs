@@ -14,7 +14,7 @@ use peridyne::error::BuildError;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne::space::rigid::RigidShape;
-use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Stepper, TimeStep};
+use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Spec, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
@@ -113,11 +113,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     plan.warnings = warnings;
     let end = (steps - plan.increments) as f64 * sim.info().time_step;
     plan.indenters = indenters(deck, end);
-    let until = if counts_load(&deck.spec.schedule) {
-        1.0
-    } else {
-        end
-    };
+    let until = until(&deck.spec, steps - plan.increments, sim.info().time_step);
     let marks = Marks::of(&deck.spec, sim.as_mut(), until);
     plan.marks = MarkNotes::of(&marks, deck.units);
     say(&format!(
@@ -175,11 +171,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
 pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOptions>, Failure> {
     let still = deck.spec.schedule.statics().is_some();
     let step = sim.info().time_step;
-    let end = if counts_load(&deck.spec.schedule) {
-        1.0
-    } else {
-        (deck.steps(step) - deck.increments()) as f64 * step
-    };
+    let end = until(&deck.spec, deck.steps(step) - deck.increments(), step);
     let marks = Marks::of(&deck.spec, sim, end);
     let columns = sim.columns();
     let [length_unit, time_unit, _] = units(deck);
@@ -265,6 +257,14 @@ fn units(deck: &Deck) -> [&'static str; 3] {
         UnitSystem::Si => ["m", "s", "J"],
         UnitSystem::Metal(_) => ["Å", "ps", "eV"],
         UnitSystem::Lj | UnitSystem::None => [""; 3],
+    }
+}
+
+/// The last t of so many steps.
+pub fn until(spec: &Spec, steps: u64, step: f64) -> f64 {
+    match counts_load(&spec.schedule) {
+        true => 1.0,
+        false => steps as f64 * step,
     }
 }
 
