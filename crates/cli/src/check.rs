@@ -215,7 +215,12 @@ fn report(
         say(&report::first(&found));
     }
     if let Some(plan) = &subject.fields {
-        found.fields = continuum::find(sim, plan, subject.steps)?;
+        found.fields = continuum::find(
+            sim,
+            plan,
+            subject.steps,
+            &arguments.input.file.display().to_string(),
+        )?;
     }
     let ends = |found: &Findings, why: String| {
         let told = Findings {

@@ -107,7 +107,10 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     plan.replaces_nothing()
         .map_err(|e| Failure::input(e.to_string()))?;
     if let Some(asked) = &mut plan.continuum {
-        efforts(sim.as_mut(), asked).map_err(|e| Failure::input(format!("[[fields]] {e}")))?;
+        efforts(sim.as_mut(), asked).map_err(|e| {
+            let error = BuildError::invalid("fields", format!("[[fields]] {e}"));
+            Failure::Input(deck.explain(&error).into())
+        })?;
         asked.stop = || signals::received().is_some();
     }
     plan.warnings = warnings;

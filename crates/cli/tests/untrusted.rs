@@ -188,6 +188,25 @@ fn dumps_and_films_are_in_the_estimate_of_the_disk() {
 }
 
 #[test]
+fn a_horizon_over_everything_is_refused_at_once() {
+    let text = script("run 1\n").replace("0.0020001", "1.0");
+    let case = Case::new(&[("in.s", &text)]);
+    for verb in ["check", "run"] {
+        let begin = Instant::now();
+        case.says(
+            &[verb, "in.s"],
+            2,
+            &["bonds per point are too many", "pair_coeff"],
+        );
+        assert!(
+            begin.elapsed() < Duration::from_secs(5),
+            "{:?}",
+            begin.elapsed()
+        );
+    }
+}
+
+#[test]
 fn threads_have_an_end() {
     let case = Case::new(&[
         (
