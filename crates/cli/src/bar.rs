@@ -1,7 +1,8 @@
 //! `peridyne bar`: the peristatic bar of eriksson2020.
 
-use crate::failure::{Failure, say};
+use crate::failure::{Failure, note, say};
 use clap::ValueEnum;
+use peridyne_io::read::source::room;
 use peridyne_theory::exact::{Field, Q};
 use peridyne_theory::homogenize::bar::equations::Corner;
 use peridyne_theory::homogenize::bar::limit::decimals;
@@ -59,6 +60,9 @@ pub fn bar(arguments: &BarArguments) -> Result<(), Failure> {
     let bar = parse(arguments).map_err(Failure::input)?;
     let short = bar.points() * bar.m() <= LONGEST_FRACTION;
     let f = (short || bar.homogenized()).then(|| bar.f());
+    if f.is_none() {
+        weighed(&bar)?;
+    }
     let found = Found {
         decimal: f.as_ref().map_or_else(|| bar.f_by_strains(), Field::value),
         limit: bar.f_limit().value,
@@ -73,6 +77,27 @@ pub fn bar(arguments: &BarArguments) -> Result<(), Failure> {
         say(&text.map_err(|e| Failure::Run(e.to_string()))?);
     } else {
         say(&report(&found));
+    }
+    Ok(())
+}
+
+/// Arithmetic of a bond of the band on one thread, about (s).
+const OPERATION: f64 = 5e-10;
+/// Time that is told before it is taken (s).
+const LONG: f64 = 10.0;
+
+/// What solving for all strains takes, before it is taken: a band of m numbers for each, O(N m²).
+fn weighed(bar: &Bar) -> Result<(), Failure> {
+    let (points, m) = (bar.points() as f64, bar.m() as f64);
+    let what = format!("the equations of {points} points with --m {m}");
+    room(&what, 8.0 * points * (m + 4.0)).map_err(|e| {
+        Failure::input(format!(
+            "{e}; the elongation of long bars is the limit: take fewer --points"
+        ))
+    })?;
+    let seconds = OPERATION * points * m * m;
+    if seconds > LONG {
+        note(&format!("{what}: about {seconds:.0} s"));
     }
     Ok(())
 }

@@ -6,12 +6,14 @@ mod continuum;
 mod directions;
 mod json;
 mod report;
+mod ties;
 
 use crate::Input;
 use crate::deck;
+use crate::enough::enough;
 use crate::failure::{Failure, note, printed, say};
 use crate::law;
-use crate::run::{enough_disk, pictures, with_threads};
+use crate::run::{pictures, until, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Info, Simulation};
@@ -79,6 +81,8 @@ struct Findings<'a> {
     threads: usize,
     /// Continuum fields that the deck asks for.
     fields: Vec<continuum::Found>,
+    /// Points of each indenter that two of its sides push alike.
+    ties: Vec<usize>,
 }
 
 impl Findings<'_> {
@@ -179,7 +183,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         }
         let dir = deck.output.dir.clone();
         let dir = dir.unwrap_or_else(|| default_dir(&input.file));
-        enough_disk(&deck, sim.as_ref(), &dir)?;
+        enough(&deck, sim.as_mut(), &dir)?;
         let subject = Subject {
             steps: deck.steps(sim.info().time_step) - deck.increments(),
             increments: deck.increments(),
@@ -211,7 +215,12 @@ fn report(
         say(&report::first(&found));
     }
     if let Some(plan) = &subject.fields {
-        found.fields = continuum::find(sim, plan, subject.steps)?;
+        found.fields = continuum::find(
+            sim,
+            plan,
+            subject.steps,
+            &arguments.input.file.display().to_string(),
+        )?;
     }
     let ends = |found: &Findings, why: String| {
         let told = Findings {
@@ -315,7 +324,10 @@ fn find<'a>(
         trial: Trial::default(),
         threads,
         fields: vec![],
+        ties: vec![],
     };
+    let until = until(found.spec, found.steps, found.info.time_step);
+    found.ties = ties::ties(found.spec, reference, found.info.spacing, until);
     found.materials = materials(&subject.spec, &found.info, None, found.thin());
     found
 }

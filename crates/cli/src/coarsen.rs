@@ -14,6 +14,7 @@ use peridyne::space::Point;
 use peridyne::spec::{AnyLinearBody, ConditionKind, ConditionSpec, LinearBody, Stepper, TimeStep};
 use peridyne_io::deck::upscaled::Rewritten;
 use peridyne_io::deck::{Deck, rounded};
+use peridyne_io::write::linear::room;
 use peridyne_theory::coarsen::Report;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -94,6 +95,12 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
         simd: deck::simd(&arguments.input)?,
     };
     let mut sim = build(&spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))?;
+    room(sim.info()).map_err(|e| {
+        Failure::input(format!(
+            "{}: {e}; take fewer points or a shorter horizon",
+            deck.file()
+        ))
+    })?;
     let kept = match &arguments.keep {
         None => None,
         Some(name) => Some(sim.members(name).ok_or_else(|| {

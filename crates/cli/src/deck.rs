@@ -7,8 +7,7 @@ use peridyne::execute::simd::Simd;
 use peridyne::run::{Info, Options, Simulation, TransferInfo, build};
 use peridyne::spec::{Stepper, TransferMethod};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
-use peridyne_io::read::encoding;
-use std::io::Read;
+use peridyne_io::read::{encoding, source};
 
 /// Is this file a deck, as opposed to a LAMMPS script?
 pub fn is_deck(input: &Input) -> bool {
@@ -63,17 +62,9 @@ fn refuse_others(name: &str, bytes: &[u8]) -> Result<(), Failure> {
 
 pub fn text(input: &Input) -> Result<String, Failure> {
     let name = input.file.display();
-    let mut bytes = Vec::new();
-    // a device has no end
-    std::fs::File::open(&input.file)
-        .and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes))
+    let bytes = source::open_given(&input.file)
+        .and_then(|file| source::within(file, LARGEST))
         .map_err(|e| Failure::input(format!("{name}: {e}")))?;
-    if bytes.len() as u64 > LARGEST {
-        return Err(Failure::input(format!(
-            "{name} is larger than {} MiB, which no deck or script is",
-            LARGEST >> 20
-        )));
-    }
     refuse_others(&name.to_string(), &bytes)?;
     let table =
         |line: &[u8]| [&b"[body]"[..], b"[material]", b"[run]"].contains(&line.trim_ascii());

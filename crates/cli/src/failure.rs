@@ -1,7 +1,7 @@
 //! How the program ends badly, and how it prints.
 //!
-//! Exit codes: 0 done; 1 a run, or writing or printing its results, failed; 2 the input was wrong; 130 and 143 a run was
-//! ended by SIGINT or SIGTERM. A reader that leaves (`| head -1`) has what it wanted: the work goes on, its files are
+//! Exit codes: 0 done; 1 a run, or writing or printing its results, failed; 2 the input was wrong; 129, 130 and 143 a run was
+//! ended by SIGHUP, SIGINT or SIGTERM. A reader that leaves (`| head -1`) has what it wanted: the work goes on, its files are
 //! written, and the code is that of the work. Any other failure of standard output (`> /dev/full`) loses what somebody
 //! asked for: the work goes on, too, and the code is 1.
 

@@ -5,8 +5,10 @@ mod words;
 
 use crate::failure::{Failure, note, say};
 use crate::run::with_threads;
+use peridyne::error::size;
 use peridyne_fields::residuals::{self, Residuals};
 use peridyne_fields::{Fields, Frame, Method, Progress, Targets, evaluate};
+use peridyne_io::continuum::plan::bytes;
 use peridyne_io::continuum::{frame, of_unit_mass};
 use peridyne_io::deck::rounded;
 use peridyne_io::read::Atoms;
@@ -14,6 +16,7 @@ use peridyne_io::read::frames::Frames;
 use peridyne_io::write::WriteError;
 use peridyne_io::write::continuum::{self, Collected, Origin, examined};
 use peridyne_io::write::folder::Folder;
+use peridyne_io::write::space::free;
 use rayon::prelude::*;
 use request::Request;
 use std::fs;
@@ -51,6 +54,7 @@ fn all(request: &Request) -> Result<(), Failure> {
             chosen.len()
         )));
     }
+    enough_disk(request, chosen.len())?;
     let existed = request.out.exists();
     let mut made = Made {
         collected: Collected::new(
@@ -81,6 +85,21 @@ fn all(request: &Request) -> Result<(), Failure> {
         }
     }
     outcome
+}
+
+/// Does the disk have room for the fields of so many frames?
+fn enough_disk(request: &Request, frames: usize) -> Result<(), Failure> {
+    let frames = if request.each { frames as u64 } else { 0 };
+    let most = bytes(request.targets.len() as u64, frames);
+    match free(&request.out) {
+        Some(free) if most > free => Err(Failure::input(format!(
+            "fields at {} points would take up to {} on the disk; it has {} left: take fewer points, leave --each out, or give --out on another disk",
+            request.targets.len(),
+            size(most),
+            size(free)
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// What came of the frames.

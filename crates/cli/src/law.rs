@@ -209,7 +209,7 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
     let stable = e.stable_step();
     let [waves, decay] = e.operator.spectrum();
     let step = e.next_step(deck.duration);
-    let step = step.map_err(|e| Failure::input(e.to_string()))?;
+    let step = step.map_err(|e| Failure::input(format!("{}: {e}", deck.file())))?;
     let head = headline(&deck);
     let shock = shock_time(&deck);
     let e = &mut deck.evolution;

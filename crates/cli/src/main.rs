@@ -7,6 +7,7 @@ mod converge;
 mod convert;
 mod deck;
 mod doc;
+mod enough;
 mod failure;
 mod fields;
 mod law;

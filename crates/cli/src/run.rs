@@ -2,6 +2,7 @@
 
 use crate::Input;
 use crate::deck;
+use crate::enough::enough;
 use crate::failure::{Failure, note, say};
 use crate::law;
 use crate::progress::Terminal;
@@ -9,23 +10,24 @@ use crate::report;
 use crate::script;
 use crate::signals;
 use peridyne::columns::Shape;
-use peridyne::error::{BuildError, size};
+use peridyne::error::BuildError;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne::space::rigid::RigidShape;
-use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Stepper, TimeStep};
+use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Spec, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
-use peridyne_io::drive::{AtomsPlan, ExodusPlan, Plan, default_dir, drive, too_many_threads};
+use peridyne_io::drive::{
+    AtomsPlan, ExodusPlan, Plan, default_dir, drive, refused_threads, too_many_threads,
+};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::marks::Marks;
 use peridyne_io::write::picture::shown::{About, component_of};
 use peridyne_io::write::run_json::{MarkNotes, MovingBall, Status};
-use peridyne_io::write::space::{Amount, free};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct RunArguments {
@@ -73,6 +75,9 @@ pub fn with_threads(
     if threads == Some(0) {
         return Err(Failure::input("--threads 0: at least one thread must run"));
     }
+    if let Some(text) = threads.and_then(refused_threads) {
+        return Err(Failure::input(text));
+    }
     if let Some(text) = threads.and_then(too_many_threads) {
         note(&format!("warning: {text}"));
     }
@@ -90,7 +95,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         .clone()
         .or(deck.output.dir.clone())
         .unwrap_or_else(|| default_dir(&arguments.input.file));
-    enough_disk(deck, sim.as_ref(), &dir)?;
+    enough(deck, sim.as_mut(), &dir)?;
     let pictures = pictures(deck, sim.as_mut())?;
     say(&deck.describe());
     let warnings = deck::warnings(deck, sim.info());
@@ -99,18 +104,19 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
+    plan.replaces_nothing()
+        .map_err(|e| Failure::input(e.to_string()))?;
     if let Some(asked) = &mut plan.continuum {
-        efforts(sim.as_mut(), asked).map_err(|e| Failure::input(format!("[[fields]] {e}")))?;
+        efforts(sim.as_mut(), asked).map_err(|e| {
+            let error = BuildError::invalid("fields", format!("[[fields]] {e}"));
+            Failure::Input(deck.explain(&error).into())
+        })?;
         asked.stop = || signals::received().is_some();
     }
     plan.warnings = warnings;
     let end = (steps - plan.increments) as f64 * sim.info().time_step;
     plan.indenters = indenters(deck, end);
-    let until = if counts_load(&deck.spec.schedule) {
-        1.0
-    } else {
-        end
-    };
+    let until = until(&deck.spec, steps - plan.increments, sim.info().time_step);
     let marks = Marks::of(&deck.spec, sim.as_mut(), until);
     plan.marks = MarkNotes::of(&marks, deck.units);
     say(&format!(
@@ -161,69 +167,6 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     }
 }
 
-/// Does the disk have room for what the deck asks to write?
-pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), Failure> {
-    let (info, output) = (sim.info(), &deck.output);
-    let steps = deck.steps(info.time_step);
-    let amount = Amount {
-        steps,
-        every: output.every(steps),
-        history: output.history.unwrap_or((steps / 100).max(1)),
-        points: info.points,
-        files: u64::from(output.vtu) + u64::from(output.exodus.is_some()),
-        bonds: if output.bonds {
-            info.directed_bonds / 2
-        } else {
-            0
-        },
-        atoms: info.points * output.trajectories.len() as u64,
-    };
-    let Some(free) = free(dir) else {
-        return Ok(());
-    };
-    let what = [
-        ("output.every", "frames"),
-        ("output.history", "rows of history.csv"),
-    ];
-    let fields: f64 = deck.fields.iter().map(|f| f.bytes(steps)).sum();
-    if fields > free {
-        let error = BuildError::too_large(
-            "fields",
-            (fields, Some(free)),
-            format!(
-                "{steps} steps would write up to {} of continuum fields; the disk has {} left",
-                size(fields),
-                size(free)
-            ),
-        )
-        .help("fewer points (`grid`), no file for each frame (`each = false`), a larger `every`; or --out on another disk".to_string());
-        return Err(Failure::Input(deck.explain(&error).into()));
-    }
-    match amount
-        .bytes()
-        .into_iter()
-        .zip(what)
-        .find(|(b, _)| *b > free)
-    {
-        None => Ok(()),
-        Some((bytes, (key, what))) => {
-            let error = BuildError::too_large(
-                key,
-                (bytes, Some(free)),
-                format!(
-                    "{steps} steps would write about {} of {what}; the disk has {} left",
-                    size(bytes),
-                    size(free)
-                ),
-            )
-            .help(format!(
-                "write a larger {key}, or fewer steps; or --out on another disk"
-            ));
-            Err(Failure::Input(deck.explain(&error).into()))
-        }
-    }
-}
-
 /// The pictures that a deck asks for.
 ///
 /// # Errors
@@ -231,11 +174,7 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
 pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOptions>, Failure> {
     let still = deck.spec.schedule.statics().is_some();
     let step = sim.info().time_step;
-    let end = if counts_load(&deck.spec.schedule) {
-        1.0
-    } else {
-        (deck.steps(step) - deck.increments()) as f64 * step
-    };
+    let end = until(&deck.spec, deck.steps(step) - deck.increments(), step);
     let marks = Marks::of(&deck.spec, sim, end);
     let columns = sim.columns();
     let [length_unit, time_unit, _] = units(deck);
@@ -324,6 +263,14 @@ fn units(deck: &Deck) -> [&'static str; 3] {
     }
 }
 
+/// The last t of so many steps.
+pub fn until(spec: &Spec, steps: u64, step: f64) -> f64 {
+    match counts_load(&spec.schedule) {
+        true => 1.0,
+        false => steps as f64 * step,
+    }
+}
+
 /// Is t a part of the load, which goes to 1? In statics without a duration it is.
 fn counts_load(schedule: &Schedule) -> bool {
     let end = match schedule.time_step {
@@ -363,7 +310,7 @@ fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
 }
 
 /// Columns of a frame.
-fn fields(deck: &Deck) -> Vec<String> {
+pub fn fields(deck: &Deck) -> Vec<String> {
     let usual = || USUAL.map(String::from).to_vec();
     let spread = deck.spec.transfers.iter().map(|t| t.quantity.column());
     let spread = || spread.map(str::to_string).chain(usual()).collect();

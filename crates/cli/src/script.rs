@@ -9,7 +9,8 @@ use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne_io::deck::{Dim, UnitSystem};
 use peridyne_io::drive::default_dir;
-use peridyne_io::write::folder::Folder;
+use peridyne_io::write::atomic::{create_directory, write_file};
+use peridyne_io::write::folder::{FILES, Folder};
 use peridyne_io::write::history::{Column, History};
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::shown::About;
@@ -21,8 +22,10 @@ use peridyne_io::write::{Series, SeriesOptions, WriteError};
 use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup};
 use peridyne_lammps::model::{ModelEngine, ModelHost, Prepared};
 use peridyne_lammps::{Options, Outcome, Record, run_text};
-use std::io::IsTerminal;
+use std::cell::RefCell;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// The model of a script as it stands at its first `run`, which does not take place. Nothing is written.
 pub fn prepare(input: &Input) -> Result<(Prepared, Setup), Failure> {
@@ -105,8 +108,12 @@ pub fn run(
     let text = deck::text(input)?;
     let name = input.file.display().to_string();
     let results = out.map_or_else(|| folder(&input.file), Path::to_path_buf);
+    // in the current folder there are files of others
+    let made = (out.is_none() && !allow_outside).then(|| Made::of(&results));
     let options = Options {
         allow_outside,
+        shared: out.is_some(),
+        made: made.as_ref().map(|m| m.files.clone()),
         ..options(input, out.unwrap_or(Path::new("")))?
     };
     let mut host = Holder {
@@ -128,6 +135,9 @@ pub fn run(
     if let Some(Err(e)) = host.held {
         return Err(Failure::Run(e.to_string()));
     }
+    if let Some(made) = made {
+        made.save(&results)?;
+    }
     let outcome = result.map_err(|e| {
         if e.while_running {
             Failure::Run(match &e.help {
@@ -147,6 +157,44 @@ pub fn run(
     };
     told.finish(outcome, &results)?;
     signal.map_or(Ok(()), |s| Err(Failure::Ended(s)))
+}
+
+/// Files that a script has made outside the folder of its results, which it may replace when it runs again: whole paths, in
+/// the [list](FILES) of that folder.
+struct Made {
+    files: Rc<RefCell<Vec<PathBuf>>>,
+    before: usize,
+}
+
+impl Made {
+    fn of(results: &Path) -> Made {
+        // a list of our own, which is replaced
+        let list = results.join(FILES);
+        let list = list
+            .is_file()
+            .then(|| std::fs::read_to_string(list).ok())
+            .flatten();
+        let files: Vec<PathBuf> = list
+            .and_then(|text| serde_json::from_str(&text).ok())
+            .unwrap_or_default();
+        Made {
+            before: files.len(),
+            files: Rc::new(RefCell::new(files)),
+        }
+    }
+
+    /// Also of a script that failed: what it began is its own.
+    fn save(&self, results: &Path) -> Result<(), Failure> {
+        let files = self.files.borrow();
+        if files.len() == self.before {
+            return Ok(());
+        }
+        let failed = |e: &dyn std::fmt::Display| Failure::Run(e.to_string());
+        let text = serde_json::to_string_pretty(&*files).map_err(|e| failed(&e))?;
+        create_directory(results).map_err(|e| failed(&e))?;
+        let list = results.join(FILES);
+        write_file(&list, |w| writeln!(w, "{text}")).map_err(|e| failed(&e))
+    }
 }
 
 /// Holds the folder of the results from the first `run` on (a script that is wrong before makes no folder).

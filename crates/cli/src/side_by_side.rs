@@ -4,6 +4,7 @@ use crate::failure::{Failure, say};
 use peridyne::run::{Options, build};
 use peridyne_io::deck::upscaled::Rewritten;
 use peridyne_io::deck::{Deck, Dim};
+use peridyne_io::read::source;
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::card::Measured;
 use std::collections::HashMap;
@@ -17,7 +18,7 @@ pub fn save(dir: &Path, name: &str, deck: &Rewritten) -> Result<(), Failure> {
     create_directory(dir).map_err(|e| failed(&e))?;
     for (from, to) in &deck.files {
         let bytes =
-            std::fs::read(from).map_err(|e| Failure::input(format!("{}: {e}", from.display())))?;
+            source::bytes(from).map_err(|e| Failure::input(format!("{}: {e}", from.display())))?;
         write_file(&dir.join(to), |w| w.write_all(&bytes)).map_err(|e| failed(&e))?;
     }
     write_file(&dir.join(name), |w| w.write_all(deck.text.as_bytes())).map_err(|e| failed(&e))
@@ -61,7 +62,7 @@ impl Reference {
 /// Runs a deck as it is written, or to the time `until` with its own or a slightly shorter step.
 pub fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
     let name = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|e| Failure::Run(format!("{name}: {e}")))?;
+    let (text, _) = text_of(path).map_err(|e| Failure::Run(e.to_string()))?;
     let deck = Deck::parse(&text, &name, &[]).map_err(|e| Failure::Input(e.into()))?;
     let mut sim = build(&deck.spec, Options::default())
         .map_err(|e| Failure::Input(deck.explain(&e).into()))?;

@@ -1,9 +1,9 @@
-//! SIGINT (Ctrl-C) and SIGTERM.
+//! SIGINT (Ctrl-C), SIGTERM, and SIGHUP (the terminal is closed) where nobody has said that it is to be passed over, as `nohup` does.
 //!
 //! Until a run steps there is nothing to keep, and a signal ends the program at once. From its first step on
 //! ([`received`]) the first signal is a request to end at the next step, and a second one ends the program at once.
 
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -14,15 +14,17 @@ use std::sync::{Arc, LazyLock};
 pub enum Signal {
     Interrupt,
     Terminate,
+    Hangup,
 }
 
 impl Signal {
-    const ALL: [Signal; 2] = [Signal::Interrupt, Signal::Terminate];
+    const ALL: [Signal; 3] = [Signal::Interrupt, Signal::Terminate, Signal::Hangup];
 
     fn number(self) -> i32 {
         match self {
             Signal::Interrupt => SIGINT,
             Signal::Terminate => SIGTERM,
+            Signal::Hangup => SIGHUP,
         }
     }
 
@@ -37,6 +39,7 @@ impl fmt::Display for Signal {
         f.write_str(match self {
             Signal::Interrupt => "SIGINT",
             Signal::Terminate => "SIGTERM",
+            Signal::Hangup => "SIGHUP",
         })
     }
 }
@@ -46,12 +49,25 @@ static AT_ONCE: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool
 /// Number of the last signal; 0: none.
 static LAST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(|| Arc::new(AtomicUsize::new(0)));
 
+/// Is a signal passed over, whatever comes? Where the system does not say it (other than Linux), SIGHUP is left as it is.
+fn passed_over(signal: Signal) -> bool {
+    if signal != Signal::Hangup {
+        return false;
+    }
+    let status = std::fs::read_to_string("/proc/self/status");
+    let mask = status.ok().and_then(|text| {
+        let line = text.lines().find_map(|l| l.strip_prefix("SigIgn:"))?;
+        u64::from_str_radix(line.trim(), 16).ok()
+    });
+    mask.is_none_or(|mask| mask >> (signal.number() - 1) & 1 == 1)
+}
+
 /// From now on signals end the program as said above.
 ///
 /// # Errors
 /// The operating system does not say when a signal comes.
 pub fn listen() -> std::io::Result<()> {
-    for signal in Signal::ALL {
+    for signal in Signal::ALL.into_iter().filter(|s| !passed_over(*s)) {
         let number = signal.number();
         // in this order: a signal that finds `AT_ONCE` set never gets to the next two
         flag::register_conditional_shutdown(number, signal.exit_code().into(), AT_ONCE.clone())

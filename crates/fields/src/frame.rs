@@ -158,6 +158,9 @@ impl Cell {
     }
 }
 
+/// Periods from the cell at which a place keeps ten digits of it.
+const FARTHEST: f64 = 1e6;
+
 /// Particles at a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
@@ -201,6 +204,17 @@ impl Frame {
         let finite = |x: &[f64; 3]| x.iter().all(|c| c.is_finite());
         if let Some(i) = self.position.iter().position(|x| !finite(x)) {
             return wrong(format!("the position of particle {} is not finite", i + 1));
+        }
+        let far = |x: &[f64; 3]| {
+            let s = self.cell.fraction(*x);
+            (0..3).any(|a| self.cell.periodic[a] && !(s[a].abs() < FARTHEST))
+        };
+        if let Some(i) = self.position.iter().position(far) {
+            return wrong(format!(
+                "particle {} is at {:?}, more than {FARTHEST} periods from the cell: its place in it has lost its digits",
+                i + 1,
+                self.position[i]
+            ));
         }
         let velocities = self.velocity.iter().flatten();
         if let Some(i) = velocities.clone().position(|v| !finite(v)) {
@@ -265,5 +279,23 @@ mod tests {
         assert!(cell.extents([true, false, false]).is_ok());
         assert!(cell.extents([false, false, true]).is_err());
         assert!(Cell::new([0.0; 3], [[1.0, 0.0, 0.0]; 3], [true; 3]).is_err());
+    }
+
+    #[test]
+    fn particles_far_beyond_the_cell_have_no_place_in_it() {
+        let frame = |x: f64, periodic: bool| Frame {
+            cell: Cell::orthogonal([0.0; 3], [6.0; 3], [periodic; 3]).unwrap(),
+            position: vec![[1.0; 3], [x, 1.0, 1.0]],
+            velocity: None,
+            mass: vec![1.0; 2],
+            kind: vec![0; 2],
+            time: None,
+        };
+        frame(6e4, true).check().unwrap();
+        frame(1e12, false).check().unwrap();
+        for x in [1e12, -1e12, 1.8e19, 1e308] {
+            let FieldsError(text) = frame(x, true).check().unwrap_err();
+            assert!(text.contains("particle 2"), "{x}: {text}");
+        }
     }
 }

@@ -3,13 +3,13 @@
 mod atoms;
 mod exodus;
 mod modes;
+mod names;
 mod row;
 
 pub use atoms::AtomsPlan;
 pub use exodus::ExodusPlan;
 use modes::write_modes;
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -23,9 +23,10 @@ use crate::balance::BalanceWatch;
 use crate::continuum::run::{FieldsPlan, RunningFields};
 use crate::deck::{Dim, UnitSystem};
 use crate::write::data::write_data;
-use crate::write::folder::{Folder, is_inside};
+use crate::write::folder::Folder;
 use crate::write::history::History;
 use crate::write::linear::write_linear;
+use crate::write::picture::film::HURRY;
 use crate::write::picture::shown::About;
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{
@@ -157,24 +158,6 @@ impl Plan {
             columns: vec![],
             files,
         }
-    }
-
-    /// Do the files that the deck names lie inside the folder, links included, or may they be anywhere?
-    fn stays_inside(&self) -> Result<(), WriteError> {
-        let named = self.atoms.iter().flat_map(|a| {
-            let trajectories = a.trajectories.iter().map(|(path, _)| path);
-            trajectories.chain(&a.data)
-        });
-        let points = self.series.dump.iter().map(|(name, _)| name);
-        let points = points.chain(self.exodus.iter().map(|e| &e.path));
-        for name in named.chain(points) {
-            if !self.allow_outside && !is_inside(&self.dir, name) {
-                let path = self.dir.join(name);
-                let error = io::Error::other("it is outside the folder of the results");
-                return Err(WriteError::at("write", &path)(error));
-            }
-        }
-        Ok(())
     }
 }
 
@@ -372,12 +355,21 @@ pub fn drive(
             None => About::Motion,
         },
     };
+    let hurried = ended.is_some();
+    if hurried && series.hurry() {
+        let text = format!(
+            "the run was ended: films have no more frames than are drawn in {} s",
+            HURRY.as_secs()
+        );
+        progress.warning(&text);
+        warnings.push(text);
+    }
     let pictures = series.finish(&snapshot, about)?;
     let pictures = pictures.iter().filter_map(|p| p.file_name());
     let pictures: Vec<String> = pictures.map(|p| p.to_string_lossy().into_owned()).collect();
     history.finish()?;
     let slices = match running {
-        Some(running) => running.finish()?,
+        Some(running) => running.finish(hurried)?,
         None => vec![],
     };
     for mut trajectory in trajectories {
@@ -470,9 +462,27 @@ fn follow(balls: &mut [MovingBall], sim: &dyn Simulation) {
     }
 }
 
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Threads of a core that are begun at most, and threads that any machine may begin.
+const THREADS: [usize; 2] = [16, 256];
+
+/// Why so many threads are not begun.
+pub fn refused_threads(threads: usize) -> Option<String> {
+    let most = THREADS[1].max(THREADS[0] * cores());
+    (threads > most).then(|| {
+        format!(
+            "{threads} threads: this machine has {} cores, and at most {most} threads are begun on it; leave `threads` out to use all cores",
+            cores()
+        )
+    })
+}
+
 /// What to say about so many threads.
 pub fn too_many_threads(threads: usize) -> Option<String> {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cores = cores();
     (threads > cores).then(|| {
         format!(
             "{threads} threads on {cores} cores are slower than {cores}: leave `threads` out to use all cores"

@@ -1,9 +1,16 @@
 //! Where a script may write: inside its output folder or beside itself, unless it is told that it may write anywhere. A
-//! script that is only checked writes nothing at all.
+//! script that is only checked writes nothing at all. No file takes the place of one that was read, of one that is being
+//! written, or, where there is no output folder, of one that the script has not made before.
 
+use std::cell::RefCell;
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use peridyne_io::write::folder::is_own;
+
+use peridyne_io::read::source;
 
 use super::error::{Problem, Result};
 
@@ -18,13 +25,31 @@ pub struct Folder {
     pub outside: bool,
     /// Nothing is written.
     pub dry: bool,
+    /// Are results of the program's own in the folder, too?
+    pub shared: bool,
+    /// Files that the script has made, whole paths: no other that is there is replaced. `None`: any is.
+    pub made: Option<Rc<RefCell<Vec<PathBuf>>>>,
+    /// Files that are being written.
+    pub open: Rc<RefCell<Vec<PathBuf>>>,
 }
 
-/// A text file that is being written.
+/// A text file that is being written. What was [flushed](Sink::flush) is whole; of what does not fit nothing is kept.
 pub struct Sink {
     path: PathBuf,
     /// `None`: nothing is written.
     out: Option<BufWriter<File>>,
+    /// Bytes that are whole.
+    whole: u64,
+    open: Rc<RefCell<Vec<PathBuf>>>,
+}
+
+impl Drop for Sink {
+    fn drop(&mut self) {
+        let mut open = self.open.borrow_mut();
+        if let Some(k) = open.iter().position(|p| *p == self.path) {
+            open.swap_remove(k);
+        }
+    }
 }
 
 impl std::fmt::Debug for Sink {
@@ -51,10 +76,25 @@ impl Sink {
     /// # Errors
     /// The file cannot be written.
     pub fn write_bytes(&mut self, bytes: &[u8]) -> Result<()> {
-        match &mut self.out {
-            Some(out) => out.write_all(bytes).map_err(|e| failed(&self.path, &e)),
+        let written = match &mut self.out {
+            Some(out) => out.write_all(bytes),
             None => Ok(()),
+        };
+        written.map_err(|e| self.cut(&e))
+    }
+
+    /// Cuts off what did not get in whole; nothing more is written.
+    fn cut(&mut self, error: &std::io::Error) -> Box<Problem> {
+        if let Some(out) = self.out.take() {
+            // what is buffered must not follow
+            let (file, _) = out.into_parts();
+            // if cutting fails too, the error tells more
+            let _ = file.set_len(self.whole);
         }
+        Box::new(Problem {
+            while_running: true,
+            ..*failed(&self.path, error)
+        })
     }
 
     /// A line.
@@ -66,13 +106,24 @@ impl Sink {
         self.write("\n")
     }
 
+    /// A record ends here.
+    ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written; it then ends with the record before.
     pub fn flush(&mut self) -> Result<()> {
-        match &mut self.out {
-            Some(out) => out.flush().map_err(|e| failed(&self.path, &e)),
-            None => Ok(()),
+        let end = match &mut self.out {
+            Some(out) => out
+                .flush()
+                .and_then(|()| out.get_mut().seek(SeekFrom::End(0))),
+            None => Ok(self.whole),
+        };
+        match end {
+            Ok(end) => self.whole = end,
+            // a device has no end
+            Err(_) if !self.path.is_file() => {}
+            Err(e) => return Err(self.cut(&e)),
         }
+        Ok(())
     }
 }
 
@@ -83,6 +134,12 @@ impl Folder {
     /// It lies outside.
     pub fn path(&self, name: &str) -> Result<PathBuf> {
         let path = self.output.join(name);
+        if self.shared && is_own(Path::new(name)) {
+            return Err(
+                Problem::new(format!("`{name}` is the name of a file of the results"))
+                    .help("write another name"),
+            );
+        }
         if self.outside || self.dry || path == Path::new("/dev/null") {
             return Ok(path);
         }
@@ -153,9 +210,21 @@ impl Folder {
     /// It lies outside, or cannot be opened.
     pub fn open(&self, name: &str, append: bool) -> Result<Sink> {
         let path = self.path(name)?;
-        if self.dry {
-            return Ok(Sink { path, out: None });
+        let open = self.open.clone();
+        if open.borrow().contains(&path) {
+            let wrong = format!("`{name}` is being written by another command");
+            return Err(Problem::new(wrong).help("give each its own file"));
         }
+        let sink = |path, out, whole| Sink {
+            path,
+            out,
+            whole,
+            open,
+        };
+        if self.dry {
+            return Ok(sink(path, None, 0));
+        }
+        self.replaceable(&path)?;
         let file = File::options()
             .create(true)
             .write(true)
@@ -163,10 +232,38 @@ impl Folder {
             .truncate(!append)
             .open(&path)
             .map_err(|e| failed(&path, &e))?;
-        Ok(Sink {
-            path,
-            out: Some(BufWriter::new(file)),
-        })
+        self.has_made(&path, &file);
+        let whole = file.metadata().map_or(0, |m| m.len());
+        self.open.borrow_mut().push(path.clone());
+        Ok(sink(path, Some(BufWriter::new(file)), whole))
+    }
+
+    /// May a file take this place?
+    fn replaceable(&self, path: &Path) -> Result<()> {
+        source::replaceable(path).map_err(|e| failed(path, &e))?;
+        let Some(made) = &self.made else {
+            return Ok(());
+        };
+        let theirs = |real: PathBuf| real.is_file() && !made.borrow().contains(&real);
+        match path.canonicalize().is_ok_and(theirs) {
+            false => Ok(()),
+            true => Err(Problem::new(format!(
+                "{} is there already, and this script has not made it",
+                path.display()
+            ))
+            .help("choose a folder with --out, move the file away, or let the script replace it with --allow-outside")),
+        }
+    }
+
+    /// A file that is there now is the script's.
+    fn has_made(&self, path: &Path, file: &File) {
+        source::made(file);
+        if let (Some(made), Ok(real)) = (&self.made, path.canonicalize()) {
+            let mut made = made.borrow_mut();
+            if !made.contains(&real) {
+                made.push(real);
+            }
+        }
     }
 
     /// Opens a file that takes its name when it is whole, with [`Folder::whole`].
@@ -188,6 +285,11 @@ impl Folder {
             return Ok(());
         }
         let path = self.path(name)?;
-        std::fs::rename(&sink.path, &path).map_err(|e| failed(&path, &e))
+        self.replaceable(&path)?;
+        std::fs::rename(&sink.path, &path).map_err(|e| failed(&path, &e))?;
+        if let Some(out) = &sink.out {
+            self.has_made(&path, out.get_ref());
+        }
+        Ok(())
     }
 }

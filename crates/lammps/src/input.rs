@@ -1,8 +1,10 @@
-//! Opens what a script reads.
+//! Opens what a script reads, by the door of all files.
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::BufReader;
 use std::path::Path;
+
+use peridyne_io::read::source;
 
 use crate::error::{Problem, Result};
 use peridyne_io::read::encoding;
@@ -12,27 +14,14 @@ const LARGEST_TEXT: u64 = 16 << 20;
 
 /// Opens a text file. Devices and pipes may have no end: they are refused.
 pub(crate) fn open(path: &Path, shown: &str) -> Result<BufReader<File>> {
-    let cannot = |e| Problem::new(format!("cannot open {shown}: {e}"));
-    let file = std::fs::metadata(path).map_err(cannot)?;
-    if !file.is_file() {
-        return Err(Problem::new(format!("{shown} is not a file"))
-            .help("a folder, device or pipe cannot be read: write the name of a file"));
-    }
-    File::open(path).map(BufReader::new).map_err(cannot)
+    let file = source::open(path);
+    file.map(BufReader::new)
+        .map_err(|e| Problem::new(format!("cannot open {shown}: {e}")))
 }
 
 /// The text of a whole file.
 pub(crate) fn text(path: &Path, shown: &str) -> Result<String> {
-    let mut bytes = Vec::new();
-    let read = open(path, shown)?
-        .take(LARGEST_TEXT + 1)
-        .read_to_end(&mut bytes);
-    read.map_err(|e| Problem::new(format!("cannot read {shown}: {e}")))?;
-    if bytes.len() as u64 > LARGEST_TEXT {
-        return Err(Problem::new(format!(
-            "{shown} is larger than {} MiB, which no script is",
-            LARGEST_TEXT >> 20
-        )));
-    }
+    let bytes = source::within(open(path, shown)?, LARGEST_TEXT)
+        .map_err(|e| Problem::new(format!("cannot read {shown}: {e}")))?;
     encoding::text(bytes, 0).map_err(|e| Problem::new(format!("{shown}: {e}")))
 }

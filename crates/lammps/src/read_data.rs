@@ -66,7 +66,9 @@ impl Session<'_> {
                 }
             }
         }
-        self.population.types = data.types;
+        self.population
+            .take_types(data.types)
+            .map_err(|p| Problem::new(format!("{path}: {}", p.message)))?;
         let atoms = Atoms::from(data.atoms);
         self.population.ids = atoms.ids.clone();
         self.space.domain = Some(domain);

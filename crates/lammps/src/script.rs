@@ -1,5 +1,6 @@
 //! Reads a script line by line and runs it.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -22,6 +23,10 @@ pub struct Options {
     pub allow_outside: bool,
     /// Nothing is written at all: the script is only checked.
     pub dry: bool,
+    /// Are results of the program's own in the folder, too? Their names are then not the script's.
+    pub shared: bool,
+    /// Files that earlier runs of the script have made, and then this one: no other that is there is replaced. `None`: any is.
+    pub made: Option<Rc<RefCell<Vec<PathBuf>>>>,
 }
 
 /// What a script left behind.
@@ -93,6 +98,9 @@ pub fn run_text(
             .unwrap_or_default(),
         outside: options.allow_outside,
         dry: options.dry,
+        shared: options.shared,
+        made: options.made.clone(),
+        open: Rc::default(),
     };
     let session = Session::new(host, console, folder, name.to_string());
     let mut script = Script {

@@ -34,6 +34,18 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
         return all;
     }
     geometry(found, &mut say);
+    for (n, ties) in found.ties.iter().enumerate().filter(|(_, ties)| **ties > 0) {
+        let name = match &*spec.indenters[n].name {
+            "" => format!("indenter {}", n + 1),
+            name => format!("`{name}`"),
+        };
+        say(
+            format!(
+                "two sides of {name} push {ties} points alike: round-off decides which of them does, and a symmetric body may be pushed aside"
+            ),
+            "move the points or the indenter by a part of the spacing",
+        );
+    }
     let fraction = info.time_step / info.stable_step;
     // equilibrium has no step and no limit
     if info.stable_step.is_finite() && fraction < 0.05 {

@@ -41,14 +41,18 @@ pub(super) fn find(
     sim: &mut dyn Simulation,
     plan: &FieldsPlan,
     steps: u64,
+    file: &str,
 ) -> Result<Vec<Found>, Failure> {
     let most = plan.asked.iter().map(|a| a.place.points()).max();
-    let efforts = efforts(sim, plan).map_err(|e| Failure::input(format!("[[fields]] {e}")))?;
+    let efforts =
+        efforts(sim, plan).map_err(|e| Failure::input(format!("{file}: [[fields]] {e}")))?;
     let seconds = efforts.iter().fold(0.0, |s: f64, e| s + e.seconds);
     let few = sim.info().points.max(most.unwrap_or(0)) <= PATIENCE;
     let patient = few && seconds <= LONG;
     let mut seen = match patient {
-        true => foresee(sim, plan).map_err(|e| Failure::input(format!("fields: {e}")))?,
+        true => {
+            foresee(sim, plan).map_err(|e| Failure::input(format!("{file}: [[fields]] {e}")))?
+        }
         false => vec![],
     }
     .into_iter();

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use peridyne_io::read::text_of;
+use peridyne_io::write::folder::is_inside;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -105,6 +106,9 @@ pub struct FieldsArguments {
     /// Folder for the results.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Let the file of keys write outside its own folder.
+    #[arg(long)]
+    pub allow_outside: bool,
     /// Threads; all cores if not given. Results do not depend on it.
     #[arg(long)]
     pub threads: Option<usize>,
@@ -284,6 +288,18 @@ impl FieldsArguments {
             Some(path) => read(path)?,
             None => Keys::default(),
         };
+        if let (Some(deck), Some(out), None) = (&self.deck, &keys.out, &self.out)
+            && !self.allow_outside
+        {
+            let folder = deck.parent().unwrap_or(Path::new(""));
+            if !is_inside(folder, &out.join("file")) {
+                return Err(Failure::input(format!(
+                    "{}: out = {:?} leads out of its folder: give a name without `..` that does not begin with `/` and is no link; --out says a folder, --allow-outside lets the file do so",
+                    deck.display(),
+                    out.display().to_string(),
+                )));
+            }
+        }
         let joined = |name: &str| {
             let of = |d: &PathBuf| d.parent().unwrap_or(Path::new("")).join(name);
             self.deck.as_ref().map_or_else(|| PathBuf::from(name), of)

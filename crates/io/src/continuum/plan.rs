@@ -1,5 +1,6 @@
 //! What fields a deck asks for.
 
+use crate::write::space::film_frames;
 use peridyne_fields::{PairForce, Partition, Quantity, Shape};
 
 /// Fields of the running model.
@@ -71,11 +72,18 @@ impl FieldsSpec {
     /// What is written at most, without packing: a text and an array of every number of the means, of their errors, and of each frame if
     /// these are wanted (bytes).
     pub fn bytes(&self, steps: u64) -> f64 {
-        let numbers: usize = Quantity::ALL.iter().map(|q| q.components()).sum();
         let frames = if self.each { self.frames(steps) } else { 0 };
-        // 8 in an array, about 24 as text
-        32.0 * numbers as f64 * self.place.points() as f64 * (2 + frames) as f64
+        // slices of stress and temperature
+        let films = if self.film { 2 * self.frames(steps) } else { 0 };
+        film_frames(films) + bytes(self.place.points(), frames)
     }
+}
+
+/// What tables of so many points take at most: of means, of their errors, and of so many frames (bytes).
+pub fn bytes(points: u64, frames: u64) -> f64 {
+    let numbers: usize = Quantity::ALL.iter().map(|q| q.components()).sum();
+    // 8 in an array, about 24 as text
+    32.0 * numbers as f64 * points as f64 * (2.0 + frames as f64)
 }
 
 #[cfg(test)]

@@ -174,14 +174,18 @@ impl RunningFields {
         Ok(said)
     }
 
-    /// Writes what stands for all frames; gives the pictures that there are, with their names in the folder of the run.
+    /// Writes what stands for all frames; gives the pictures that there are, with their names in the folder of the run. Films are drawn
+    /// short where there is a hurry.
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn finish(self) -> Result<Vec<String>, WriteError> {
+    pub fn finish(self, hurried: bool) -> Result<Vec<String>, WriteError> {
         let of = self.live.source();
         let mut pictures = vec![];
-        for one in self.each {
+        for mut one in self.each {
+            if hurried {
+                one.collected.hurry();
+            }
             let made = one.collected.finish("the run", of, &one.method)?;
             let names = made.pictures.iter().filter_map(|p| p.file_name());
             let inside = |n: &OsStr| format!("{}/{}", one.asked.name, n.display());

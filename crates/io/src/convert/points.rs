@@ -1,7 +1,6 @@
 //! The points of a deck of Peridigm or PeriLab: text files, Exodus meshes, grids; blocks and node sets.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use super::Program;
@@ -9,6 +8,7 @@ use super::tree::Entry;
 use crate::read::Holds;
 use crate::read::exodus::parse_holding;
 use crate::read::number::number as read_number;
+use crate::read::source;
 use crate::write::exodus::Layout;
 use peridyne::expression::Expression;
 
@@ -38,7 +38,7 @@ pub struct Grid {
 
 /// Text of a file that a deck names.
 fn read(path: &Path) -> Result<Vec<u8>, String> {
-    fs::read(path).map_err(|e| format!("{}: cannot read it: {e}", path.display()))
+    source::bytes(path).map_err(|e| format!("{}: cannot read it: {e}", path.display()))
 }
 
 fn text(path: &Path) -> Result<String, String> {

@@ -325,6 +325,7 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
     let mut names = Names::default();
     // the number of the type, of each species
     let mut numbers: Vec<u32> = vec![];
+    stream.room(head.count, columns.len())?;
     let mut rows = Vec::with_capacity(head.count.min(1 << 20));
     for k in 0..head.count {
         stream.expect(|| {

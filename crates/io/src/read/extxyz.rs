@@ -341,6 +341,7 @@ pub(super) fn frame<R: BufRead>(
         time: head.time,
         ..Atoms::default()
     };
+    stream.room(count, head.columns)?;
     for k in 0..count {
         stream.expect(|| format!("{k} of {count} atoms are there"))?;
         let words: Vec<&str> = stream.current().split_whitespace().collect();

@@ -1,10 +1,9 @@
 //! Linear bodies: the archives that [`crate::write::linear`] describes.
 
+use super::npz::Npz;
 use super::{Points, ReadError};
-use ndarray::{Array1, Array2, Array3, OwnedRepr};
-use ndarray_npy::{NpzReader, ReadableElement};
+use ndarray::{Array1, Array2, Array3};
 use peridyne::spec::{AnyLinearBody, Carriers, Cloud, LinearBody};
-use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -18,9 +17,7 @@ pub fn read(path: &Path) -> Result<Points, ReadError> {
         line: None,
         message,
     };
-    let file = File::open(path).map_err(|e| error(format!("cannot read it: {e}")))?;
-    let mut file =
-        NpzReader::new(file).map_err(|e| error(format!("it is no .npz archive: {e}")))?;
+    let mut file = Npz::open(path).map_err(error)?;
     let arrays = Arrays::read(&mut file).map_err(error)?;
     let dimension = arrays.position.ncols();
     let body = match dimension {
@@ -62,14 +59,14 @@ struct Loads {
 }
 
 impl Loads {
-    fn read(file: &mut NpzReader<File>) -> Result<Loads, String> {
+    fn read(file: &mut Npz) -> Result<Loads, String> {
         Ok(Loads {
-            position: array(file, "load_position")?,
-            volume: array(file, "load_volume")?,
-            spacing: array(file, "load_spacing")?,
-            start: array(file, "load_start")?,
-            target: array(file, "load_target")?,
-            block: array(file, "load_block")?,
+            position: file.array("load_position")?,
+            volume: file.array("load_volume")?,
+            spacing: file.array("load_spacing")?,
+            start: file.array("load_start")?,
+            target: file.array("load_target")?,
+            block: file.array("load_block")?,
         })
     }
 
@@ -133,28 +130,17 @@ fn blocks<const D: usize>(block: &Array3<f64>) -> Vec<[[f64; D]; D]> {
     block.outer_iter().map(of).collect()
 }
 
-fn array<T: ReadableElement, D: ndarray::Dimension>(
-    file: &mut NpzReader<File>,
-    name: &str,
-) -> Result<ndarray::ArrayBase<OwnedRepr<T>, D>, String> {
-    file.by_name(name)
-        .map_err(|e| format!("the array `{name}` cannot be read: {e}"))
-}
-
 impl Arrays {
-    fn read(file: &mut NpzReader<File>) -> Result<Arrays, String> {
-        let names = file
-            .names()
-            .map_err(|e| format!("its arrays cannot be listed: {e}"))?;
+    fn read(file: &mut Npz) -> Result<Arrays, String> {
         let arrays = Arrays {
-            position: array(file, "position")?,
-            volume: array(file, "volume")?,
-            density: array(file, "density")?,
-            period: array(file, "period")?,
-            start: array(file, "start")?,
-            partner: array(file, "partner")?,
-            block: array(file, "block")?,
-            loads: match names.iter().any(|n| n == "load_target") {
+            position: file.array("position")?,
+            volume: file.array("volume")?,
+            density: file.array("density")?,
+            period: file.array("period")?,
+            start: file.array("start")?,
+            partner: file.array("partner")?,
+            block: file.array("block")?,
+            loads: match file.has("load_target") {
                 true => Some(Loads::read(file)?),
                 false => None,
             },
@@ -304,8 +290,8 @@ mod tests {
             block: vec![[[0.5]], [[0.5]], [[1.0]]],
         });
         write_linear(&path, &body).unwrap();
-        let mut file = NpzReader::new(File::open(&path).unwrap()).unwrap();
-        let asymmetry: Array1<f64> = array(&mut file, "asymmetry").unwrap();
+        let mut file = Npz::open(&path).unwrap();
+        let asymmetry: Array1<f64> = file.array("asymmetry").unwrap();
         assert_eq!(asymmetry.to_vec(), [0.25]);
         let points = read(&path).unwrap();
         let found = Arc::unwrap_or_clone(points.micromoduli.unwrap()).of::<1>();

@@ -23,8 +23,10 @@ mod lines;
 mod measure;
 mod mesh;
 pub mod molecules;
+pub(crate) mod npz;
 pub mod number;
 pub(crate) mod plane;
+pub mod source;
 pub(crate) mod spacing;
 pub mod stl;
 mod stream;
@@ -166,7 +168,7 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     if extension == "npz" {
         return linear::read(path);
     }
-    let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
+    let bytes = source::bytes(path).map_err(|e| error(format!("cannot read it: {e}")))?;
     if extension == "msh" {
         return whole(gmsh::read(bytes, &name)?, &name);
     }
@@ -180,7 +182,7 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
 
 /// Is the second line of a file that of extended XYZ?
 fn begins_extended(path: &Path) -> bool {
-    let Ok(file) = std::fs::File::open(path) else {
+    let Ok(file) = source::open(path) else {
         return false;
     };
     // a line of a frame is short; what is not a text file may have none
@@ -245,6 +247,9 @@ fn whole(points: Sourced, name: &str) -> Result<Points, ReadError> {
     })
 }
 
+/// Periods from the cell at which a place keeps ten digits of it.
+const FARTHEST: f64 = 1e6;
+
 /// Atoms as points: each has its part of the box as volume. LAMMPS does not say which axes are periodic.
 fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError> {
     let error = |message: String| ReadError {
@@ -257,6 +262,17 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
         return Err(error("the file has no atoms".into()));
     }
     let cell: [f64; 3] = std::array::from_fn(|a| atoms.high[a] - atoms.low[a]);
+    let far = |x: &[f64; 3]| {
+        let off = |a: usize| (x[a] - atoms.low[a]).abs() / cell[a];
+        (0..3).any(|a| !lammps && atoms.periodic[a] && cell[a] > 0.0 && !(off(a) < FARTHEST))
+    };
+    if let Some(i) = atoms.position.iter().position(far) {
+        return Err(error(format!(
+            "atom {} is at {:?}, more than {FARTHEST} periods from the cell: its place in it has lost its digits",
+            i + 1,
+            atoms.position[i]
+        )));
+    }
     let used: std::collections::BTreeSet<u32> = atoms.kind.iter().copied().collect();
     let kinds = || used.iter().map(|k| &atoms.species[*k as usize]);
     let of_none = |k: &u32| atoms.mass.is_some() && atoms.species[*k as usize].mass.is_none();

@@ -20,7 +20,7 @@ const TRIANGLE: usize = 50;
 pub fn stl(path: &Path, unit: f64) -> Result<Triangles, ReadError> {
     let name = path.display().to_string();
     let fail = |message: String| ReadError::file(path, message);
-    let bytes = std::fs::read(path).map_err(|e| fail(format!("cannot read it: {e}")))?;
+    let bytes = super::source::bytes(path).map_err(|e| fail(format!("cannot read it: {e}")))?;
     let mut all = match binary_count(&bytes) {
         Some(count) => binary(&bytes, count).map_err(fail)?,
         None => match super::whole::text(bytes.clone(), &name, 1) {

@@ -1,10 +1,9 @@
 //! Lines of a file one at a time: trajectories do not fit in memory.
 
-use super::ReadError;
 use super::encoding::{Bad, next_line};
 use super::number::{comma, number};
+use super::{ReadError, source};
 use flate2::bufread::MultiGzDecoder;
-use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
@@ -35,7 +34,7 @@ impl Stream<Source> {
             line: None,
             message: format!("cannot read it: {e}"),
         };
-        let mut file = BufReader::with_capacity(ROOM, File::open(path).map_err(wrong)?);
+        let mut file = BufReader::with_capacity(ROOM, source::open(path).map_err(wrong)?);
         let packed = file.fill_buf().map_err(wrong)?.starts_with(&GZIP);
         let source: Source = match packed {
             true => Box::new(BufReader::with_capacity(ROOM, MultiGzDecoder::new(file))),
@@ -106,6 +105,14 @@ impl<R: BufRead> Stream<R> {
             line: None,
             ..self.error(message)
         }
+    }
+
+    /// Room for so many atoms of so many columns, before the first is read: the header is not trusted with memory.
+    pub fn room(&self, atoms: usize, columns: usize) -> Result<(), ReadError> {
+        // rows as they are read and sorted, and the columns that are made of them
+        let bytes = atoms as f64 * (250.0 + 16.0 * columns as f64);
+        source::room(&format!("a frame of {atoms} atoms"), bytes)
+            .map_err(|e| self.error(e.to_string()))
     }
 
     pub fn finite(&self, word: &str, what: &str) -> Result<f64, ReadError> {

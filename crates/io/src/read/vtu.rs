@@ -79,7 +79,7 @@ impl Frame {
     /// # Errors
     /// The operating system's, or what is missing in the file.
     pub fn open(path: &Path) -> Result<Frame, ReadError> {
-        let file = File::open(path).map_err(|e| ReadError::file(path, e.to_string()))?;
+        let file = super::source::open(path).map_err(|e| ReadError::file(path, e.to_string()))?;
         Frame::of(file).map_err(|what| ReadError::file(path, what))
     }
 }

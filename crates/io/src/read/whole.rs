@@ -1,6 +1,6 @@
 //! Small text files, read at once.
 
-use super::{ReadError, encoding};
+use super::{ReadError, encoding, source};
 use std::path::Path;
 
 /// Text and name of a file.
@@ -13,7 +13,7 @@ pub fn text_of(path: &Path) -> Result<(String, String), ReadError> {
 
 /// The same of a file whose first lines may say anything.
 pub(super) fn titled(path: &Path, titles: usize) -> Result<(String, String), ReadError> {
-    let bytes = std::fs::read(path);
+    let bytes = source::bytes(path);
     let bytes = bytes.map_err(|e| ReadError::file(path, format!("cannot read it: {e}")))?;
     let name = path.display().to_string();
     Ok((text(bytes, &name, titles)?, name))

@@ -1,7 +1,8 @@
 //! Files that are either whole or not there.
 //!
 //! A file is written to a temporary beside it and renamed over the old one when it is complete and on the
-//! disk; a killed run, a full disk or an error on the way leaves the old file untouched and no rubbish.
+//! disk; a killed run, a full disk or an error on the way leaves the old file untouched and no rubbish. A file that was
+//! read is never replaced ([`crate::read::source`]).
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -9,6 +10,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
+
+use crate::read::source;
 
 /// What the writers of formats are given: a buffered temporary file.
 pub type Sink<'a> = BufWriter<&'a mut NamedTempFile>;
@@ -72,6 +75,7 @@ pub fn write_file(
 }
 
 fn replace(path: &Path, fill: impl FnOnce(&mut Sink) -> io::Result<()>) -> io::Result<()> {
+    source::replaceable(path)?;
     let mut file = temporary_in(directory(path))?;
     let mut sink = BufWriter::with_capacity(1 << 18, &mut file);
     fill(&mut sink)?;
@@ -79,7 +83,9 @@ fn replace(path: &Path, fill: impl FnOnce(&mut Sink) -> io::Result<()>) -> io::R
     drop(sink);
     // the name must not reach the disk before the contents; late errors of the disk show here
     file.as_file().sync_all()?;
-    file.persist(path).map(drop).map_err(|e| e.error)
+    let file = file.persist(path).map_err(|e| e.error)?;
+    source::made(&file);
+    Ok(())
 }
 
 /// What names of temporaries begin with, before [`RANDOM`] letters and digits.
@@ -94,13 +100,14 @@ pub(super) fn is_temporary(name: &OsStr) -> bool {
 
 /// A temporary file with the rights that any other new file gets (tempfile's own are private), and with errors
 /// free of its name: the user knows the path that was asked for.
-fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
+pub(super) fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
     let mut code = None;
     let made = tempfile::Builder::new()
         .prefix(PREFIX)
         .rand_bytes(RANDOM)
         .make_in(directory, |path| {
-            let file = File::options().write(true).create_new(true).open(path);
+            let mut options = File::options();
+            let file = options.read(true).write(true).create_new(true).open(path);
             file.inspect_err(|e| code = e.raw_os_error())
         });
     made.map_err(|e| code.map_or(e, io::Error::from_raw_os_error))

@@ -76,6 +76,56 @@ pub fn stays(name: &Path) -> bool {
     name.components().all(plain)
 }
 
+/// Files of the results that have fixed names.
+const OWN: [&str; 14] = [
+    "history.csv",
+    "damage.png",
+    "displacement.png",
+    "velocity.png",
+    "run.json",
+    "report.html",
+    "points.pvd",
+    "bonds.pvd",
+    "modes.csv",
+    "modes",
+    "linear_body.npz",
+    "frames.npz",
+    FILES,
+    "peridyne.lock",
+];
+
+/// What a script has written besides its results: a list of its files.
+pub const FILES: &str = "files.json";
+
+/// Is this the name of a file of the results that has its name whatever a deck or script says: the history, a frame, a
+/// picture, …?
+pub fn is_own(name: &Path) -> bool {
+    let mut parts = name.components().filter(|c| *c != Component::CurDir);
+    let Some(first) = parts.next().and_then(|c| c.as_os_str().to_str()) else {
+        return false;
+    };
+    let frame = |kind: &str| {
+        let number = first
+            .strip_prefix(kind)
+            .and_then(|n| n.strip_suffix(".vtu"));
+        number.is_some_and(|n| n.bytes().all(|b| b.is_ascii_digit()))
+    };
+    // of those that are folders, all that is in them
+    OWN.contains(&first) || parts.next().is_none() && (frame("points_") || frame("bonds_"))
+}
+
+/// A name without the parts that say nothing (`./`).
+pub fn plain(name: &Path) -> PathBuf {
+    let parts = name.components().filter(|c| *c != Component::CurDir);
+    parts.collect()
+}
+
+/// Would one of two names take the place of the other, as a file or as a folder that it lies in?
+pub fn collide(a: &Path, b: &Path) -> bool {
+    let (a, b) = (plain(a), plain(b));
+    a.starts_with(&b) || b.starts_with(&a)
+}
+
 /// Is `name`, taken from `dir`, a file inside `dir`? It [stays], and no link among the folders on the way leads out. (A
 /// link in place of the file itself is replaced, not followed.)
 pub fn is_inside(dir: &Path, name: &Path) -> bool {
@@ -102,6 +152,24 @@ pub fn is_inside(dir: &Path, name: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_of_the_results_and_names_that_collide() {
+        for name in [
+            "history.csv",
+            "./run.json",
+            "points_00000012.vtu",
+            "modes/a.png",
+        ] {
+            assert!(is_own(Path::new(name)), "{name}");
+        }
+        for name in ["points_a.vtu", "sub/history.csv", "frames/1.png", "a.dump"] {
+            assert!(!is_own(Path::new(name)), "{name}");
+        }
+        let collide = |a: &str, b: &str| super::collide(Path::new(a), Path::new(b));
+        assert!(collide("a", "./a") && collide("a/b", "a") && collide("a", "a/b/c"));
+        assert!(!collide("a/b", "a/c") && !collide("ab", "a"));
+    }
 
     #[test]
     fn a_folder_is_held_by_one_run_and_free_again_after_it() {

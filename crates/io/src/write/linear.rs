@@ -9,11 +9,30 @@
 //! `F_q = Σ_p T_qp F_p`: `load_start [M + 1]`, `load_target`, `load_block [..][D][D]`, one row per point p.
 
 use super::atomic::{WriteError, write_file};
+use crate::read::source;
 use ndarray::{Array1, Array2, Array3};
 use ndarray_npy::NpzWriter;
+use peridyne::run::Info;
 use peridyne::spec::LinearBody;
-use std::io::{Cursor, Error, Write as _};
+use std::io::{self, Cursor, Error, Write as _};
 use std::path::Path;
+
+/// Copies of a bond's micromodulus while a body is made: as tangents, sorted, in rows.
+const COPIES: f64 = 3.0;
+
+/// Is there room for the linear body of a model, at least for one whose bonds are all central? (Points with a scalar see the families
+/// of their partners, too.)
+///
+/// # Errors
+/// There is not.
+pub fn room(info: &Info) -> io::Result<()> {
+    let block = 8.0 * (info.dimension * info.dimension) as f64 + 8.0;
+    let what = format!(
+        "the linear body of {} points with {} bonds",
+        info.points, info.directed_bonds
+    );
+    source::room(&what, COPIES * block * info.directed_bonds as f64)
+}
 
 /// Writes the whole file or nothing.
 ///

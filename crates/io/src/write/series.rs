@@ -1,12 +1,13 @@
 //! Everything a run writes of its points, one object: files per snapshot, collections, the last picture.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use peridyne::observe::Snapshot;
 
 use super::atomic::{WriteError, create_directory, write_file};
 use super::dump::{DumpBox, write_frame};
-use super::picture::film::Film;
+use super::picture::film::{Film, HURRY};
 use super::picture::shown::About;
 use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
@@ -50,6 +51,8 @@ pub struct Series {
     dump: Option<(Frames, Option<u64>)>,
     /// One for each picture that asks for it.
     films: Vec<Option<Film>>,
+    /// Films are drawn short.
+    hurried: bool,
 }
 
 impl Series {
@@ -68,10 +71,11 @@ impl Series {
         let films = options
             .pictures
             .iter()
-            .map(|p| p.film.then(Film::new).transpose());
+            .map(|p| p.film.then(|| Film::new(&dir)).transpose());
         let films: std::io::Result<Vec<Option<Film>>> = films.collect();
         let films = films.map_err(WriteError::at("make a film in", &dir))?;
         Ok(Series {
+            hurried: false,
             films,
             dir,
             options,
@@ -122,15 +126,26 @@ impl Series {
         Ok(())
     }
 
+    /// The run was ended from outside, and who ended it does not wait long: films are drawn of fewer frames. Are there any?
+    pub fn hurry(&mut self) -> bool {
+        self.hurried = true;
+        self.films.iter().any(Option::is_some)
+    }
+
     /// Draws the last snapshot, as pictures were asked for; returns their paths.
     pub fn finish(self, last: &Snapshot, about: About) -> Result<Vec<PathBuf>, WriteError> {
         if let Some((dump, _)) = self.dump {
             dump.finish()?;
         }
         let mut paths = vec![];
+        let films = self.films.iter().flatten().count().max(1) as u32;
         for (options, film) in self.options.pictures.iter().zip(self.films) {
             let path = self.dir.join(format!("{}.png", options.stem(about)));
+            let begun = Instant::now();
             picture::write(&path, last, options, about)?;
+            // a frame of a film is smaller
+            let each = begun.elapsed().max(Duration::from_millis(1));
+            let most = (HURRY / films).as_secs_f64() / each.as_secs_f64();
             paths.push(path);
             if let Some(film) = film {
                 let name = format!("{}_film.png", options.stem(About::Motion));
@@ -140,6 +155,7 @@ impl Series {
                     options.field(About::Motion),
                     options,
                     options.scale_of(last, about),
+                    self.hurried.then_some(most as usize),
                 )?;
                 paths.push(path);
             }

@@ -2,14 +2,21 @@
 
 use std::path::Path;
 
+use super::picture::film::Film;
+
 /// A frame of a point in a VTU or an Exodus file: positions and vectors as f64, scalars, ids (bytes).
 const POINT: f64 = 120.0;
 /// An undirected bond in a VTU: two ids, offset, type.
 const BOND: f64 = 17.0;
 /// An atom in a text trajectory: three vectors and an energy in full digits.
 const ATOM: f64 = 160.0;
-/// A row of `history.csv`.
+/// A row of `history.csv`, and each of its columns that a probe adds.
 const ROW: f64 = 200.0;
+const CELL: f64 = 20.0;
+/// A number in a text that keeps all its digits.
+const NUMBER: f64 = 20.0;
+/// A frame of a film as a picture.
+const PICTURE: f64 = 100e3;
 
 /// What a run writes again and again.
 #[derive(Debug, Clone, Copy)]
@@ -26,21 +33,44 @@ pub struct Amount {
     pub bonds: u64,
     /// Atoms of all trajectories.
     pub atoms: u64,
+    /// Numbers of a point in the dump of points; 0: there is none.
+    pub dump: u64,
+    /// Films, and how many of them have arrows.
+    pub films: u64,
+    pub arrows: u64,
+    /// Columns of probes in the history.
+    pub probes: u64,
 }
 
 impl Amount {
-    /// About how many bytes frames, and rows of the history, take.
-    pub fn bytes(&self) -> [f64; 2] {
+    /// About how many bytes frames of files of all points and trajectories, of the dump of points, of films (as they wait and as they are
+    /// drawn), and rows of the history take.
+    pub fn bytes(&self) -> [f64; 4] {
         let frames = self
             .every
             .map_or(2.0, |e| self.steps as f64 / e as f64 + 1.0);
         let points = (self.files * self.points) as f64;
         let frame = POINT * points + BOND * self.bonds as f64 + ATOM * self.atoms as f64;
+        let film = self.films as f64 * (PICTURE + Film::bytes(self.points, false))
+            + self.arrows as f64
+                * (Film::bytes(self.points, true) - Film::bytes(self.points, false));
         [
             frames * frame,
-            self.steps as f64 / self.history as f64 * ROW,
+            frames * dump_frame(self.points, self.dump),
+            frames * film,
+            self.steps as f64 / self.history as f64 * (ROW + CELL * self.probes as f64),
         ]
     }
+}
+
+/// A frame of a text dump of so many points with so many numbers each (bytes).
+pub fn dump_frame(points: u64, numbers: u64) -> f64 {
+    NUMBER * points as f64 * numbers as f64
+}
+
+/// The part of a film that its pictures take, where no frame waits (bytes).
+pub fn film_frames(frames: u64) -> f64 {
+    PICTURE * frames as f64
 }
 
 /// Bytes that the disk of a folder has left, which need not exist yet; `None` where the system does not say.
@@ -73,8 +103,16 @@ mod tests {
             files: 1,
             bonds: 0,
             atoms: 0,
+            dump: 10,
+            films: 2,
+            arrows: 1,
+            probes: 3,
         };
-        assert_eq!(amount.bytes(), [101.0 * 12_000.0, 200.0 * 200.0]);
+        let [frames, dump, films, rows] = amount.bytes();
+        assert_eq!([frames, rows], [101.0 * 12_000.0, 200.0 * 260.0]);
+        assert_eq!(dump, 101.0 * 100.0 * 10.0 * 20.0);
+        // four numbers of four bytes wait for each point, seven with arrows
+        assert_eq!(films, 101.0 * (200e3 + 1600.0 + 2800.0));
         let ends = Amount {
             every: None,
             ..amount

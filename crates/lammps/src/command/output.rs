@@ -32,6 +32,14 @@ impl Session<'_> {
         }
         let dump = self.read_dump_shape(args, id.as_str(), true)?;
         args.finish()?;
+        self.folder.path(&dump.file)?;
+        if let Some(other) = self.watch.dumps.iter().find(|d| d.file == dump.file) {
+            return Err(Problem::new(format!(
+                "the dumps `{}` and `{}` are one file, {}",
+                other.id, dump.id, dump.file
+            ))
+            .help("give each its own file"));
+        }
         self.watch.dumps.push(dump);
         Ok(())
     }

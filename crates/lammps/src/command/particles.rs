@@ -30,9 +30,6 @@ impl Session<'_> {
 
     pub(super) fn create_box(&mut self, args: &mut Args) -> Result<()> {
         let types = args.count("the number of atom types", 1)?;
-        if types > 1000 {
-            return Err(Problem::new("more than 1000 atom types are not supported"));
-        }
         let word = args.next("a region ID")?;
         args.finish()?;
         self.no_box_yet()?;
@@ -64,7 +61,7 @@ impl Session<'_> {
         self.console
             .print(&format!("Created orthogonal box = {}", corners(low, high)));
         self.space.domain = Some(domain);
-        self.population.types = types as usize;
+        self.population.take_types(types as usize)?;
         Ok(())
     }
 

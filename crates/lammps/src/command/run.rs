@@ -2,6 +2,9 @@
 
 use std::time::Instant;
 
+use peridyne::error::size;
+use peridyne_io::write::space::free;
+
 use super::Args;
 use crate::atoms::Atoms;
 use crate::error::{Problem, Result};
@@ -122,6 +125,29 @@ impl Session<'_> {
         Ok(())
     }
 
+    /// Has the disk room for the dumps of so many steps?
+    fn room_for_dumps(&self, steps: u64) -> Result<()> {
+        let atoms = self.population.count();
+        for dump in &self.watch.dumps {
+            let path = self.folder.path(&dump.file)?;
+            let (bytes, left) = (
+                dump.bytes(steps, atoms),
+                free(path.parent().unwrap_or(&path)),
+            );
+            if let Some(left) = left.filter(|left| bytes > *left) {
+                return Err(Problem::new(format!(
+                    "{steps} steps would write about {} into the dump `{}`, {}; the disk has {} left",
+                    size(bytes),
+                    dump.id,
+                    path.display(),
+                    size(left)
+                ))
+                .help("write more steps between snapshots, fewer columns or atoms, or give --out on another disk"));
+            }
+        }
+        Ok(())
+    }
+
     /// Start of a run: bonds, forces, first output.
     ///
     /// # Errors
@@ -130,6 +156,7 @@ impl Session<'_> {
         self.progress.begin = self.progress.step;
         self.progress.end = self.progress.step + plan.steps;
         self.nobody_twice()?;
+        self.room_for_dumps(plan.steps)?;
         // forces have to be known once, whatever `pre` says
         let setup = plan.setup || self.progress.started.is_none();
         if setup {

@@ -164,6 +164,8 @@ impl Session<'_> {
         let name = args.next("a file name, or none")?;
         let append = args.eat("append");
         args.finish()?;
+        // the one before ends, also if it goes on in the same file
+        self.console.log(None);
         let log = match name.as_str() {
             "none" => None,
             file => {

@@ -143,6 +143,16 @@ impl Dump {
         }
     }
 
+    /// About what its snapshots of a run of so many steps take (bytes); of those whose steps a variable says, one.
+    pub fn bytes(&self, steps: u64, atoms: usize) -> f64 {
+        let snapshots = match (&self.every_variable, self.style) {
+            (Some(_), _) | (_, DumpStyle::Image) => 1,
+            (None, _) => steps / self.every.max(1) + 1,
+        };
+        // digits of `%g` and a blank
+        10.0 * snapshots as f64 * atoms as f64 * self.columns.len().max(1) as f64
+    }
+
     fn path_name(&self, step: u64) -> String {
         self.file
             .replace('*', &format!("{step:0>w$}", w = self.pad))

@@ -161,7 +161,11 @@ fn sites(setup: &Setup, periodic: [Option<f64>; 3], horizon: f64) -> Option<Body
     } else {
         LatticeKind::Cubic
     };
-    if Stencil::new(kind, lattice.spacing, Horizon::Length(horizon)).near_horizon() > 0 {
+    // a horizon over everything is refused by the engine, before its bonds are listed
+    let length = Horizon::Length(horizon);
+    if Stencil::fits(kind, lattice.spacing, length).is_ok()
+        && Stencil::new(kind, lattice.spacing, length).near_horizon() > 0
+    {
         return None;
     }
     Some(BodySpec::Sites {

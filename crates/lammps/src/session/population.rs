@@ -6,6 +6,9 @@ use crate::atoms::{Atoms, Ids, Members};
 use crate::error::{Problem, Result, suggestion};
 use crate::host::{BLOCK, Engine, Particles, Quantity};
 
+/// Atom types at most.
+const MOST_TYPES: usize = 1000;
+
 /// Who holds the atoms.
 pub enum Store {
     /// Before the first `run`.
@@ -48,6 +51,19 @@ impl Default for Population {
 }
 
 impl Population {
+    /// So many types, from a box or a file.
+    ///
+    /// # Errors
+    /// They are too many: every pair of them has its place.
+    pub fn take_types(&mut self, types: usize) -> Result<()> {
+        if types > MOST_TYPES {
+            let wrong = format!("{types} atom types: more than {MOST_TYPES} are not supported");
+            return Err(Problem::new(wrong).help("write the number of types that occur"));
+        }
+        self.types = types;
+        Ok(())
+    }
+
     pub fn count(&self) -> usize {
         self.store.particles().count()
     }

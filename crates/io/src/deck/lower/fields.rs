@@ -5,7 +5,7 @@ use crate::continuum::plan::{Choice, FieldsSpec, Place};
 use crate::deck::document::{AxisName, Centre, Fields, KernelName, PairForceName, PartitionName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Or, Vector};
-use crate::write::folder::stays;
+use crate::write::folder::{plain, stays};
 use peridyne_fields::targets::affordable;
 use peridyne_fields::{PairForce, Partition, Shape, Targets};
 use std::ops::Range;
@@ -20,7 +20,8 @@ pub(super) fn fields(
     let mut all: Vec<FieldsSpec> = vec![];
     for at in written {
         let one = one(context, at, atoms)?;
-        if all.iter().any(|other| other.name == one.name) {
+        let folder = |of: &FieldsSpec| plain(Path::new(&of.name));
+        if all.iter().any(|other| folder(other) == folder(&one)) {
             let span = at.value.name.as_ref().map_or(&at.span, |n| &n.span);
             return Err(context.error_with(
                 span,

@@ -12,6 +12,7 @@ mod interface;
 mod law;
 mod material;
 mod motion;
+mod names;
 mod periods;
 mod pieces;
 mod points;
@@ -249,6 +250,7 @@ pub(super) fn lower(
     }
     indenter::of_material(&mut context, document, &mut spec)?;
     let species = potentials.into_values().map(|p| p.element);
+    names::folders(&context, &document.output, &document.fields)?;
     let output = schedule::output(&context, &document.output, spec.potential().is_some())?;
     Ok(Lowered {
         corner: periods::corner(&context, &document.body.value, &spec.body),

@@ -8,6 +8,7 @@ use crate::deck::document::{
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Number, Or, Written};
 use crate::deck::{OutputSpec, PictureSpec};
+use crate::drive::refused_threads;
 use crate::write::folder::stays;
 use crate::write::trajectory::Format;
 use peridyne::spec::{Control, Cycles, Method, Newmark, Schedule, Solver, Stepper, TimeStep};
@@ -314,7 +315,11 @@ fn threads(context: &Context, written: &Option<At<usize>>) -> Result<Option<usiz
             "a run needs a thread",
             "leave threads out to use all cores",
         )),
-        other => Ok(other.as_ref().map(|t| t.value)),
+        Some(threads) => match refused_threads(threads.value) {
+            Some(why) => Err(context.error(&threads.span, why)),
+            None => Ok(Some(threads.value)),
+        },
+        None => Ok(None),
     }
 }
 
@@ -435,15 +440,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         }
     });
     if let Some(name) = written.dump.as_ref().filter(|_| atoms) {
-        let path = PathBuf::from(&name.value);
-        if trajectories.iter().any(|(other, _)| *other == path) {
-            return Err(context.error_with(
-                &name.span,
-                "the dump and the trajectory are one file",
-                "drop one of them, or give them different names",
-            ));
-        }
-        trajectories.push((path, Format::Dump));
+        trajectories.push((PathBuf::from(&name.value), Format::Dump));
     }
     let data = match &written.data {
         Some(name) if !atoms => {
@@ -472,6 +469,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
             ));
         }
     }
+    super::names::apart(context, written)?;
     let names = [
         ("dir", written.dir.as_ref()),
         ("dump", written.dump.as_ref().map(|n| &n.value)),

@@ -1,5 +1,6 @@
 //! Data files of `atom_style peri`, `atomic`, `molecular` and `full` without charges.
 
+use super::super::source;
 use super::lines::{Lines, Result, finite};
 use std::io::BufRead;
 
@@ -99,6 +100,10 @@ impl DataAtoms {
 }
 
 const GUESSED: &str = "the file does not say its atom_style, which is guessed from the number of columns: write `Atoms # peri` (or atomic, molecular, full)";
+
+/// Bytes of an atom: as a row, and in columns.
+const OF_AN_ATOM: f64 = 150.0;
+
 const SECTIONS: [&str; 3] = ["Masses", "Atoms", "Velocities"];
 /// What bonds atoms.
 const BONDED: [&str; 8] = [
@@ -348,6 +353,8 @@ fn read_atoms<R: BufRead>(
     had_images: &mut bool,
 ) -> Result<DataAtoms> {
     // the header is not trusted with memory
+    source::room(&format!("{count} atoms"), OF_AN_ATOM * count as f64)
+        .map_err(|e| lines.fail(e.to_string()))?;
     let mut rows: Vec<(u32, u32, [f64; 5], usize)> = Vec::with_capacity(count.min(1 << 20));
     let mut like_charges = types > 1;
     for k in 0..count {

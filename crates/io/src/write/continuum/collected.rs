@@ -53,6 +53,13 @@ impl Collected {
         self
     }
 
+    /// The film, if there is one, is drawn of fewer frames.
+    pub fn hurry(&mut self) {
+        if let Some(film) = &mut self.film {
+            film.hurry();
+        }
+    }
+
     /// Files of frames.
     pub fn written(&self) -> &[PathBuf] {
         &self.written

@@ -4,11 +4,12 @@
 use super::{Column, Table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, write_file};
-use crate::write::picture::film::animate;
+use crate::write::picture::film::{HURRY, animate, stride};
 use crate::write::picture::label;
 use crate::write::plot::{ColorMap, Map};
 use peridyne_fields::Quantity;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// A slice across the shortest axis of a grid.
 #[derive(Debug, Clone)]
@@ -138,12 +139,22 @@ pub fn write_slice(dir: &Path, table: &Table, units: Units) -> Result<Vec<PathBu
 
 /// Slices of frames, kept until the ends of the colours are known.
 #[derive(Debug, Clone, Default)]
-pub struct SliceFilm(Vec<(Option<f64>, Slice)>);
+pub struct SliceFilm {
+    frames: Vec<(Option<f64>, Slice)>,
+    /// It is drawn short.
+    hurried: bool,
+}
 
 impl SliceFilm {
     /// Takes the slices of a frame, of this time.
     pub fn push(&mut self, table: &Table, time: Option<f64>) {
-        self.0.extend(slices(table).into_iter().map(|s| (time, s)));
+        self.frames
+            .extend(slices(table).into_iter().map(|s| (time, s)));
+    }
+
+    /// Who waits for it does not wait long.
+    pub fn hurry(&mut self) {
+        self.hurried = true;
     }
 
     /// Writes `NAME_film.png` of each kind of slice; gives their paths.
@@ -154,7 +165,7 @@ impl SliceFilm {
         let mut made = vec![];
         for name in ["stress", "temperature"] {
             let own: Vec<&(Option<f64>, Slice)> =
-                self.0.iter().filter(|(_, s)| s.name == name).collect();
+                self.frames.iter().filter(|(_, s)| s.name == name).collect();
             let Some((_, first)) = own.first() else {
                 continue;
             };
@@ -167,7 +178,17 @@ impl SliceFilm {
                 slice.map(between, &when, units).image()
             };
             let path = dir.join(format!("{name}_film.png"));
-            write_file(&path, |w| animate(w, own.len(), own.iter().map(image)))?;
+            let most = self.hurried.then(|| {
+                let begun = Instant::now();
+                let drawn = own.first().map(image);
+                let each = begun.elapsed().max(Duration::from_millis(1));
+                drop(drawn);
+                // there are two of them
+                (HURRY.as_secs_f64() / 2.0 / each.as_secs_f64()) as usize
+            });
+            let some = own.iter().step_by(stride(own.len(), most));
+            let count = some.len();
+            write_file(&path, |w| animate(w, count, some.map(image)))?;
             made.push(path);
         }
         Ok(made)

@@ -1,14 +1,16 @@
-//! A film of the frames of a run, as an animated PNG. Frames wait in a temporary file, small, until the run has ended: then the ends
-//! of the colours are known, and how many frames there are.
+//! A film of the frames of a run, as an animated PNG. Frames wait in a temporary file beside it, small, until the run has ended: then
+//! the ends of the colours are known, and how many frames there are.
 
-use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
+use std::time::Duration;
+
+use tempfile::NamedTempFile;
 
 use peridyne::columns::Declaration;
 use peridyne::observe::{Column, Snapshot, Values};
 
-use super::super::atomic::{WriteError, write_file};
+use super::super::atomic::{WriteError, temporary_in, write_file};
 use super::arrows::Arrows;
 use super::image::Image;
 use super::shown::{Shown, range};
@@ -22,7 +24,7 @@ const DELAY: u16 = 80;
 /// Frames so far.
 #[derive(Debug)]
 pub struct Film {
-    waiting: BufWriter<File>,
+    waiting: BufWriter<NamedTempFile>,
     /// What is the same in all: the first snapshot with its displacements only.
     first: Option<Snapshot>,
     /// Name, dimension and values of what is shown; the values are those of the last frame.
@@ -35,11 +37,13 @@ pub struct Film {
 }
 
 impl Film {
+    /// Of frames that wait in this folder.
+    ///
     /// # Errors
     /// No temporary file.
-    pub fn new() -> io::Result<Film> {
+    pub fn new(dir: &Path) -> io::Result<Film> {
         Ok(Film {
-            waiting: BufWriter::new(tempfile::tempfile()?),
+            waiting: BufWriter::new(temporary_in(dir)?),
             first: None,
             shown: None,
             arrows: None,
@@ -91,7 +95,12 @@ impl Film {
         Ok(())
     }
 
-    /// Writes the film; `None`: there was no frame.
+    /// Bytes of a frame of so many points that waits.
+    pub fn bytes(points: u64, arrows: bool) -> f64 {
+        4.0 * NUMBERS[usize::from(arrows)] as f64 * points as f64
+    }
+
+    /// Writes the film, if there was a frame: of all, or of at most so many of them, as evenly as they come.
     ///
     /// # Errors
     /// A file could not be written.
@@ -101,6 +110,7 @@ impl Film {
         field: &str,
         options: &PictureOptions,
         scale: f64,
+        most: Option<usize>,
     ) -> Result<(), WriteError> {
         let (Some(first), Some(shown)) = (self.first, self.shown) else {
             return Ok(());
@@ -123,14 +133,31 @@ impl Film {
             shown: &shown,
             arrows: self.arrows.as_ref(),
         };
+        let step = stride(self.frames.len(), most);
+        let points = first.reference.len() as u64;
+        let bytes = Film::bytes(points, self.arrows.is_some()) as u64;
         let mut waiting = BufReader::new(&mut file);
-        let images = self.frames.iter().map(|frame| {
+        let frames = self.frames.iter().enumerate().step_by(step);
+        let count = frames.len();
+        let images = frames.map(|(n, frame)| {
+            waiting.seek(SeekFrom::Start(n as u64 * bytes))?;
             let (snapshot, shown, arrows) = same.next(&mut waiting, *frame)?;
             Ok(draw(&snapshot, (&shown, arrows.as_ref()), scale, &options))
         });
-        write_file(path, |w| animate(w, self.frames.len(), images))
+        write_file(path, |w| animate(w, count, images))
     }
 }
+
+/// Numbers of a point that wait: displacement and what is shown, and an arrow.
+const NUMBERS: [usize; 2] = [4, 7];
+
+/// Which of so many frames are drawn, where at most some may be: every so many-th.
+pub fn stride(frames: usize, most: Option<usize>) -> usize {
+    most.map_or(1, |most| frames.div_ceil(most.max(1)).max(1))
+}
+
+/// Time for drawing films of a run that was ended from outside: who ends it waits for some seconds only.
+pub const HURRY: Duration = Duration::from_secs(2);
 
 /// An animated PNG of so many images; all get the size of the first: debris makes frames of other heights.
 ///

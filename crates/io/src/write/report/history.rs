@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::short;
-use crate::read::ReadError;
+use crate::read::{ReadError, source};
 use crate::write::history::ledger_columns;
 
 /// Rows of a report.
@@ -213,7 +213,7 @@ mod tests {
     fn a_torn_row_is_told() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("history.csv");
-        fs::write(&path, "step,time [s]\n1,2\n3\n").unwrap();
+        std::fs::write(&path, "step,time [s]\n1,2\n3\n").unwrap();
         let text = read(&path).unwrap_err().to_string();
         assert!(text.contains("line 3: not 2 numbers"), "{text}");
     }

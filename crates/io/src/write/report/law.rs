@@ -1,13 +1,12 @@
 //! Frames of a conservation law as a scene.
 
-use std::fs::File;
 use std::path::Path;
 
-use ndarray::{ArrayD, OwnedRepr};
-use ndarray_npy::NpzReader;
+use ndarray::ArrayD;
 
 use super::scene::{Look, Maker, Scene, Values};
 use crate::read::ReadError;
+use crate::read::npz::Npz;
 use crate::write::run_json::Setting;
 
 /// `frames.npz`: `x` (of a plane `x[point, 2]`), `t`, `u[frame, point]`.
@@ -16,14 +15,15 @@ use crate::write::run_json::Setting;
 /// It cannot be read, or has other arrays.
 pub fn read(path: &Path, setting: &Setting) -> Result<Option<Scene>, ReadError> {
     let wrong = |e: String| ReadError::file(path, e);
-    let file = File::open(path).map_err(|e| wrong(e.to_string()))?;
-    let mut file = NpzReader::new(file).map_err(|e| wrong(e.to_string()))?;
-    let mut array = |name: &str| -> Result<ArrayD<f64>, ReadError> {
-        let read = file.by_name::<OwnedRepr<f64>, _>(name);
-        read.map_err(|e| wrong(format!("{name}: {e}")))
-    };
+    let mut file = Npz::open(path).map_err(wrong)?;
+    let mut array =
+        |name: &str| -> Result<ArrayD<f64>, ReadError> { file.array(name).map_err(wrong) };
     let [x, t, u] = [array("x")?, array("t")?, array("u")?];
-    let width = if x.ndim() == 2 { x.shape()[1] } else { 1 };
+    let width = if x.ndim() == 2 {
+        x.shape()[1].max(1)
+    } else {
+        1
+    };
     let x: Vec<f64> = x.iter().copied().collect();
     let place = x
         .chunks_exact(width)

@@ -9,14 +9,13 @@ mod page;
 mod quantise;
 mod scene;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use super::atomic::{WriteError, write_file};
 use super::run_json::Setting;
-use crate::read::ReadError;
+use crate::read::{ReadError, source};
 use page::{Counted, Texts};
 use scene::Scene;
 
@@ -56,7 +55,7 @@ pub const NAME: &str = "report.html";
 /// No `run.json`, a file that is damaged, or the operating system's.
 pub fn write(dir: &Path) -> Result<Made, ReportError> {
     let path = dir.join("run.json");
-    let text = fs::read_to_string(&path).map_err(|_| ReportError::NoRun(dir.into()))?;
+    let (text, _) = text_of(&path).map_err(|_| ReportError::NoRun(dir.into()))?;
     let mut run: Value =
         serde_json::from_str(&text).map_err(|e| ReadError::file(&path, e.to_string()))?;
     let setting = run.as_object_mut().and_then(|r| r.remove("setting"));
@@ -155,7 +154,9 @@ impl Report {
         let still = setting.slices.iter().filter(|f| !f.ends_with("_film.png"));
         for name in own.chain(still) {
             let path = dir.join(name);
-            let Ok(bytes) = fs::read(&path) else { continue };
+            let Ok(bytes) = source::bytes(&path) else {
+                continue;
+            };
             match room.checked_sub(bytes.len() as u64) {
                 Some(left) => {
                     room = left;

@@ -7,6 +7,7 @@ use crate::write::{Series, SeriesOptions};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use peridyne::observe::{Snapshot, Values};
+use std::fs;
 
 /// Points of a lattice that move and break.
 fn snapshot(step: u64, points: usize) -> Snapshot {
