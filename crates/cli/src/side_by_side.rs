@@ -4,7 +4,7 @@ use crate::failure::{Failure, say};
 use peridyne::run::{Options, build};
 use peridyne_io::deck::upscaled::Rewritten;
 use peridyne_io::deck::{Deck, Dim};
-use peridyne_io::read::source;
+use peridyne_io::read::{source, text_of};
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::card::Measured;
 use std::collections::HashMap;

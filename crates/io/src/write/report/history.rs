@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::short;
-use crate::read::{ReadError, source};
+use crate::read::ReadError;
 use crate::write::history::ledger_columns;
 
 /// Rows of a report.

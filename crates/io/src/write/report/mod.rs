@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 
 use super::atomic::{WriteError, write_file};
 use super::run_json::Setting;
-use crate::read::{ReadError, source};
+use crate::read::{ReadError, source, text_of};
 use page::{Counted, Texts};
 use scene::Scene;
 
