@@ -2,7 +2,7 @@
 
 use crate::Input;
 use crate::deck;
-use crate::failure::{Failure, note, say};
+use crate::failure::{Failure, json_text, note, say};
 use crate::report;
 use crate::signals;
 use peridyne_io::conservation::{self, Listener, Told, evaluation_name, method_name};
@@ -248,7 +248,7 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
             "seconds_per_step": (steps > 0).then_some(per_step), "trial_failed": failed,
             "warnings": warnings.collect::<Vec<_>>(),
         });
-        say(&format!("{text:#}"));
+        say(&json_text(&text));
         return Ok(());
     }
     say(&head);
