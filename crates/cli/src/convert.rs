@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, note, say};
 use peridyne_io::convert;
-use peridyne_io::deck::Deck;
+use peridyne_io::deck::{Deck, counted};
 use peridyne_io::write::atomic::write_file;
 use std::io::Write;
 use std::path::PathBuf;
@@ -53,10 +53,11 @@ pub fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     converted.write_mesh(&mesh).map_err(failed)?;
     write_file(out, |w| w.write_all(converted.text.as_bytes())).map_err(failed)?;
     say(&format!(
-        "{}: {} points in {}, {left} entries not mapped",
+        "{}: {} in {}, {left} {} not mapped",
         out.display(),
-        converted.points(),
+        counted(converted.points() as u64, "point"),
         mesh.display(),
+        if left == 1 { "entry" } else { "entries" },
     ));
     // what is missing now is for the user to add
     if let Err(error) = Deck::parse(&converted.text, &out.to_string_lossy(), &[]) {

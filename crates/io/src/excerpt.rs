@@ -41,6 +41,17 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
+/// The same of a name or a title, which has one line.
+pub fn one_line(text: &str) -> Cow<'_, str> {
+    match text.contains(['\n', '\t']) {
+        true => Cow::Owned(text.chars().fold(String::new(), |mut out, c| {
+            shown(&mut out, c, &[]);
+            out
+        })),
+        false => plain(text),
+    }
+}
+
 /// A message, plain; what it quotes at length is cut.
 pub fn brief(message: &str) -> String {
     let lines: Vec<Cow<str>> = message.split('\n').map(short).collect();
@@ -233,7 +244,11 @@ mod tests {
 
     #[test]
     fn a_long_line_is_cut_about_its_place() {
-        let wide = format!("first\n{}here{}\nlast", "ä ".repeat(40_000), "z".repeat(900));
+        let wide = format!(
+            "first\n{}here{}\nlast",
+            "ä ".repeat(40_000),
+            "z".repeat(900)
+        );
         let (text, marked) = of(&wide, "here");
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!((lines[0], lines[2]), ("first", "last"));
@@ -283,6 +298,7 @@ mod tests {
             plain("\u{1b}]0;x\u{7}\r\u{9b}\u{7f}\u{202e}"),
             "\\u{1b}]0;x\\u{7}\\u{d}\\u{9b}\\u{7f}\\u{202e}"
         );
+        assert_eq!(one_line("a\nwarning: b"), "a\\u{a}warning: b");
         let (text, marked) = of("a\u{1b}[31m = 1 # \u{8}\r\n", "\u{1b}[31m");
         assert_eq!(text, "a\\u{1b}[31m = 1 # \\u{8}\n");
         assert_eq!(marked, "\\u{1b}[31m");
@@ -290,7 +306,11 @@ mod tests {
 
     #[test]
     fn long_quotations_are_cut() {
-        let long = format!("expected x, found `1e-9{}2`, {}", "1".repeat(9000), "y".repeat(300));
+        let long = format!(
+            "expected x, found `1e-9{}2`, {}",
+            "1".repeat(9000),
+            "y".repeat(300)
+        );
         let told = brief(&long);
         assert!(told.starts_with("expected x, found `1e-911") && told.contains("…1111"));
         assert!(told.contains("2`, yyy") && told.ends_with("yy"));

@@ -8,6 +8,10 @@ use super::mesh::{Group, Mesh};
 use super::{ReadError, Sourced};
 use std::collections::HashMap;
 
+/// Its elements belong to entities that this section numbers anew, without the groups of the whole.
+const PARTITIONED: &str = "$PartitionedEntities";
+const WHOLE: &str = "the mesh is partitioned: unpartition it in gmsh, or save it as format 2.2 (gmsh -0 -format msh22)";
+
 /// The corners and the number of nodes of a gmsh element type.
 fn element(kind: u32) -> Option<(Kind, usize)> {
     Some(match kind {
@@ -140,6 +144,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
             "$Entities" => entities(&mut lines, &mut mesh)?,
             "$Nodes" => nodes(&mut lines, &mut mesh)?,
             "$Elements" => elements(&mut lines, &mut mesh)?,
+            PARTITIONED => return Err(lines.error(WHOLE)),
             other if other.starts_with('$') => {
                 let closing = format!("$End{}", &other[1..]);
                 while lines.expect(&closing)? != closing {}

@@ -11,7 +11,7 @@ use crate::read::AtomsFile;
 use peridyne::run::Shelf;
 use peridyne::space::lattice::{Ends, Lattice, LatticeKind};
 use peridyne::space::region::Region;
-use peridyne::spec::{BodySpec, Perturbation};
+use peridyne::spec::{BodySpec, Cloud, Perturbation};
 
 const INF: f64 = f64::INFINITY;
 /// A body that is longer than this (m) is likely one in millimetres.
@@ -132,14 +132,7 @@ pub(super) fn body(
                     *areas = areas.iter().map(|a| a * thickness).collect();
                 }
             }
-            let longest = (0..3).map(|a| {
-                let all = cloud.position.iter().map(|x| x[a]);
-                let ends = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                    (low.min(x), high.max(x))
-                });
-                ends.1 - ends.0
-            });
-            let longest = longest.fold(0.0, f64::max);
+            let longest = extents(&cloud).into_iter().fold(0.0, f64::max);
             if context.units == UnitSystem::Si
                 && written.file_unit.is_none()
                 && context.atoms.is_none()
@@ -154,6 +147,9 @@ pub(super) fn body(
                 );
                 let remark = context.source.remark(&file.span, &text);
                 context.notes.push(remark);
+            }
+            if let Some(file) = &written.file {
+                lies_in_its_plane(context, &cloud, file)?;
             }
             if let (Some(atoms), Some(file)) = (&context.atoms, &written.file) {
                 atoms_fit(context, atoms, file)?;
@@ -172,6 +168,50 @@ pub(super) fn body(
         }
         (None, None) => Err(context.error(&body.span, "the body needs one of lattice, file")),
     }
+}
+
+/// How far points reach along each axis.
+fn extents(cloud: &Cloud) -> [f64; 3] {
+    std::array::from_fn(|a| {
+        let all = cloud.position.iter().map(|x| x[a]);
+        let ends = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        ends.1 - ends.0
+    })
+}
+
+/// Part of the length of a body that its points may leave its line or plane by.
+const FLAT: f64 = 1e-6;
+
+/// A 2-D body lies in x–y and a 1-D body along x: points of a file that go elsewhere would lose a coordinate.
+fn lies_in_its_plane(context: &Context, cloud: &Cloud, file: &At<String>) -> Result<()> {
+    let long = extents(cloud);
+    let d = context.dimension;
+    let flat = FLAT * long.into_iter().fold(0.0, f64::max);
+    let Some(off) = (d..3).find(|a| long[*a] > flat) else {
+        return Ok(());
+    };
+    let axes: Vec<&str> = { 0..3 }
+        .filter(|a| long[*a] > flat)
+        .map(|a| ["x", "y", "z"][a])
+        .collect();
+    let place = ["", "along x", "in the plane x–y"][d];
+    let message = format!(
+        "the points of {} reach {} along {}, and a {d}-D body lies {place}",
+        file.value,
+        context.units.show(long[off], Dim::LENGTH),
+        ["x", "y", "z"][off],
+    );
+    let help = match axes.len() > d {
+        true => format!("write dimension = {}", axes.len().max(d + 1)),
+        false => format!(
+            "the points lie {} {}: change the order of the columns, so that they lie {place}",
+            ["", "along", "in"][d],
+            axes.join("–"),
+        ),
+    };
+    Err(context.error_with(&file.span, message, help))
 }
 
 /// A file of atoms in other units, or of isotopes, would be another body than it says.

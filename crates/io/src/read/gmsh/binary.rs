@@ -2,7 +2,7 @@
 //!
 //! Format: gmsh reference manual, "MSH file format" and "MSH file format version 2 (Legacy)".
 
-use super::{Gmsh, element, physical_name, unknown, version};
+use super::{Gmsh, PARTITIONED, WHOLE, element, physical_name, unknown, version};
 use crate::read::lines::Lines;
 use crate::read::{ReadError, Sourced};
 
@@ -142,6 +142,7 @@ pub(super) fn parse(bytes: &[u8], name: &str) -> Result<Sourced, ReadError> {
             "$Nodes" => old_nodes(&mut file, &mut mesh)?,
             "$Elements" if mesh.new => elements(&mut file, &mut mesh)?,
             "$Elements" => old_elements(&mut file, &mut mesh)?,
+            PARTITIONED => return Err(file.lines.error(WHOLE)),
             other if other.starts_with('$') => {
                 let closing = format!("$End{}", &other[1..]);
                 let mark = closing.as_bytes();
