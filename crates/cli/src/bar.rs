@@ -1,6 +1,6 @@
 //! `peridyne bar`: the peristatic bar of eriksson2020.
 
-use crate::failure::{Failure, note, say};
+use crate::failure::{Failure, json_text, note, say};
 use clap::ValueEnum;
 use peridyne_io::read::source::room;
 use peridyne_theory::exact::{Field, Q};
@@ -73,8 +73,7 @@ pub fn bar(arguments: &BarArguments) -> Result<(), Failure> {
         bar,
     };
     if arguments.json {
-        let text = serde_json::to_string_pretty(&json(&found));
-        say(&text.map_err(|e| Failure::Run(e.to_string()))?);
+        say(&json_text(&json(&found)));
     } else {
         say(&report(&found));
     }

@@ -2,7 +2,8 @@
 
 use crate::failure::{Failure, note, say};
 use peridyne_io::convert;
-use peridyne_io::deck::Deck;
+use peridyne_io::deck::{Deck, counted};
+use peridyne_io::excerpt::one_line;
 use peridyne_io::write::atomic::write_file;
 use std::io::Write;
 use std::path::PathBuf;
@@ -37,7 +38,9 @@ pub fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     for u in &converted.unmapped {
         note(&format!(
             "{file}:{}: not mapped: {}: {}",
-            u.line, u.entry, u.why
+            u.line,
+            one_line(&u.entry),
+            one_line(&u.why)
         ));
     }
     for remark in &converted.remarks {
@@ -53,10 +56,11 @@ pub fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     converted.write_mesh(&mesh).map_err(failed)?;
     write_file(out, |w| w.write_all(converted.text.as_bytes())).map_err(failed)?;
     say(&format!(
-        "{}: {} points in {}, {left} entries not mapped",
+        "{}: {} in {}, {left} {} not mapped",
         out.display(),
-        converted.points(),
+        counted(converted.points() as u64, "point"),
         mesh.display(),
+        if left == 1 { "entry" } else { "entries" },
     ));
     // what is missing now is for the user to add
     if let Err(error) = Deck::parse(&converted.text, &out.to_string_lossy(), &[]) {

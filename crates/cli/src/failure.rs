@@ -4,8 +4,14 @@
 //! ended by SIGHUP, SIGINT or SIGTERM. A reader that leaves (`| head -1`) has what it wanted: the work goes on, its files are
 //! written, and the code is that of the work. Any other failure of standard output (`> /dev/full`) loses what somebody
 //! asked for: the work goes on, too, and the code is 1.
+//!
+//! Titles, names and files are somebody else's: all that is printed goes through here, and nothing in it steers the terminal
+//! ([`peridyne_io::excerpt`]).
 
 use crate::signals::Signal;
+use miette::{Diagnostic, LabeledSpan, SourceCode};
+use peridyne_io::excerpt::{brief, plain, steers};
+use std::fmt;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -27,7 +33,8 @@ impl Failure {
     pub fn report(self) -> ExitCode {
         match self {
             Failure::Input(report) => {
-                note(&format!("{report:?}"));
+                // its colours are ours
+                written(&format!("{:?}", miette::Report::new(Told::of(report))));
                 ExitCode::from(2)
             }
             Failure::Run(message) => {
@@ -36,6 +43,45 @@ impl Failure {
             }
             Failure::Ended(signal) => ExitCode::from(signal.exit_code()),
         }
+    }
+}
+
+/// A mistake of the input in words that are safe to print; its source is an excerpt, which is so.
+#[derive(Debug)]
+struct Told {
+    message: String,
+    help: Option<String>,
+    report: miette::Report,
+}
+
+impl Told {
+    fn of(report: miette::Report) -> Told {
+        Told {
+            message: brief(&report.to_string()),
+            help: report.help().map(|help| brief(&help.to_string())),
+            report,
+        }
+    }
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Told {}
+
+impl Diagnostic for Told {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let help = self.help.as_ref()?;
+        Some(Box::new(help))
+    }
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.report.source_code()
+    }
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.report.labels()
     }
 }
 
@@ -50,8 +96,21 @@ enum Screen {
 
 static SCREEN: Mutex<Screen> = Mutex::new(Screen::Open);
 
+/// JSON, which has its own way to write a character out.
+pub fn json_text(value: &serde_json::Value) -> String {
+    let mut out = String::new();
+    for c in format!("{value:#}").chars() {
+        match c != '\n' && steers(c) {
+            true => out += &format!("\\u{:04x}", u32::from(c)),
+            false => out.push(c),
+        }
+    }
+    out
+}
+
 /// Print a line. After the first that does not get out nothing more is printed; [`printed`] says why.
 pub fn say(text: &str) {
+    let text = plain(text);
     let mut screen = SCREEN.lock().unwrap_or_else(|e| e.into_inner());
     if !matches!(*screen, Screen::Open) {
         return;
@@ -66,8 +125,13 @@ pub fn say(text: &str) {
     };
 }
 
-/// Print a line on standard error; there is nobody to tell when that fails.
+/// Print a line on standard error.
 pub fn note(text: &str) {
+    written(&brief(text));
+}
+
+/// There is nobody to tell when this fails.
+fn written(text: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 

@@ -2,13 +2,14 @@
 
 use crate::Input;
 use crate::deck;
-use crate::failure::{Failure, note, say};
+use crate::failure::{Failure, json_text, note, say};
 use crate::report;
 use crate::signals;
 use peridyne_io::conservation::{self, Listener, Told, evaluation_name, method_name};
 use peridyne_io::deck::conservation::LawDeck;
-use peridyne_io::deck::{Dim, rounded};
+use peridyne_io::deck::{Dim, counted, rounded};
 use peridyne_io::drive::default_dir;
+use peridyne_io::excerpt::one_line;
 use peridyne_transport::{RunError, StepSize, Stop, exact, measure};
 use serde_json::json;
 use std::path::Path;
@@ -83,9 +84,9 @@ pub fn run(
     let done = conservation::run(&mut deck, &dir, told, &mut terminal)
         .map_err(|e| Failure::Run(e.to_string()))?;
     say(&format!(
-        "{}: {} steps in {:.2} s{}",
+        "{}: {} in {:.2} s{}",
         done.outcome(),
-        done.steps,
+        counted(done.steps, "step"),
         done.seconds_stepping,
         done.ns_per_point_step.map_or(String::new(), |ns| format!(
             ", {ns:.1} ns per point and step"
@@ -122,7 +123,7 @@ fn headline(deck: &LawDeck) -> String {
     let time = |t: f64| deck.units.show(t, Dim::TIME);
     let mut text = match deck.title.as_str() {
         "" => String::new(),
-        title => format!("{title}\n"),
+        title => format!("{}\n", one_line(title)),
     };
     text += &format!(
         "points    {} in {}-D, spacing {}, {}\n",
@@ -248,7 +249,7 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
             "seconds_per_step": (steps > 0).then_some(per_step), "trial_failed": failed,
             "warnings": warnings.collect::<Vec<_>>(),
         });
-        say(&format!("{text:#}"));
+        say(&json_text(&text));
         return Ok(());
     }
     say(&head);

@@ -27,6 +27,7 @@ mod waves;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
+use peridyne_io::excerpt::steers;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -156,8 +157,12 @@ fn main() -> ExitCode {
 /// Help or the version were asked for, or the command line is wrong.
 fn answered(answer: &clap::Error) -> ExitCode {
     if answer.use_stderr() {
-        // clap knows how to colour it; nobody can be told if standard error is closed
-        let _ = answer.print();
+        let odd = |argument: std::ffi::OsString| argument.to_string_lossy().chars().any(steers);
+        match std::env::args_os().any(odd) {
+            true => failure::note(answer.render().to_string().trim_end()),
+            // clap knows how to colour it; nobody can be told if standard error is closed
+            false => drop(answer.print()),
+        }
         return ExitCode::from(2);
     }
     // not clap's own printing, which forgets that the disk is full
@@ -174,7 +179,6 @@ fn print_schema(kind: Option<DeckKind>) -> Result<(), Failure> {
         Some(DeckKind::ConservationLaw) => peridyne_io::deck::law_schema(),
         Some(DeckKind::Fields) => fields::schema(),
     };
-    let text = serde_json::to_string_pretty(&schema).map_err(|e| Failure::Run(e.to_string()))?;
-    failure::say(&text);
+    failure::say(&failure::json_text(&schema));
     Ok(())
 }

@@ -6,6 +6,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::observe::Ledger;
 use peridyne_io::deck::{Dim, UnitSystem};
 use peridyne_io::drive::Progress;
+use peridyne_io::excerpt::brief;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -98,7 +99,7 @@ impl Progress for Terminal {
     fn warning(&mut self, message: &str) {
         let line = format!("warning: {message}");
         match &self.bar {
-            Some(bar) => bar.println(line),
+            Some(bar) => bar.println(brief(&line)),
             None => note(&line),
         }
     }

@@ -17,7 +17,7 @@ use peridyne::space::rigid::RigidShape;
 use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Spec, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
-use peridyne_io::deck::{Deck, Dim, UnitSystem};
+use peridyne_io::deck::{Deck, Dim, UnitSystem, counted};
 use peridyne_io::drive::{
     AtomsPlan, ExodusPlan, Plan, default_dir, drive, refused_threads, too_many_threads,
 };
@@ -120,12 +120,12 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let marks = Marks::of(&deck.spec, sim.as_mut(), until);
     plan.marks = MarkNotes::of(&marks, deck.units);
     say(&format!(
-        "threads   {threads}\nrunning {}{} steps, results in {}",
+        "threads   {threads}\nrunning {}{}, results in {}",
         match plan.increments {
             0 => String::new(),
-            n => format!("{n} increments of load, then "),
+            n => counted(n, "increment") + " of load, then ",
         },
-        steps - plan.increments,
+        counted(steps - plan.increments, "step"),
         plan.dir.display()
     ));
     let statics = counts_load(&deck.spec.schedule);
@@ -137,17 +137,18 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     match result {
         Ok(done) => {
             say(&format!(
-                "{}: {} steps in {:.2} s{}{}",
+                "{}: {} in {:.2} s{}{}",
                 done.outcome(),
-                done.steps,
+                counted(done.steps, "step"),
                 done.seconds_stepping,
                 done.ns_per_bond_step.map_or(String::new(), |ns| format!(
                     ", {ns:.2} ns per bond and step"
                 )),
                 match done.fragments {
                     Some(fragments) => format!(
-                        ", {} directed bonds broken, {fragments} fragments",
-                        done.broken_directed_bonds
+                        ", {} broken, {}",
+                        counted(done.broken_directed_bonds, "directed bond"),
+                        counted(fragments, "fragment")
                     ),
                     None => String::new(),
                 },

@@ -7,7 +7,7 @@ use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
-use peridyne_io::deck::{Dim, UnitSystem};
+use peridyne_io::deck::{Dim, UnitSystem, counted};
 use peridyne_io::drive::default_dir;
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::folder::{FILES, Folder};
@@ -285,15 +285,15 @@ impl Told<'_> {
         report.write(&dir.join("run.json")).map_err(failed)?;
         let made = report::write(dir).map_err(|e| Failure::Run(format!("report.html: {e}")))?;
         say(&format!(
-            "{}: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\nresults in {}",
+            "{}: {} in {:.2} s{}, {} broken, {}\nresults in {}",
             report.outcome(),
-            report.steps,
+            counted(report.steps, "step"),
             report.seconds_stepping,
             report.ns_per_bond_step.map_or(String::new(), |ns| format!(
                 ", {ns:.2} ns per bond and step"
             )),
-            report.broken_directed_bonds,
-            report.fragments.unwrap_or(0),
+            counted(report.broken_directed_bonds, "directed bond"),
+            counted(report.fragments.unwrap_or(0), "fragment"),
             dir.display(),
         ));
         for path in pictures {

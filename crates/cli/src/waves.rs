@@ -5,7 +5,7 @@ mod report;
 
 use crate::Input;
 use crate::deck;
-use crate::failure::{Failure, say};
+use crate::failure::{Failure, json_text, say};
 use crate::run::with_threads;
 use peridyne::spec::{Stepper, TimeStep};
 use peridyne_io::deck::{Deck, UnitSystem};
@@ -101,8 +101,7 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
     let json = files::json(&found);
     let written = files::write(&out, &found, &json).map_err(|e| Failure::Run(e.to_string()))?;
     if arguments.json {
-        let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Run(e.to_string()))?;
-        say(&text);
+        say(&json_text(&json));
     } else {
         say(&report::text(&found));
         let names: Vec<String> = written.iter().map(|p| p.display().to_string()).collect();

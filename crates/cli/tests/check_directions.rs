@@ -89,7 +89,7 @@ fn equilibrium_has_no_step() {
         let schedule = format!("[statics]\nmethod = \"{method}\"");
         let told = check(&plate(3, &schedule), &[]);
         assert!(!told.contains("stability limit"), "{told}");
-        assert!(told.contains("1 increments of load"), "{told}");
+        assert!(told.contains("1 increment of load,"), "{told}");
         let json = check(&plate(3, &schedule), &["--json"]);
         let report: serde_json::Value = serde_json::from_str(&json).unwrap();
         assert!(report["time_step"].is_null(), "{report}");

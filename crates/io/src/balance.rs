@@ -63,7 +63,8 @@ impl BalanceWatch {
     }
 
     /// A row: what to warn of, if its residual is 16 times that of the row before.
-    pub fn row(&mut self, step: u64, ledger: &Ledger) -> Option<Message> {
+    /// `statics`: steps are increments of load.
+    pub fn row(&mut self, step: u64, ledger: &Ledger, statics: bool) -> Option<Message> {
         let residual = ledger.residual();
         let work = ledger.work_conditions.abs() + ledger.work_indenter.abs();
         let given = work + ledger.initial.abs();
@@ -103,8 +104,13 @@ impl BalanceWatch {
                 energy(contact),
                 " then and holds ",
                 energy(ledger.contact),
-                " now: it may be too stiff for this step",
+                match statics {
+                    true => " now: it may be too stiff for these increments of load",
+                    false => " now: it may be too stiff for this step",
+                },
             ]
+        } else if statics {
+            ": the increments of load may be too large, or the tolerance of their equilibria".into()
         } else {
             ": the step may be too long".into()
         };
@@ -144,9 +150,13 @@ mod tests {
             (30, 1.0015),
             (40, 1.01),
         ] {
-            assert_eq!(watch.row(step, &ledger(kinetic, 0.0)), None, "{step}");
+            assert_eq!(
+                watch.row(step, &ledger(kinetic, 0.0), false),
+                None,
+                "{step}"
+            );
         }
-        let told = watch.row(50, &ledger(0.9, 0.3)).unwrap();
+        let told = watch.row(50, &ledger(0.9, 0.3), false).unwrap();
         assert!(
             told.starts_with("step 50: the energy balance misses 0.2 (16.7 %"),
             "{told}"
@@ -155,7 +165,7 @@ mod tests {
             told.contains("contact held 0 then and holds 0.3 now"),
             "{told}"
         );
-        assert_eq!(watch.row(60, &ledger(0.9, 0.35)), None);
+        assert_eq!(watch.row(60, &ledger(0.9, 0.35), false), None);
     }
 
     #[test]
@@ -176,10 +186,14 @@ mod tests {
             (40, 3.0, 0.015),
             (50, 5.0, 0.016),
         ] {
-            assert_eq!(watch.row(step, &under(work, off)), None, "{step}");
+            assert_eq!(watch.row(step, &under(work, off), false), None, "{step}");
         }
-        let told = watch.row(60, &under(6.0, 0.5)).unwrap();
+        let told = watch.row(60, &under(6.0, 0.5), false).unwrap();
         assert!(told.contains("the step may be too long"), "{told}");
+        // increments of load have no step
+        let told = watch.row(70, &under(6.0, 9.0), true).unwrap();
+        assert!(told.contains("the increments of load may be"), "{told}");
+        assert!(!told.contains("the step may"), "{told}");
     }
 
     /// Energy that grows out of nothing ends a run in the second row, that which a load brings or friction takes does not.
@@ -191,7 +205,7 @@ mod tests {
             rows.map(|(n, (kinetic, work))| {
                 let mut ledger = ledger(*kinetic, 0.0);
                 ledger.work_conditions = *work;
-                watch.row(n as u64, &ledger);
+                watch.row(n as u64, &ledger, false);
                 watch.gone
             })
             .collect::<Vec<_>>()
@@ -221,7 +235,7 @@ mod tests {
             ..ledger(1.0 + made, 0.0)
         };
         let gone = [0.0, 0.4, 0.6, 0.7].map(|made| {
-            watch.row(1, &of(made));
+            watch.row(1, &of(made), false);
             watch.gone
         });
         assert_eq!(gone, [false, false, false, true]);

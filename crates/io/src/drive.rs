@@ -290,7 +290,8 @@ pub fn drive(
             history.push(*step, row)?;
             told = Some(*step);
             progress.row(*step, sim.clock(), &ledger, sim.broken());
-            if let Some(jump) = balance.row(*step, &ledger) {
+            let statics = loads || matches!(sim.info().stepper, Stepper::Statics(_));
+            if let Some(jump) = balance.row(*step, &ledger, statics) {
                 let jump = plan.units.tell(&jump);
                 progress.warning(&jump);
                 warnings.push(jump);

@@ -6,6 +6,7 @@ pub mod continuum;
 pub mod convert;
 pub mod deck;
 pub mod drive;
+pub mod excerpt;
 mod netcdf;
 pub mod read;
 pub mod write;

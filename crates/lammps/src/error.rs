@@ -1,6 +1,7 @@
 //! What is wrong with a script, and where.
 
-use miette::{NamedSource, SourceSpan};
+use miette::SourceSpan;
+use peridyne_io::excerpt::Excerpt;
 use peridyne_io::read::lammps::FileError;
 
 /// A mistake in a script or in a file that it reads; `miette` prints it with the source line and a caret.
@@ -17,7 +18,7 @@ pub struct ScriptError {
     /// Did the state go bad in the middle of a run, as opposed to a mistake in the input?
     pub while_running: bool,
     #[source_code]
-    source_code: NamedSource<String>,
+    source_code: Excerpt,
     #[label("here")]
     span: Option<SourceSpan>,
 }
@@ -86,17 +87,13 @@ impl Problem {
     }
 
     pub fn in_file(path: &str, line: usize, text: &str, message: impl Into<String>) -> Box<Self> {
-        let mut text = text.to_string();
-        if let Some((cut, _)) = text.char_indices().nth(200) {
-            text.truncate(cut);
-        }
         Box::new(Problem {
             message: message.into(),
             help: None,
             place: Place::File {
                 path: path.to_string(),
                 line,
-                text,
+                text: text.to_string(),
             },
             while_running: false,
         })
@@ -146,39 +143,36 @@ impl ScriptError {
             message: format!("cannot read the script: {reason}"),
             help: None,
             while_running: false,
-            source_code: NamedSource::new(path, String::new()),
+            source_code: Excerpt::of_line(path, 0, ""),
             span: None,
         })
     }
 
     /// Gives `problem` its place in `source`; `command` is the span of the command that failed.
     pub fn locate(problem: Problem, path: &str, source: &str, command: Span) -> Box<Self> {
-        let (path, line, source, span) = match problem.place {
+        let (path, line, excerpt) = match problem.place {
             Place::File { path, line, text } => {
-                let span = (0, text.len());
-                (path, line, text, span)
+                let excerpt = Excerpt::of_line(&path, line, &text);
+                (path, line, excerpt)
             }
-            Place::Span(span) => (
-                path.to_string(),
-                line_of(source, span.0),
-                source.to_string(),
-                span,
-            ),
-            Place::Command => (
-                path.to_string(),
-                line_of(source, command.0),
-                source.to_string(),
-                command,
-            ),
+            place => {
+                let (start, end) = match place {
+                    Place::Span(span) => span,
+                    _ => command,
+                };
+                let excerpt = Excerpt::new(path, source, start..end);
+                (path.to_string(), line_of(source, start), excerpt)
+            }
         };
+        let span = excerpt.span();
         Box::new(ScriptError {
             message: problem.message,
             help: problem.help,
             while_running: problem.while_running,
-            source_code: NamedSource::new(&path, source),
+            source_code: excerpt,
             path,
             line,
-            span: Some((span.0, span.1.saturating_sub(span.0)).into()),
+            span: Some((span.start, span.len()).into()),
         })
     }
 }

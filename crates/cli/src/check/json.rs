@@ -3,6 +3,7 @@
 use super::advice::advice;
 use super::continuum::{Found, Seen};
 use super::{Findings, directions, mean};
+use crate::failure::json_text;
 use peridyne::spec::Stepper;
 use peridyne_theory::patch_test::Class;
 use peridyne_theory::voigt::{Stiffness, components};
@@ -83,7 +84,7 @@ pub fn write(found: &Findings) -> String {
         "seconds": found.trial.seconds_per_step.map(|s| found.load() + s * found.steps as f64),
         "warnings": of_deck.chain(warnings).collect::<Vec<_>>(),
     });
-    serde_json::to_string_pretty(&report).unwrap_or_default()
+    json_text(&report)
 }
 
 fn fields(one: &Found) -> Value {

@@ -13,7 +13,7 @@ use super::advice::advice;
 use crate::numbers::{digits, duration, memory};
 use loads::loads;
 use look::look;
-use peridyne_io::deck::describe;
+use peridyne_io::deck::{counted, describe};
 use points::{families, points};
 use spread::spread;
 use std::fmt::Write;
@@ -96,9 +96,9 @@ fn cost(found: &Findings) -> String {
             &mut out,
             "statics",
             format!(
-                "about {} for {} increments",
+                "about {} for {}",
                 duration(found.load()),
-                found.increments
+                counted(found.increments, "increment")
             ),
         );
         if seconds > 0.0 && found.trial.seconds_per_step.is_none() {
@@ -115,11 +115,11 @@ fn cost(found: &Findings) -> String {
         &mut out,
         "speed",
         format!(
-            "{} steps/s with {} threads of {} ({} trial steps), {:.2} ns per bond and step",
+            "{} steps/s with {} threads of {} ({}), {:.2} ns per bond and step",
             digits(1.0 / seconds),
             found.threads,
             info.simd,
-            found.trial.steps,
+            counted(found.trial.steps, "trial step"),
             1e9 * seconds / info.directed_bonds.max(1) as f64
         ),
     );

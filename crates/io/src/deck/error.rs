@@ -1,6 +1,7 @@
 //! What is wrong in a deck, with the place.
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use crate::excerpt::Excerpt;
+use miette::{Diagnostic, LabeledSpan, SourceCode};
 use std::fmt;
 use std::ops::Range;
 
@@ -15,7 +16,7 @@ pub struct DeckError {
     /// Line (1-based) in the file; `None` for an override or when no place is to blame.
     pub line: Option<usize>,
     span: Option<Range<usize>>,
-    text: Box<NamedSource<String>>,
+    excerpt: Box<Excerpt>,
 }
 
 impl DeckError {
@@ -33,14 +34,14 @@ impl DeckError {
             .as_ref()
             .filter(|_| !is_override)
             .map(|s| 1 + text[..s.start].matches('\n').count());
-        let text = Box::new(NamedSource::new(file, text.to_string()).with_language("toml"));
+        let excerpt = Box::new(Excerpt::new(file, text, span.clone().unwrap_or(0..0)));
         DeckError {
             message,
             help,
             file: file.to_string(),
             line,
             span,
-            text,
+            excerpt,
         }
     }
 
@@ -64,11 +65,12 @@ impl Diagnostic for DeckError {
             .map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.span.as_ref().map(|_| &*self.text as &dyn SourceCode)
+        { self.span.as_ref() }.map(|_| &*self.excerpt as &dyn SourceCode)
     }
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.span.clone()?;
-        Some(Box::new(std::iter::once(LabeledSpan::underline(span))))
+        self.span.as_ref()?;
+        let place = LabeledSpan::underline(self.excerpt.span());
+        Some(Box::new(std::iter::once(place)))
     }
 }
 

@@ -2,12 +2,14 @@
 
 use super::error::DeckError;
 use super::source::Source;
+use crate::excerpt::steers;
 use peridyne::run::Shelf;
+use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Tables that a deck has several of.
-const SEVERAL: [&str; 8] = [
+pub(super) const SEVERAL: [&str; 8] = [
     "probe",
     "fields",
     "condition",
@@ -119,6 +121,36 @@ pub(super) fn check(source: &Source, deck: &DeTable) -> Result<(), DeckError> {
         }
     }
     Ok(())
+}
+
+/// Keys and names become columns and files, and are told: they have one line, and nothing that steers a terminal.
+pub(super) fn names(source: &Source, table: &DeTable) -> Result<(), DeckError> {
+    let one = |text: &str, span: Range<usize>| {
+        let Some(c) = text.chars().find(|c| steers(*c)) else {
+            return Ok(());
+        };
+        let message = format!("this name has the control character {}", c.escape_unicode());
+        let help = "write the name in letters, digits and blanks, on one line";
+        Err(source.error(Some(span), message, Some(help.into())))
+    };
+    for (key, value) in table {
+        one(key.get_ref(), key.span())?;
+        if key.get_ref() == "name"
+            && let DeValue::String(name) = value.get_ref()
+        {
+            one(name, value.span())?;
+        }
+        within(source, value.get_ref())?;
+    }
+    Ok(())
+}
+
+fn within(source: &Source, value: &DeValue) -> Result<(), DeckError> {
+    match value {
+        DeValue::Table(table) => names(source, table),
+        DeValue::Array(items) => { items.iter() }.try_for_each(|v| within(source, v.get_ref())),
+        _ => Ok(()),
+    }
 }
 
 /// `[[key]]`, or a list of inline tables.

@@ -29,7 +29,7 @@ pub use doubts::{Doubt, doubts};
 pub use error::DeckError;
 pub use schema::{law_schema, schema};
 pub use source::Flag;
-pub use units::{Constants, Dim, UnitSystem, example, named, rounded, usual};
+pub use units::{Constants, Dim, UnitSystem, counted, example, named, rounded, usual};
 
 use crate::continuum::plan::FieldsSpec;
 use crate::write::trajectory::Format;
@@ -158,6 +158,7 @@ impl Deck {
 
     fn of_source(source: Source) -> Result<Deck, DeckError> {
         let mut tree = source.tree()?;
+        form::names(&source, tree.get_ref())?;
         form::kind(&source, tree.get_ref())?;
         form::check(&source, tree.get_ref())?;
         locate::name_material(tree.get_mut());

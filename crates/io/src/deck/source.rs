@@ -4,9 +4,10 @@
 //! end, so one number tells the place in all of them.
 
 use super::error::DeckError;
+use super::form::SEVERAL;
 use std::ops::Range;
 use toml::Spanned;
-use toml::de::{DeString, DeTable, DeValue};
+use toml::de::{DeArray, DeString, DeTable, DeValue};
 
 /// A deck's text and its overrides.
 #[derive(Debug, Clone)]
@@ -120,18 +121,41 @@ impl Source {
             let help = || Some("an override is written KEY.PATH=VALUE".to_string());
             let top = DeTable::parse(&over.padded)
                 .map_err(|e| self.error(e.span(), e.message(), help()))?;
-            merge(tree.get_mut(), top.into_inner());
+            merge(tree.get_mut(), top.into_inner(), "the deck")
+                .map_err(|lost| self.error(Some(lost.span), lost.message, Some(lost.help)))?;
         }
         Ok(tree)
     }
 }
 
-/// Lays `over` over a table; a table of numbered keys goes over the items of an array.
-fn merge<'a>(into: &mut DeTable<'a>, over: DeTable<'a>) {
+/// What an override is for is not there.
+struct Lost {
+    span: Range<usize>,
+    message: String,
+    help: String,
+}
+
+/// Keys that are numbers are entries of a list.
+fn number(key: &Spanned<DeString>) -> Option<usize> {
+    AsRef::<str>::as_ref(key.get_ref()).parse().ok()
+}
+
+/// Lays `over` over a table that is called `name`; a table of numbered keys goes over the entries of a list.
+fn merge<'a>(into: &mut DeTable<'a>, over: DeTable<'a>, name: &str) -> Result<(), Lost> {
     for (key, value) in over {
+        let called = key.get_ref().to_string();
         match (into.get_mut(&key).map(Spanned::get_mut), value.get_ref()) {
             (Some(old @ (DeValue::Table(_) | DeValue::Array(_))), DeValue::Table(_)) => {
-                merge_value(old, value)
+                merge_value(old, value, &called)?;
+            }
+            (None, DeValue::Table(over))
+                if SEVERAL.contains(&&*called) && over.keys().any(|key| number(key).is_some()) =>
+            {
+                return Err(Lost {
+                    span: key.span(),
+                    message: format!("{name} has no `{called}`: there is no entry to change"),
+                    help: format!("add [[{called}]] to the deck, or leave this out"),
+                });
             }
             _ => {
                 // the old key goes too: its place is in the deck
@@ -140,38 +164,65 @@ fn merge<'a>(into: &mut DeTable<'a>, over: DeTable<'a>) {
             }
         }
     }
+    Ok(())
 }
 
-fn merge_value<'a>(old: &mut DeValue<'a>, value: Spanned<DeValue<'a>>) {
-    let span = value.span();
+fn merge_value<'a>(
+    old: &mut DeValue<'a>,
+    value: Spanned<DeValue<'a>>,
+    name: &str,
+) -> Result<(), Lost> {
     match (old, value.into_inner()) {
-        (DeValue::Table(table), DeValue::Table(over)) => merge(table, over),
-        (DeValue::Array(items), DeValue::Table(over)) => {
-            let number = |key: &Spanned<_>| {
-                AsRef::<str>::as_ref(key.get_ref() as &DeString)
-                    .parse::<usize>()
-                    .ok()
-            };
-            if over
-                .keys()
-                .all(|key| number(key).is_some_and(|n| n < items.len()))
-            {
-                for (key, value) in over {
-                    if let Some(item) = number(&key).and_then(|n| items.get_mut(n)) {
-                        match (item.get_ref(), value.get_ref()) {
-                            (DeValue::Table(_) | DeValue::Array(_), DeValue::Table(_)) => {
-                                merge_value(item.get_mut(), value)
-                            }
-                            _ => *item = value,
-                        }
-                    }
-                }
-            } else {
-                // an index that does not exist: the type error of the table names the override
-                items.push(Spanned::new(span, DeValue::Table(over)));
-            }
+        (DeValue::Table(table), DeValue::Table(over)) => merge(table, over, name),
+        (DeValue::Array(items), DeValue::Table(over)) => over
+            .into_iter()
+            .try_for_each(|(key, value)| merge_entry(items, key, value, name)),
+        (old, value) => {
+            *old = value;
+            Ok(())
         }
-        (old, value) => *old = value,
+    }
+}
+
+/// Over the entry of a list that `key` numbers.
+fn merge_entry<'a>(
+    items: &mut DeArray<'a>,
+    key: Spanned<DeString<'a>>,
+    value: Spanned<DeValue<'a>>,
+    name: &str,
+) -> Result<(), Lost> {
+    let count = items.len();
+    let lost = |message: String| {
+        let range = match count {
+            0 | 1 => "0 is the first and only one".to_string(),
+            n => format!("they are numbered 0 to {}", n - 1),
+        };
+        Err(Lost {
+            span: key.span(),
+            message,
+            help: format!("write the number of an entry, as in {name}.0: {range}"),
+        })
+    };
+    let Some(n) = number(&key) else {
+        return lost(format!(
+            "`{name}` is a list, and {} is no entry of it",
+            key.get_ref()
+        ));
+    };
+    let Some(item) = items.get_mut(n) else {
+        return lost(format!(
+            "there is no entry {n} of `{name}`: it has {count} {}",
+            if count == 1 { "entry" } else { "entries" }
+        ));
+    };
+    match (item.get_ref(), value.get_ref()) {
+        (DeValue::Table(_) | DeValue::Array(_), DeValue::Table(_)) => {
+            merge_value(item.get_mut(), value, name)
+        }
+        _ => {
+            *item = value;
+            Ok(())
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::check::directions::percent;
 use crate::check::{Findings, mean};
 use crate::numbers::{digits, duration};
 use peridyne::spec::Stepper;
-use peridyne_io::deck::{Dim, rounded};
+use peridyne_io::deck::{Dim, counted, rounded};
 use std::fmt::Write;
 
 /// What matters most of this body and run, in words; at most three.
@@ -52,7 +52,7 @@ fn time(found: &Findings) -> Option<String> {
         return Some(format!(
             "equilibrium: {} {}, each to a residual of {}",
             found.steps,
-            increments(statics.control),
+            increments(statics.control, found.steps),
             rounded(statics.tolerance, 4)
         ));
     }
@@ -69,7 +69,10 @@ fn time(found: &Findings) -> Option<String> {
             "time: the run lasts {shown}, in which a wave goes {} times through the longest side",
             rounded(lasts * fastest / long, 2)
         ),
-        false => format!("time: the run lasts {shown}, {} steps", found.steps),
+        false => format!(
+            "time: the run lasts {shown}, {}",
+            counted(found.steps, "step")
+        ),
     })
 }
 

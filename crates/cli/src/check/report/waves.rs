@@ -17,10 +17,12 @@ fn lasts(found: &Findings) -> String {
 }
 
 /// What a step of statics is.
-pub(super) fn increments(control: Control) -> &'static str {
-    match control {
-        Control::Load => "increments of load",
-        Control::Breaking | Control::Opening(_) | Control::ArcLength(_) => "equilibria",
+pub(super) fn increments(control: Control, n: u64) -> &'static str {
+    match (control, n) {
+        (Control::Load, 1) => "increment of load",
+        (Control::Load, _) => "increments of load",
+        (_, 1) => "equilibrium",
+        (_, _) => "equilibria",
     }
 }
 
@@ -36,7 +38,7 @@ fn equilibrium(out: &mut String, name: &str, statics: &Statics, increments: u64)
         format!(
             "{} {}, {how}",
             whole(increments),
-            self::increments(statics.control)
+            self::increments(statics.control, increments)
         ),
     );
 }

@@ -11,7 +11,7 @@ use super::source::Source;
 use super::syntax;
 use super::units::UnitSystem;
 use super::whole::Whole;
-use super::{Dim, locate};
+use super::{Dim, form, locate};
 use crate::write::folder::stays;
 use peridyne::error::BuildError;
 use peridyne_transport::{Evolution, Grid};
@@ -71,6 +71,7 @@ impl LawDeck {
     ) -> Result<LawDeck, DeckError> {
         let source = Source::new(text, file_name, overrides);
         let tree = source.tree()?;
+        form::names(&source, tree.get_ref())?;
         let document = LawDocument::deserialize(Whole(toml::de::Deserializer::from(tree)))
             .map_err(|e| syntax::mistake(&source, e.span(), e.message()))?;
         let lowered = lower::lower(&source, &document)?;

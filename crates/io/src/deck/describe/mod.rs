@@ -3,7 +3,8 @@
 mod material;
 mod shape;
 
-use super::units::{Dim, UnitSystem, short};
+use super::units::{Dim, UnitSystem, counted, short};
+use crate::excerpt::one_line;
 use material::{between_atoms, criterion, material, potentials};
 use peridyne::run::Shelf;
 use peridyne::spec::{
@@ -30,7 +31,7 @@ fn words(choice: &impl std::fmt::Debug) -> String {
 pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     let mut lines = Vec::new();
     if !spec.title.is_empty() {
-        lines.push(spec.title.clone());
+        lines.push(one_line(&spec.title).into_owned());
     }
     if let UnitSystem::Metal(constants) = units {
         lines.push(format!(
@@ -262,10 +263,10 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     }
     lines.extend(spec.transfers.iter().map(spreading));
     lines.push(format!(
-        "acting     {} initial values, {} conditions, {} pre-cracks",
-        spec.initial.len(),
-        spec.conditions.len(),
-        spec.precracks.len()
+        "acting     {}, {}, {}",
+        counted(spec.initial.len() as u64, "initial value"),
+        counted(spec.conditions.len() as u64, "condition"),
+        counted(spec.precracks.len() as u64, "pre-crack")
     ));
     for probe in &spec.probes {
         let ProbeSpec { name, set, measure } = probe;
@@ -280,14 +281,14 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     }
     if let Some(preload) = &spec.preload {
         lines.push(format!(
-            "{}, under {} conditions",
+            "{}, under {}",
             equilibrium(&preload.statics, preload.increments, units),
-            preload.conditions.len()
+            counted(preload.conditions.len() as u64, "condition")
         ));
         if !preload.cuts.is_empty() {
             lines.push(format!(
-                "cut        {} cracks, when motion begins",
-                preload.cuts.len()
+                "cut        {}, when motion begins",
+                counted(preload.cuts.len() as u64, "crack")
             ));
         }
     }
@@ -332,17 +333,22 @@ fn equilibrium(statics: &Statics, increments: u64, units: UnitSystem) -> String 
         Method::Newton => "Newton's method",
         Method::Relaxation => "adaptive dynamic relaxation",
     };
-    let what = match statics.control {
-        Control::Load => "increments of load".to_string(),
-        Control::Breaking => "equilibria, each where the next bond breaks".to_string(),
-        Control::Opening(by) => format!("equilibria, bonds open by {} in each", short(by)),
+    let many = match statics.control {
+        Control::Load => counted(increments, "increment") + " of load",
+        _ if increments == 1 => "1 equilibrium".into(),
+        _ => format!("{increments} equilibria"),
+    };
+    let each = match statics.control {
+        Control::Load => String::new(),
+        Control::Breaking => ", each where the next bond breaks".into(),
+        Control::Opening(by) => format!(", bonds open by {} in each", short(by)),
         Control::ArcLength(by) => {
             let by = units.write(by, Dim::LENGTH);
-            format!("equilibria, points go by {by} in each")
+            format!(", points go by {by} in each")
         }
     };
     format!(
-        "statics    {increments} {what}, {method}, tolerance {}",
+        "statics    {many}{each}, {method}, tolerance {}",
         short(statics.tolerance)
     )
 }
@@ -363,10 +369,10 @@ fn spreading(t: &TransferSpec) -> String {
         TransferMethod::Steady { tolerance } => format!("steady, tolerance {}", short(tolerance)),
     };
     format!(
-        "{:<11}{how}, {} initial values, {} conditions",
+        "{:<11}{how}, {}, {}",
         t.quantity.name(),
-        t.initial.len(),
-        t.conditions.len()
+        counted(t.initial.len() as u64, "initial value"),
+        counted(t.conditions.len() as u64, "condition")
     )
 }
 

@@ -11,7 +11,7 @@ use crate::read::AtomsFile;
 use peridyne::run::Shelf;
 use peridyne::space::lattice::{Ends, Lattice, LatticeKind};
 use peridyne::space::region::Region;
-use peridyne::spec::{BodySpec, Perturbation};
+use peridyne::spec::{BodySpec, Cloud, Perturbation};
 
 const INF: f64 = f64::INFINITY;
 /// A body that is longer than this (m) is likely one in millimetres.
@@ -138,14 +138,7 @@ pub(super) fn body(
                     *areas = areas.iter().map(|a| a * thickness).collect();
                 }
             }
-            let longest = (0..3).map(|a| {
-                let all = cloud.position.iter().map(|x| x[a]);
-                let ends = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                    (low.min(x), high.max(x))
-                });
-                ends.1 - ends.0
-            });
-            let longest = longest.fold(0.0, f64::max);
+            let longest = extents(&cloud).into_iter().fold(0.0, f64::max);
             if context.units == UnitSystem::Si
                 && written.file_unit.is_none()
                 && context.atoms.is_none()
@@ -186,6 +179,20 @@ pub(super) fn body(
         (None, None) => Err(context.error(&body.span, "the body needs one of lattice, file")),
     }
 }
+
+/// How far points reach along each axis.
+fn extents(cloud: &Cloud) -> [f64; 3] {
+    std::array::from_fn(|a| {
+        let all = cloud.position.iter().map(|x| x[a]);
+        let ends = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        ends.1 - ends.0
+    })
+}
+
+/// Part of the length of a body that its points may leave its line or plane by.
+const FLAT: f64 = 1e-6;
 
 /// A file of atoms in other units, or of isotopes, would be another body than it says.
 fn atoms_fit(context: &Context, atoms: &AtomsFile, file: &At<String>) -> Result<()> {

@@ -8,6 +8,7 @@ mod write;
 pub use measure::{Dimensions, Kind, factor_help};
 pub use parse::{split, unit};
 pub use peridyne::quantity::rounded;
+pub use write::counted;
 pub(in crate::deck) use write::short;
 
 use schemars::JsonSchema;

@@ -161,6 +161,14 @@ fn engineering(si: f64, unit: &'static str, least: f64) -> (f64, &'static str) {
     (si / scale, name)
 }
 
+/// `1 point`, `2 points`.
+pub fn counted(n: u64, one: &str) -> String {
+    match n {
+        1 => format!("1 {one}"),
+        _ => format!("{n} {one}s"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,6 +189,12 @@ mod tests {
         assert_eq!(metal.show(1.04757, Dim::PRESSURE), "167.8 GPa");
         assert_eq!(metal.show(1.0 / 9648.533, Dim::MASS), "1 g/mol");
         assert_eq!(UnitSystem::Lj.show(57.23456, Dim::PRESSURE), "57.23");
+    }
+
+    #[test]
+    fn one_is_not_many() {
+        let told = [0, 1, 2].map(|n| counted(n, "pre-crack"));
+        assert_eq!(told, ["0 pre-cracks", "1 pre-crack", "2 pre-cracks"]);
     }
 
     #[test]
