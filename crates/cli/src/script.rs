@@ -15,7 +15,7 @@ use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::shown::About;
 use peridyne_io::write::report;
 use peridyne_io::write::run_json::{
-    self, EnergyReport, FieldNote, RunReport, Setting, Status, UnitNames,
+    self, EnergyReport, FieldNote, RunReport, Setting, Spent, Status, UnitNames,
 };
 use peridyne_io::write::{Series, SeriesOptions, WriteError};
 use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup};
@@ -23,6 +23,7 @@ use peridyne_lammps::model::{ModelEngine, ModelHost, Prepared};
 use peridyne_lammps::{Options, Outcome, Record, run_text};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// The model of a script as it stands at its first `run`, which does not take place. Nothing is written.
 pub fn prepare(input: &Input) -> Result<(Prepared, Setup), Failure> {
@@ -191,6 +192,7 @@ impl Told<'_> {
             say("the script has no `run`: nothing was computed");
             return Ok(());
         };
+        let begun = Instant::now();
         let units = model.units();
         let (length_unit, time_unit) = units.labels();
         let mut setting = self.setting(model, &outcome.record, dir);
@@ -219,12 +221,21 @@ impl Told<'_> {
             says: c.declaration.doc.to_string(),
         });
         setting.fields = notes.collect();
+        let bodies = std::mem::take(&mut outcome.record.rigid);
         // files and picture are made of the snapshot: room for them
         outcome.engine = None;
         let failed = |e: WriteError| Failure::Run(e.to_string());
         let mut series = Series::new(dir, series_options).map_err(failed)?;
-        series.write(&snapshot).map_err(failed)?;
-        let pictures = series.finish(&snapshot, About::Fracture).map_err(failed)?;
+        series.write(&snapshot, &bodies).map_err(failed)?;
+        let mut spent = Spent {
+            frames: begun.elapsed().as_secs_f64(),
+            ..Spent::default()
+        };
+        let drawing = Instant::now();
+        let pictures = series
+            .finish(&snapshot, &bodies, About::Fracture)
+            .map_err(failed)?;
+        spent.pictures = drawing.elapsed().as_secs_f64();
         report.pictures = { pictures.iter() }
             .filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned()))
             .collect();
@@ -234,10 +245,15 @@ impl Told<'_> {
         setting.files.extend(report.pictures.clone());
         report.setting = Some(setting);
         report.peak_memory_bytes = run_json::peak_memory_bytes();
+        spent.all = seconds + begun.elapsed().as_secs_f64();
+        report.seconds = spent;
         report.write(&dir.join("run.json")).map_err(failed)?;
         let made = report::write(dir).map_err(|e| Failure::Run(format!("report.html: {e}")))?;
+        let all = seconds + begun.elapsed().as_secs_f64();
+        spent.report = all - spent.all;
+        spent.all = all;
         say(&format!(
-            "{}: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\nresults in {}",
+            "{}: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\n{}\nresults in {}",
             report.outcome(),
             report.steps,
             report.seconds_stepping,
@@ -246,6 +262,7 @@ impl Told<'_> {
             )),
             report.broken_directed_bonds,
             report.fragments.unwrap_or(0),
+            spent.told(seconds),
             dir.display(),
         ));
         for path in pictures {
@@ -281,7 +298,7 @@ impl Told<'_> {
                 time: time.into(),
                 energy: model.units().system().unit(Dim::ENERGY),
             },
-            indenters: record.spheres.clone(),
+            indenters: record.notes.clone(),
             columns: columns.collect(),
             files: ["points.pvd".to_string()]
                 .into_iter()
@@ -319,6 +336,7 @@ impl Told<'_> {
             time_step: info.time_step,
             parts_of_a_step: info.parts,
             seconds_stepping: seconds,
+            seconds: Spent::default(),
             ns_per_bond_step: run_json::ns_per_bond_step(seconds, info.directed_bonds, steps),
             peak_memory_bytes: run_json::peak_memory_bytes(),
             broken_directed_bonds: sim.broken(),

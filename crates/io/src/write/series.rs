@@ -6,7 +6,9 @@ use peridyne::observe::Snapshot;
 
 use super::atomic::{WriteError, create_directory, write_file};
 use super::dump::{DumpBox, write_frame};
+use super::earlier::{sweep_frames, told};
 use super::picture::film::Film;
+use super::picture::rigid::Placed;
 use super::picture::shown::About;
 use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
@@ -38,8 +40,7 @@ impl Default for SeriesOptions {
 }
 
 /// Writes snapshots into a directory. Whatever happens, each file there is whole, and the collections list
-/// exactly the files of this run: those of an older run in the same directory are replaced where they
-/// have the same step, and otherwise left alone.
+/// exactly the files of this run: frames that those of an earlier run list are removed at the start.
 #[derive(Debug)]
 pub struct Series {
     dir: PathBuf,
@@ -50,13 +51,17 @@ pub struct Series {
     dump: Option<(Frames, Option<u64>)>,
     /// One for each picture that asks for it.
     films: Vec<Option<Film>>,
+    /// Frames there that are not of this run.
+    strange: Vec<String>,
 }
 
 impl Series {
-    /// Creates the directory and its parents.
+    /// Creates the directory and its parents; frames of an earlier run are removed.
     pub fn new(dir: impl Into<PathBuf>, options: SeriesOptions) -> Result<Self, WriteError> {
         let dir = dir.into();
         create_directory(&dir)?;
+        let mut strange = sweep_frames(&dir, "points")?;
+        strange.extend(sweep_frames(&dir, "bonds")?);
         let (points, bonds) = (
             Pvd::new(dir.join("points.pvd")),
             Pvd::new(dir.join("bonds.pvd")),
@@ -73,6 +78,7 @@ impl Series {
         let films = films.map_err(WriteError::at("make a film in", &dir))?;
         Ok(Series {
             films,
+            strange,
             dir,
             options,
             points,
@@ -85,6 +91,11 @@ impl Series {
         &self.dir
     }
 
+    /// What to say about frames there that are not of this run.
+    pub fn strange(&self) -> Option<String> {
+        told(&self.dir, &self.strange)
+    }
+
     /// Does it need snapshots of all frames?
     pub fn wants_frames(&self) -> bool {
         let options = &self.options;
@@ -93,7 +104,7 @@ impl Series {
     }
 
     /// Writes all files of a snapshot. One of the same step is replaced, but the dump keeps the first.
-    pub fn write(&mut self, s: &Snapshot) -> Result<(), WriteError> {
+    pub fn write(&mut self, s: &Snapshot, bodies: &[Placed]) -> Result<(), WriteError> {
         if self.options.points {
             let name = format!("points_{:08}.vtu", s.step);
             write_file(&self.dir.join(&name), |w| write_points(w, s))?;
@@ -115,22 +126,27 @@ impl Series {
                 let failed = WriteError::at("make a film in", &self.dir);
                 let component = picture.component.as_deref();
                 let shown = (picture.field(About::Motion), component);
-                film.push(s, shown, picture.arrows.as_deref())
+                film.push(s, bodies, shown, picture.arrows.as_deref())
                     .map_err(failed)?;
             }
         }
         Ok(())
     }
 
-    /// Draws the last snapshot, as pictures were asked for; returns their paths.
-    pub fn finish(self, last: &Snapshot, about: About) -> Result<Vec<PathBuf>, WriteError> {
+    /// Draws the last snapshot with the rigid bodies beside it, as pictures were asked for; returns their paths.
+    pub fn finish(
+        self,
+        last: &Snapshot,
+        bodies: &[Placed],
+        about: About,
+    ) -> Result<Vec<PathBuf>, WriteError> {
         if let Some((dump, _)) = self.dump {
             dump.finish()?;
         }
         let mut paths = vec![];
         for (options, film) in self.options.pictures.iter().zip(self.films) {
             let path = self.dir.join(format!("{}.png", options.stem(about)));
-            picture::write(&path, last, options, about)?;
+            picture::write(&path, last, bodies, options, about)?;
             paths.push(path);
             if let Some(film) = film {
                 let name = format!("{}_film.png", options.stem(About::Motion));
@@ -174,16 +190,16 @@ mod tests {
             ..Default::default()
         };
         let mut series = Series::new(&out, options).unwrap();
-        series.write(&small()).unwrap();
+        series.write(&small(), &[]).unwrap();
         let later = Snapshot {
             step: 12,
             time: 2e-7,
             ..with(small(), "damage", Values::Scalars(vec![0.5; 3]))
         };
-        series.write(&later).unwrap();
-        series.write(&later).unwrap();
+        series.write(&later, &[]).unwrap();
+        series.write(&later, &[]).unwrap();
         assert_eq!(
-            series.finish(&later, About::Fracture).unwrap(),
+            series.finish(&later, &[], About::Fracture).unwrap(),
             [out.join("damage.png")]
         );
         let files = [
@@ -211,15 +227,46 @@ mod tests {
     }
 
     #[test]
+    fn frames_of_an_earlier_run_with_another_schedule_are_gone() {
+        let dir = tempfile::tempdir().unwrap();
+        let run = |steps: &[u64]| {
+            let mut series = Series::new(dir.path(), SeriesOptions::default()).unwrap();
+            for step in steps {
+                let frame = Snapshot {
+                    step: *step,
+                    ..small()
+                };
+                series.write(&frame, &[]).unwrap();
+            }
+            series.strange()
+        };
+        assert_eq!(run(&[0, 50, 100]), None);
+        std::fs::write(dir.path().join("points_00000007.vtu"), "not listed").unwrap();
+        let told = run(&[0, 40, 80]).unwrap();
+        assert!(
+            told.starts_with("1 frame ") && told.contains("points_00000007.vtu"),
+            "{told}"
+        );
+        let files = [
+            "points.pvd",
+            "points_00000000.vtu",
+            "points_00000007.vtu",
+            "points_00000040.vtu",
+            "points_00000080.vtu",
+        ];
+        assert_eq!(names(dir.path()), files);
+    }
+
+    #[test]
     fn a_snapshot_that_cannot_be_written_is_not_listed() {
         let dir = tempfile::tempdir().unwrap();
         let mut series = Series::new(dir.path(), SeriesOptions::default()).unwrap();
-        series.write(&small()).unwrap();
+        series.write(&small(), &[]).unwrap();
         let bad = Snapshot {
             step: 8,
             ..with(small(), "velocity", Values::Vectors(vec![[0.0; 3]]))
         };
-        let text = series.write(&bad).unwrap_err().to_string();
+        let text = series.write(&bad, &[]).unwrap_err().to_string();
         assert!(
             text.contains("points_00000008.vtu") && text.contains("1 values of velocity"),
             "{text}"
