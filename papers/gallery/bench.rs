@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use peridyne::run::{Options, Simulation, build};
 use peridyne_io::deck::{Deck, UnitSystem};
+use peridyne_io::write::picture::rigid::Placed;
 use peridyne_io::write::picture::shown::About;
 use peridyne_io::write::picture::{self, PictureOptions};
 use peridyne_io::write::plot::{ColorMap, Map};
@@ -102,7 +103,14 @@ impl Bench {
             ..PictureOptions::default()
         };
         let shown = self.sim.snapshot(&[field], false);
-        picture::write(&path, &shown, &options, about)?;
+        let spec = &self.deck.spec;
+        let centers = spec.indenters.iter().zip(self.sim.indenters());
+        let bodies = centers.map(|(body, center)| Placed {
+            center,
+            ..Placed::at(body, spec.dimension, shown.time)
+        });
+        let bodies: Vec<Placed> = bodies.collect();
+        picture::write(&path, &shown, &bodies, &options, about)?;
         found.file(path);
         Ok(())
     }

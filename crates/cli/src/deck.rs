@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::numbers::{memory, whole};
 use peridyne::execute::simd::Simd;
 use peridyne::run::{Info, Options, Simulation, TransferInfo, build};
-use peridyne::spec::{Stepper, TransferMethod};
+use peridyne::spec::{Spec, Stepper, TransferMethod};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use peridyne_io::read::{encoding, source};
 
@@ -130,11 +130,16 @@ pub fn simd(input: &Input) -> Result<Option<Simd>, Failure> {
 }
 
 pub fn model(deck: &Deck, input: &Input) -> Result<Box<dyn Simulation>, Failure> {
+    model_of(deck, &deck.spec, input)
+}
+
+/// Of the spec of a deck with more probes.
+pub fn model_of(deck: &Deck, spec: &Spec, input: &Input) -> Result<Box<dyn Simulation>, Failure> {
     let options = Options {
         simd: simd(input)?,
         ..Options::default()
     };
-    build(&deck.spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
+    build(spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
 }
 
 /// What looks wrong in a deck of which this was built.

@@ -16,6 +16,7 @@ const INTERVAL: Duration = Duration::from_secs(5);
 pub struct Terminal {
     bar: Option<ProgressBar>,
     bonds: u64,
+    begun: Instant,
     spoken: Instant,
     broken: u64,
     /// What time is counted in; `None`: it is a part of the load.
@@ -39,6 +40,7 @@ impl Terminal {
         Terminal {
             bar,
             bonds,
+            begun: Instant::now(),
             spoken: Instant::now(),
             broken: 0,
             units,
@@ -67,6 +69,8 @@ impl Progress for Terminal {
             }
         } else if self.spoken.elapsed() >= INTERVAL {
             self.spoken = Instant::now();
+            // frames and fields take time, too
+            let per_step = self.begun.elapsed().as_secs_f64() / done as f64;
             let left = per_step * (total - done) as f64;
             note(&format!(
                 "step {done} of {total}, {}{} bonds broken, {:.1} steps/s, {left:.0} s left",
@@ -94,6 +98,17 @@ impl Progress for Terminal {
             }
             false => format!("t = {time}, "),
         };
+    }
+
+    fn phase(&mut self, what: &str) {
+        match &self.bar {
+            Some(bar) => bar.set_message(format!("making {what}")),
+            None if self.spoken.elapsed() >= INTERVAL => {
+                self.spoken = Instant::now();
+                note(&format!("making {what}"));
+            }
+            None => {}
+        }
     }
 
     fn warning(&mut self, message: &str) {

@@ -13,20 +13,19 @@ use peridyne::columns::Shape;
 use peridyne::error::BuildError;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
-use peridyne::space::rigid::RigidShape;
-use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Spec, Stepper, TimeStep};
+use peridyne::spec::{BodySpec, Schedule, Spec, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, counted};
 use peridyne_io::drive::{
-    AtomsPlan, ExodusPlan, Plan, default_dir, drive, refused_threads, too_many_threads,
+    AtomsPlan, ExodusPlan, Plan, RigidBodies, default_dir, drive, refused_threads, too_many_threads,
 };
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::marks::Marks;
 use peridyne_io::write::picture::shown::{About, component_of};
-use peridyne_io::write::run_json::{MarkNotes, MovingBall, Status};
+use peridyne_io::write::run_json::{MarkNotes, Status};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -89,7 +88,9 @@ pub fn with_threads(
 }
 
 fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(), Failure> {
-    let mut sim = deck::model(deck, &arguments.input)?;
+    let (rigid, spec) = RigidBodies::watched(&deck.spec);
+    let mut sim = deck::model_of(deck, &spec, &arguments.input)?;
+    drop(spec);
     let dir = arguments
         .out
         .clone()
@@ -115,7 +116,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     }
     plan.warnings = warnings;
     let end = (steps - plan.increments) as f64 * sim.info().time_step;
-    plan.indenters = indenters(deck, end);
+    plan.rigid = rigid;
     let until = until(&deck.spec, steps - plan.increments, sim.info().time_step);
     let marks = Marks::of(&deck.spec, sim.as_mut(), until);
     plan.marks = MarkNotes::of(&marks, deck.units);
@@ -153,6 +154,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
                     None => String::new(),
                 },
             ));
+            say(&done.seconds.told(done.seconds_stepping));
             for picture in &done.pictures {
                 say(&format!("picture: {}", plan.dir.join(picture).display()));
             }
@@ -281,35 +283,6 @@ fn counts_load(schedule: &Schedule) -> bool {
     schedule.statics().is_some() && (end - 1.0).abs() < 1e-9
 }
 
-/// Where indenters are that are moved, until `end`.
-fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
-    const PARTS: u32 = 100;
-    let ball = |i: &IndenterSpec| {
-        // of other shapes reports show nothing
-        let radius = match i.shape {
-            RigidShape::Sphere { radius } => radius,
-            RigidShape::Box { .. }
-            | RigidShape::Cylinder { .. }
-            | RigidShape::Plane { .. }
-            | RigidShape::Solid(_) => 0.0,
-        };
-        let IndenterMotion::Kinematic(center) = &i.motion else {
-            return MovingBall {
-                radius,
-                path: vec![],
-            };
-        };
-        let at = |k: u32| {
-            let t = end * f64::from(k) / f64::from(PARTS);
-            let [x, y, z] = [0, 1, 2].map(|a: usize| center[a].eval(&[0.0; 3], t));
-            [t, x, y, z]
-        };
-        let path = (0..=PARTS).map(at).collect();
-        MovingBall { radius, path }
-    };
-    deck.spec.indenters.iter().map(ball).collect()
-}
-
 /// Columns of a frame.
 pub fn fields(deck: &Deck) -> Vec<String> {
     let usual = || USUAL.map(String::from).to_vec();
@@ -352,7 +325,7 @@ fn plan(
         warnings: vec![],
         understood: deck.describe(),
         sources: deck.sources(),
-        indenters: vec![],
+        rigid: RigidBodies::default(),
         marks: MarkNotes::default(),
         report: output.report,
         allow_outside,

@@ -16,7 +16,7 @@ use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::shown::About;
 use peridyne_io::write::report;
 use peridyne_io::write::run_json::{
-    self, EnergyReport, FieldNote, RunReport, Setting, Status, UnitNames,
+    self, EnergyReport, FieldNote, RunReport, Setting, Spent, Status, UnitNames,
 };
 use peridyne_io::write::{Series, SeriesOptions, WriteError};
 use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup};
@@ -26,6 +26,7 @@ use std::cell::RefCell;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::time::Instant;
 
 /// The model of a script as it stands at its first `run`, which does not take place. Nothing is written.
 pub fn prepare(input: &Input) -> Result<(Prepared, Setup), Failure> {
@@ -239,6 +240,7 @@ impl Told<'_> {
             say("the script has no `run`: nothing was computed");
             return Ok(());
         };
+        let begun = Instant::now();
         let units = model.units();
         let (length_unit, time_unit) = units.labels();
         let mut setting = self.setting(model, &outcome.record, dir);
@@ -267,12 +269,21 @@ impl Told<'_> {
             says: c.declaration.doc.to_string(),
         });
         setting.fields = notes.collect();
+        let bodies = std::mem::take(&mut outcome.record.rigid);
         // files and picture are made of the snapshot: room for them
         outcome.engine = None;
         let failed = |e: WriteError| Failure::Run(e.to_string());
         let mut series = Series::new(dir, series_options).map_err(failed)?;
-        series.write(&snapshot).map_err(failed)?;
-        let pictures = series.finish(&snapshot, About::Fracture).map_err(failed)?;
+        series.write(&snapshot, &bodies).map_err(failed)?;
+        let mut spent = Spent {
+            frames: begun.elapsed().as_secs_f64(),
+            ..Spent::default()
+        };
+        let drawing = Instant::now();
+        let pictures = series
+            .finish(&snapshot, &bodies, About::Fracture)
+            .map_err(failed)?;
+        spent.pictures = drawing.elapsed().as_secs_f64();
         report.pictures = { pictures.iter() }
             .filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned()))
             .collect();
@@ -282,10 +293,15 @@ impl Told<'_> {
         setting.files.extend(report.pictures.clone());
         report.setting = Some(setting);
         report.peak_memory_bytes = run_json::peak_memory_bytes();
+        spent.all = seconds + begun.elapsed().as_secs_f64();
+        report.seconds = spent;
         report.write(&dir.join("run.json")).map_err(failed)?;
         let made = report::write(dir).map_err(|e| Failure::Run(format!("report.html: {e}")))?;
+        let all = seconds + begun.elapsed().as_secs_f64();
+        spent.report = all - spent.all;
+        spent.all = all;
         say(&format!(
-            "{}: {} in {:.2} s{}, {} broken, {}\nresults in {}",
+            "{}: {} in {:.2} s{}, {} broken, {}\n{}\nresults in {}",
             report.outcome(),
             counted(report.steps, "step"),
             report.seconds_stepping,
@@ -294,6 +310,7 @@ impl Told<'_> {
             )),
             counted(report.broken_directed_bonds, "directed bond"),
             counted(report.fragments.unwrap_or(0), "fragment"),
+            spent.told(seconds),
             dir.display(),
         ));
         for path in pictures {
@@ -329,7 +346,7 @@ impl Told<'_> {
                 time: time.into(),
                 energy: model.units().system().unit(Dim::ENERGY),
             },
-            indenters: record.spheres.clone(),
+            indenters: record.notes.clone(),
             columns: columns.collect(),
             files: ["points.pvd".to_string()]
                 .into_iter()
@@ -367,6 +384,7 @@ impl Told<'_> {
             time_step: info.time_step,
             parts_of_a_step: info.parts,
             seconds_stepping: seconds,
+            seconds: Spent::default(),
             ns_per_bond_step: run_json::ns_per_bond_step(seconds, info.directed_bonds, steps),
             peak_memory_bytes: run_json::peak_memory_bytes(),
             broken_directed_bonds: sim.broken(),

@@ -168,6 +168,7 @@ fn ten_lines_make_all_results() {
         "steps",
         "time_step",
         "seconds_stepping",
+        "seconds",
         "ns_per_bond_step",
         "peak_memory_bytes",
         "broken_directed_bonds",

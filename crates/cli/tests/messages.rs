@@ -231,8 +231,6 @@ fn causes_are_the_true_ones() {
         .collect();
     let line: String = (0..9).map(|n| format!("0 {n} 0 1\n")).collect();
     let points = |more: &str| deck("file = \"p.txt\", spacing = \"1 mm\"", more);
-    let mesh =
-        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PartitionedEntities\n2\n$EndPartitionedEntities\n";
     let body = |more: &str| deck(&format!("file = \"p.txt\"{more}"), "");
     for (files, says, help) in [
         (
@@ -265,14 +263,6 @@ fn causes_are_the_true_ones() {
             )],
             "the unit \"mm\" has no number",
             "1 mm",
-        ),
-        (
-            vec![
-                ("d.toml", deck("file = \"m.msh\"", "")),
-                ("m.msh", mesh.into()),
-            ],
-            "m.msh:4: the mesh is partitioned",
-            "unpartition it",
         ),
     ] {
         let files: Vec<(&str, &str)> = files.iter().map(|(n, t)| (*n, &**t)).collect();

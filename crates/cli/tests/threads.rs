@@ -10,8 +10,9 @@ use tempfile::TempDir;
 /// Steps of a run; statics and relaxations are run whole.
 const STEPS: i64 = 12;
 /// What `run.json` says of the machine and the clock.
-const CLOCK: [&str; 4] = [
+const CLOCK: [&str; 5] = [
     "seconds_stepping",
+    "seconds",
     "ns_per_bond_step",
     "peak_memory_bytes",
     "threads",

@@ -4,11 +4,14 @@ mod atoms;
 mod exodus;
 mod modes;
 mod names;
+mod rigid;
 mod row;
 
 pub use atoms::AtomsPlan;
 pub use exodus::ExodusPlan;
-use modes::write_modes;
+use modes::{sweep_modes, write_modes};
+use rigid::Paths;
+pub use rigid::RigidBodies;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -16,21 +19,24 @@ use std::time::{Duration, Instant};
 use peridyne::error::{RunError, SolveError};
 use peridyne::observe::{Ledger, Snapshot};
 use peridyne::run::Simulation;
-use peridyne::spec::{AnyLinearBody, Stepper};
+use peridyne::spec::{AnyLinearBody, Control, Stepper};
 use peridyne_fields::FieldsError;
 
 use crate::balance::BalanceWatch;
 use crate::continuum::run::{FieldsPlan, RunningFields};
 use crate::deck::{Dim, UnitSystem};
 use crate::write::data::write_data;
+use crate::write::earlier::sweep_pictures;
 use crate::write::folder::Folder;
 use crate::write::history::History;
 use crate::write::linear::write_linear;
 use crate::write::picture::film::HURRY;
+use crate::write::picture::rigid::Placed;
 use crate::write::picture::shown::About;
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{
-    self, EnergyReport, FieldNote, MarkNotes, MovingBall, RunReport, Setting, Status, UnitNames,
+    self, EnergyReport, FieldNote, MarkNotes, RigidNote, RunReport, Setting, Spent, Status,
+    UnitNames,
 };
 use crate::write::trajectory::Trajectory;
 use crate::write::{Series, SeriesOptions, WriteError};
@@ -49,8 +55,8 @@ pub struct Plan {
     pub sources: Vec<String>,
     /// What looks wrong in the deck; the model's own are added.
     pub warnings: Vec<String>,
-    /// Indenters that are moved, for the report; of those that move by themselves no path.
-    pub indenters: Vec<MovingBall>,
+    /// What pictures and the report show beside the points.
+    pub rigid: RigidBodies,
     /// What is done to the body, for the report.
     pub marks: MarkNotes,
     /// Write `report.html` at the end.
@@ -108,13 +114,24 @@ impl Plan {
         sim.snapshot(&fields, self.series.bonds)
     }
 
+    /// Has motion begun? It does with the first step after those of statics.
+    fn begun(&self, sim: &dyn Simulation) -> bool {
+        self.increments == 0 || sim.step_number() > self.increments
+    }
+
+    /// Rigid bodies where they are now.
+    fn placed(&self, sim: &mut dyn Simulation) -> Vec<Placed> {
+        let begun = self.begun(sim);
+        self.rigid.placed(sim, begun)
+    }
+
     /// What reports tell of this run.
     fn setting(
         &self,
         sim: &mut dyn Simulation,
         last: &Snapshot,
         pictures: &[String],
-        indenters: Vec<MovingBall>,
+        indenters: Vec<RigidNote>,
     ) -> Setting {
         let series = &self.series;
         let mut files = vec!["history.csv".to_string()];
@@ -167,6 +184,8 @@ pub trait Progress {
     fn step(&mut self, done: u64, total: u64, stepping: Duration);
     /// A row of the history.
     fn row(&mut self, step: u64, time: f64, ledger: &Ledger, broken: u64);
+    /// Something else than steps begins: fields, pictures, the report.
+    fn phase(&mut self, _what: &str) {}
     /// Something that the user should know now.
     fn warning(&mut self, message: &str);
     /// Asked after each step: shall the run end here, and who says so? What it has done is then written as at its end.
@@ -206,8 +225,12 @@ pub fn drive(
     plan: &Plan,
     progress: &mut dyn Progress,
 ) -> Result<RunReport, DriveError> {
+    let begin = Instant::now();
+    let mut spent = Spent::default();
     let _held = Folder::claim(&plan.dir)?;
     plan.stays_inside()?;
+    sweep_pictures(&plan.dir)?;
+    sweep_modes(&plan.dir)?;
     let mut series = Series::new(&plan.dir, plan.series.clone())?;
     let columns = row::columns(sim, plan);
     let mut trajectories = Vec::new();
@@ -230,11 +253,15 @@ pub fn drive(
     let mut stepping = Duration::ZERO;
     let mut stopped = None;
     let mut ledger = Ledger::default();
-    let mut indenters = plan.indenters.clone();
+    let mut paths = Paths::default();
     let mut framed = None;
     let mut balance = BalanceWatch::default();
     let told = sim.info().warnings.iter().map(|w| plan.units.tell(w));
     let mut warnings: Vec<String> = plan.warnings.iter().cloned().chain(told).collect();
+    if let Some(text) = series.strange() {
+        progress.warning(&text);
+        warnings.push(text);
+    }
     let mut ended = None;
     // what the history and the trajectories tell of already
     let mut told = None;
@@ -273,9 +300,11 @@ pub fn drive(
         let every = |e: u64| !loads && moved % e == 0;
         let frame = n == 0 || n == plan.increments || plan.every.is_some_and(every);
         let rows = (loads || every(plan.history) || last) && told != Some(sim.step_number());
-        if rows || frame {
-            follow(&mut indenters, sim);
-        }
+        let placed = match rows || frame || last {
+            true => plan.placed(sim),
+            false => vec![],
+        };
+        paths.push(frame_time(sim), plan.begun(sim), &placed);
         if rows || (frame && exodus.is_some()) {
             match sim.ledger() {
                 Ok(l) => ledger = l,
@@ -313,14 +342,16 @@ pub fn drive(
             framed = Some(sim.step_number());
         }
         if let Some(running) = &mut running {
+            let begin = Instant::now();
             for text in running.look(sim, n, last)? {
                 progress.warning(&text);
                 warnings.push(text);
             }
+            spent.fields += begin.elapsed().as_secs_f64();
         }
         if !last && frame && (series.wants_frames() || exodus.is_some()) {
             let snapshot = plan.look(sim);
-            series.write(&snapshot)?;
+            series.write(&snapshot, &placed)?;
             if let (Some(exodus), Some((_, row))) = (&mut exodus, &row) {
                 exodus.push(&snapshot, row)?;
             }
@@ -334,7 +365,9 @@ pub fn drive(
         }
     }
     let snapshot = plan.look(sim);
-    series.write(&snapshot)?;
+    let placed = plan.placed(sim);
+    paths.push(snapshot.time, plan.begun(sim), &placed);
+    series.write(&snapshot, &placed)?;
     if let Some(mut exodus) = exodus {
         let row = row.filter(|(step, _)| *step == sim.step_number());
         // of a run that stopped, what can be said of the last good state
@@ -356,6 +389,7 @@ pub fn drive(
             None => About::Motion,
         },
     };
+    progress.phase("pictures");
     let hurried = ended.is_some();
     if hurried && series.hurry() {
         let text = format!(
@@ -365,14 +399,21 @@ pub fn drive(
         progress.warning(&text);
         warnings.push(text);
     }
-    let pictures = series.finish(&snapshot, about)?;
+    let drawing = Instant::now();
+    let pictures = series.finish(&snapshot, &placed, about)?;
+    spent.pictures = drawing.elapsed().as_secs_f64();
     let pictures = pictures.iter().filter_map(|p| p.file_name());
     let pictures: Vec<String> = pictures.map(|p| p.to_string_lossy().into_owned()).collect();
     history.finish()?;
+    let collecting = Instant::now();
     let slices = match running {
-        Some(running) => running.finish(hurried)?,
+        Some(running) => {
+            progress.phase("fields");
+            running.finish(hurried)?
+        }
         None => vec![],
     };
+    spent.fields += collecting.elapsed().as_secs_f64();
     for mut trajectory in trajectories {
         // of a run that stopped, the last good state
         if let Some(atoms) = plan
@@ -406,7 +447,9 @@ pub fn drive(
         None => Status::Done,
     };
     let info = sim.info();
-    let report = RunReport {
+    spent.all = begin.elapsed().as_secs_f64();
+    spent.frames = spent.all - stepping.as_secs_f64() - spent.fields - spent.pictures;
+    let mut report = RunReport {
         version: env!("CARGO_PKG_VERSION").to_string(),
         deck: plan.deck.clone(),
         deck_hash: run_json::deck_hash(plan.deck_text.as_bytes()),
@@ -419,6 +462,7 @@ pub fn drive(
         time_step: info.time_step,
         parts_of_a_step: info.parts,
         seconds_stepping: stepping.as_secs_f64(),
+        seconds: spent,
         ns_per_bond_step: run_json::ns_per_bond_step(
             stepping.as_secs_f64(),
             info.directed_bonds,
@@ -433,14 +477,17 @@ pub fn drive(
         warnings,
         setting: Some(Setting {
             slices,
-            ..plan.setting(sim, &snapshot, &pictures, indenters)
+            ..plan.setting(sim, &snapshot, &pictures, paths.all())
         }),
         pictures,
     };
     report.write(&plan.dir.join("run.json"))?;
     if plan.report {
+        progress.phase("report");
         report::write(&plan.dir)?;
     }
+    report.seconds.all = begin.elapsed().as_secs_f64();
+    report.seconds.report = report.seconds.all - spent.all;
     match stopped {
         None => Ok(report),
         Some(error) => Err(DriveError::Run {
@@ -452,14 +499,11 @@ pub fn drive(
     }
 }
 
-/// Where indenters are that move by themselves.
-fn follow(balls: &mut [MovingBall], sim: &dyn Simulation) {
-    let t = sim.time();
-    for (ball, center) in balls.iter_mut().zip(sim.indenters()) {
-        // of those that are moved the path is known
-        if ball.path.last().is_none_or(|p| p[0] < t) {
-            ball.path.push([t, center[0], center[1], center[2]]);
-        }
+/// Time of a frame, as a snapshot has it: of loads that may fall the number of the equilibrium.
+fn frame_time(sim: &dyn Simulation) -> f64 {
+    match sim.info().stepper {
+        Stepper::Statics(s) if s.control != Control::Load => sim.step_number() as f64,
+        Stepper::Statics(_) | Stepper::Verlet | Stepper::Newmark(_) | Stepper::Still => sim.clock(),
     }
 }
 

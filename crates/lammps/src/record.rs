@@ -2,9 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use peridyne_io::write::run_json::MovingBall;
+use peridyne::condition::indenter;
+use peridyne::space::rigid::RigidShape;
+use peridyne_io::write::picture::rigid::{Form, Placed};
+use peridyne_io::write::run_json::RigidNote;
 
-use super::host::{Condition, Form, Push};
+use super::host::{Condition, Push};
+
+/// Half of what is shown of a cylinder without end, over its radius.
+const LONG: f64 = 50.0;
 
 /// A line of numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,8 +31,9 @@ pub struct Record {
     pub dumps: Vec<PathBuf>,
     /// Columns of snapshots that are a field of the model: heading, and field.
     pub fields: Vec<(String, &'static str)>,
-    /// Spheres that push out, where they were when a line was printed.
-    pub spheres: Vec<MovingBall>,
+    /// What pushes atoms out: where it is, and where it was when a line was printed.
+    pub rigid: Vec<Placed>,
+    pub notes: Vec<RigidNote>,
 }
 
 impl Record {
@@ -36,7 +43,7 @@ impl Record {
         if columns != self.columns || !later {
             self.columns = columns;
             self.rows.clear();
-            self.spheres.clear();
+            self.notes.clear();
         }
         // the end of a run is the beginning of the next
         if self.rows.last().is_some_and(|r| r.step == row.step) {
@@ -57,28 +64,55 @@ impl Record {
         }
     }
 
-    /// Where the spheres of these conditions are now.
+    /// Where what pushes atoms out is now.
     pub fn place(&mut self, time: f64, acting: &[Condition]) {
-        let spheres = acting.iter().filter_map(|c| match c {
-            Condition::Indent {
-                form: Form::Sphere,
-                push: Push::Out,
-                center,
-                radius,
-                ..
-            } => Some((center, radius)),
-            _ => None,
-        });
-        for (n, (center, radius)) in spheres.enumerate() {
-            if self.spheres.len() <= n {
-                self.spheres.push(MovingBall::default());
+        self.rigid = acting.iter().filter_map(pushes).collect();
+        for (n, body) in self.rigid.iter().enumerate() {
+            if self.notes.len() <= n {
+                self.notes.push(RigidNote::of(&body.form));
             }
-            let ball = &mut self.spheres[n];
-            ball.radius = *radius;
-            ball.path.retain(|p| p[0] < time);
-            ball.path.push([time, center[0], center[1], center[2]]);
+            let note = &mut self.notes[n];
+            if let Form::Ball(radius) = body.form {
+                note.radius = radius;
+            }
+            note.path.retain(|p| p[0] < time);
+            note.push(time, body);
         }
     }
+}
+
+/// An indenter as a rigid body; of one that atoms lie in nothing is seen.
+fn pushes(condition: &Condition) -> Option<Placed> {
+    let Condition::Indent {
+        form,
+        push,
+        center,
+        radius,
+        ..
+    } = condition
+    else {
+        return None;
+    };
+    let unit = |axis: usize, way: f64| -> [f64; 3] {
+        std::array::from_fn(|a| if a == axis { way } else { 0.0 })
+    };
+    let seen = match (form, push) {
+        (indenter::Form::Sphere, Push::Out) => Form::Ball(*radius),
+        (indenter::Form::Cylinder(axis), Push::Out) => {
+            let shape = RigidShape::Cylinder {
+                radius: *radius,
+                half: LONG * radius,
+                axis: unit(*axis, 1.0),
+            };
+            Form::of(&shape, 3)
+        }
+        (indenter::Form::Plane(axis), push) => {
+            let way = if *push == Push::Out { 1.0 } else { -1.0 };
+            Form::Plane(unit(*axis, way))
+        }
+        (indenter::Form::Sphere | indenter::Form::Cylinder(_), Push::In) => return None,
+    };
+    Some(Placed::new(seen, *center))
 }
 
 #[cfg(test)]
@@ -109,25 +143,35 @@ mod tests {
     }
 
     #[test]
-    fn only_spheres_that_push_out_are_balls() {
+    fn what_pushes_out_is_a_body_where_it_is() {
         let mut record = Record::default();
-        let of = |form, push| Condition::Indent {
+        let of = |form, push, x| Condition::Indent {
             members: std::sync::Arc::new(crate::atoms::Members::All),
             stiffness: 1.0,
             form,
             push,
-            center: [1.0, 2.0, 3.0],
+            center: [x, 2.0, 3.0],
             radius: 0.5,
         };
-        let acting = [
-            of(Form::Plane(1), Push::Out),
-            of(Form::Sphere, Push::In),
-            of(Form::Sphere, Push::Out),
-        ];
-        record.place(0.0, &acting);
-        record.place(0.0, &acting);
-        record.place(1.0, &acting);
-        assert_eq!(record.spheres.len(), 1);
-        assert_eq!(record.spheres[0].path.len(), 2);
+        let acting = |x: f64| {
+            [
+                of(indenter::Form::Sphere, Push::In, x),
+                of(indenter::Form::Sphere, Push::Out, x),
+                of(indenter::Form::Plane(1), Push::In, x),
+            ]
+        };
+        for (time, x) in [(0.0, 1.0), (0.0, 1.0), (1.0, 4.0)] {
+            record.place(time, &acting(x));
+        }
+        assert_eq!(record.rigid.len(), 2);
+        assert_eq!(
+            record.rigid[0],
+            Placed::new(Form::Ball(0.5), [4.0, 2.0, 3.0])
+        );
+        assert_eq!(record.rigid[1].form, Form::Plane([0.0, -1.0, 0.0]));
+        assert_eq!(
+            record.notes[0].path,
+            [[0.0, 1.0, 2.0, 3.0], [1.0, 4.0, 2.0, 3.0]]
+        );
     }
 }

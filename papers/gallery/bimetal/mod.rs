@@ -45,8 +45,8 @@ fn bent(
     if let Some((context, found)) = drawn {
         bench.drawn(
             context,
-            "displacement",
-            ["displacement", ""],
+            "stress",
+            ["stress", "xx"],
             About::Equilibrium,
             found,
         )?;

@@ -14,6 +14,9 @@ experiment!(
 );
 
 const DECK: &str = include_str!("deck.toml");
+/// What is plotted (mm), and every how many points.
+const SHOWN: [f64; 2] = [-100.0, 30.0];
+const EACH: usize = 4;
 /// Of the deck: conductivity (W/m/K), density (kg/m³), capacity (J/kg/K) of copper and steel; how much hotter copper is (K).
 const COPPER: [f64; 3] = [400.0, 8960.0, 385.0];
 const STEEL: [f64; 3] = [45.0, 7800.0, 460.0];
@@ -89,17 +92,21 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         "",
     );
     let milli: Vec<f64> = x.iter().map(|x| 1e3 * x).collect();
-    let mut plot = Plot::new("A hot bar of copper touches one of steel")
-        .x("x", "mm")
-        .y("temperature", "K");
+    let mut plot =
+        Plot::new("A hot bar of copper touches one of steel: exact (lines) and computed")
+            .x("x", "mm")
+            .y("temperature", "K")
+            .x_range(SHOWN[0], SHOWN[1]);
+    // discs that do not touch let the line be seen
+    let some = |all: &[f64]| all.iter().step_by(EACH).copied().collect::<Vec<f64>>();
     let mut table = Table::new().column("x", "m", x.clone());
     for (t, values) in &seen {
         found.measured(&format!("contact at {t:.2} s"), face(&x, values), "K");
         let closed: Vec<f64> = x.iter().map(|x| exact(*x, *t)).collect();
         let label = format!("t = {t:.1} s");
         plot = plot
-            .line(&format!("{label}, exact"), &milli, &closed)
-            .points(&label, &milli, values);
+            .line(&label, &milli, &closed)
+            .points_of_it(&some(&milli), &some(values));
         table = table.column(&label, "K", values.clone()).column(
             &format!("{label}, exact"),
             "K",

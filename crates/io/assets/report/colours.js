@@ -13,12 +13,20 @@ const KINDS = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2",
 
 const hex = text => [0, 2, 4].map(k => parseInt(text.slice(k, k + 2), 16));
 
-/** 256 colours of a map, RGBA. */
-function table(name) {
+/** The part of a map that values from `low` to `high` have: all of it, but of a diverging one 0 is its middle, as far on either side. */
+function part(name, low, high) {
+  if (name !== "diverging" || !(low < 0 && high > 0)) return [0, 1];
+  const most = Math.max(-low, high);
+  return [0.5 + (0.5 * low) / most, 0.5 + (0.5 * high) / most];
+}
+
+/** 256 colours of a map for values from `low` to `high`, RGBA. */
+function table(name, low, high) {
   const colours = MAPS[name].split(" ").map(hex);
+  const [from, to] = part(name, low, high);
   const out = new Uint8Array(1024);
   for (let i = 0; i < 256; i++) {
-    const at = (i / 255) * (colours.length - 1);
+    const at = (from + ((to - from) * i) / 255) * (colours.length - 1);
     const k = Math.min(Math.floor(at), colours.length - 2);
     for (let c = 0; c < 3; c++) out[4 * i + c] = Math.round(colours[k][c] + (at - k) * (colours[k + 1][c] - colours[k][c]));
     out[4 * i + 3] = 255;
@@ -34,4 +42,9 @@ function kinds() {
 }
 const kindColour = n => KINDS[((n % KINDS.length) + KINDS.length) % KINDS.length];
 
-const gradient = name => `linear-gradient(to right, ${MAPS[name].split(" ").map(c => "#" + c).join(", ")})`;
+
+function gradient(name, low, high) {
+  const colours = table(name, low, high);
+  const stops = [...Array(33).keys()].map(k => `rgb(${colours.slice(4 * Math.round((255 * k) / 32)).slice(0, 3).join(" ")})`);
+  return `linear-gradient(to right, ${stops.join(", ")})`;
+}

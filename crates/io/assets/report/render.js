@@ -96,7 +96,13 @@ class Loops {
         if (d + dz > depth[at]) [depth[at], from[at], light[at]] = [d + dz, i, shade];
       }
     }
-    for (const { center, radius } of view.spheres) {
+    for (const { center, radius, triangles: own } of view.bodies) {
+      if (own) {
+        this.triangles(own, view, (at, d, shade) => {
+          if (d > depth[at]) [depth[at], from[at], light[at]] = [d, n, shade];
+        });
+        continue;
+      }
       const p = center.map((c, a) => c - view.middle[a]);
       const [cx, cy] = [w / 2 + (dot(p, view.right) - view.shift[0]) * px, h / 2 - (dot(p, view.up) - view.shift[1]) * px];
       const ball = { balls: true, half: radius };
@@ -126,6 +132,58 @@ class Loops {
     this.context.putImageData(image, 0, 0);
   }
 }
+
+/** Each pixel of triangles, its depth and light. */
+Loops.prototype.triangles = function (all, view, put) {
+  const { width: w, height: h } = this.canvas;
+  const px = view.pixels;
+  for (const triangle of all) {
+    const [a, b, c] = triangle.map(x => {
+      const p = x.map((y, k) => y - view.middle[k]);
+      return [w / 2 + (dot(p, view.right) - view.shift[0]) * px, h / 2 - (dot(p, view.up) - view.shift[1]) * px, dot(p, view.eye)];
+    });
+    const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    // what turns left on the screen, whose rows grow downwards, faces away
+    if (!(area < 0)) continue;
+    const n = normal(cross(triangle[1].map((y, k) => y - triangle[0][k]), triangle[2].map((y, k) => y - triangle[0][k])));
+    const shade = lit([view.right, view.up, view.eye].map(axis => dot(n, axis)));
+    const [low, high] = [0, 1].map(k => [Math.min(a[k], b[k], c[k]), Math.max(a[k], b[k], c[k])]);
+    for (let y = Math.max(0, Math.ceil(low[1])); y <= Math.min(h - 1, high[1]); y++) {
+      for (let x = Math.max(0, Math.ceil(low[0])); x <= Math.min(w - 1, high[0]); x++) {
+        const v = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area;
+        const u = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area;
+        if (v >= 0 && u >= 0 && v + u <= 1) put(y * w + x, a[2] + v * (b[2] - a[2]) + u * (c[2] - a[2]), shade);
+      }
+    }
+  }
+};
+
+const CORNERS = `#version 300 es
+precision highp float;
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec3 faces;
+uniform vec3 right, up, eye, middle;
+uniform vec2 shift, screen;
+uniform float pixels, deep;
+out vec3 towards;
+void main() {
+  vec3 p = place - middle;
+  vec2 at = (vec2(dot(p, right), dot(p, up)) - shift) * pixels / (0.5 * screen);
+  towards = vec3(dot(faces, right), dot(faces, up), dot(faces, eye));
+  gl_Position = vec4(at, -dot(p, eye) / deep, 1.0);
+}`;
+
+const STEEL = `#version 300 es
+precision highp float;
+uniform vec3 light;
+uniform float ambient;
+in vec3 towards;
+out vec4 colour;
+void main() {
+  vec3 n = normalize(towards);
+  if (n.z < 0.0) discard;
+  colour = vec4(vec3(0.5) * (ambient + (1.0 - ambient) * min(1.12, max(0.0, dot(n, light)) / light.z)), 1.0);
+}`;
 
 const POINTS = `#version 300 es
 precision highp float;
@@ -226,6 +284,9 @@ class Graphics {
     this.name = "webgl2";
     this.largest = gl.getParameter(gl.ALIASED_POINT_SIZE_RANGE)[1];
     this.cubes = this.program(POINTS, SURFACE);
+    this.steel = this.program(CORNERS, STEEL);
+    this.corners = [0, 1].map(() => gl.createBuffer());
+    this.surface = gl.createVertexArray();
     this.finish = this.program(WHOLE, FINISH);
     this.buffers = [0, 1, 2].map(() => gl.createBuffer());
     this.array = gl.createVertexArray();
@@ -338,8 +399,10 @@ class Graphics {
     gl.uniform3f(at.cutAxis, 0, 0, 0);
     gl.uniform1f(at.cutAt, 1);
     gl.uniform1i(at.balls, 1);
-    for (const { center, radius } of view.spheres) {
-      if (2 * radius * view.pixels * fine > this.largest) continue;
+    // a point may be too small for a ball
+    const large = radius => 2 * radius * view.pixels * fine > this.largest;
+    for (const { center, radius, triangles: own } of view.bodies) {
+      if (own || large(radius)) continue;
       gl.uniform1f(at.halfEdge, radius);
       gl.uniform2f(at.reach, radius, radius);
       gl.vertexAttrib3fv(0, center);
@@ -348,6 +411,7 @@ class Graphics {
       gl.drawArrays(gl.POINTS, 0, 1);
     }
 
+    this.faces(view, triangles(view.bodies, large), [w, h], fine);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.disable(gl.DEPTH_TEST);
@@ -368,6 +432,29 @@ class Graphics {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 }
+
+/** Corners of triangles with what they face. */
+Graphics.prototype.faces = function (view, all, screen, fine) {
+  if (!all.length) return;
+  const { gl } = this;
+  const { program, at } = this.steel;
+  gl.useProgram(program);
+  gl.bindVertexArray(this.surface);
+  this.corners.forEach((buffer, k) => {
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(all.flatMap(c => c[k])), gl.DYNAMIC_DRAW);
+    gl.enableVertexAttribArray(k);
+    gl.vertexAttribPointer(k, 3, gl.FLOAT, false, 0, 0);
+  });
+  for (const name of ["right", "up", "eye", "middle"]) gl.uniform3fv(at[name], view[name]);
+  gl.uniform3fv(at.light, LIGHT);
+  gl.uniform2fv(at.shift, view.shift);
+  gl.uniform2fv(at.screen, screen);
+  gl.uniform1f(at.pixels, view.pixels * fine);
+  gl.uniform1f(at.deep, view.deep);
+  gl.uniform1f(at.ambient, AMBIENT);
+  gl.drawArrays(gl.TRIANGLES, 0, all.length);
+};
 
 /** What draws into a canvas: WebGL2, or loops (also asked for by `#loops` behind the address). */
 function renderer(canvas) {

@@ -23,6 +23,7 @@ class Viewer {
     id("stage").classList.toggle("curve", this.line);
     for (const part of document.querySelectorAll(".solid")) part.hidden = this.line;
     await this.bounds();
+    this.bodies = new Bodies(scene.balls, scene, this.low, this.high);
     this.frame = scene.frames.length - 1;
     this.fields();
     const last = scene.frames.length - 1;
@@ -143,10 +144,6 @@ class Viewer {
     const [from, to] = id("range").value === "frame" && this.field.kind !== "integer" ? [this.frame, this.frame] : [0, this.scene.frames.length - 1];
     let [low, high] = this.scene.range(this.field, this.component, from, to);
     if (id("range").value === "most" && this.field.kind !== "integer") [low, high] = this.most;
-    if (id("map").value === "diverging" && this.field.kind !== "integer") {
-      const most = Math.max(Math.abs(low), Math.abs(high));
-      [low, high] = [-most, most];
-    }
     return low < high ? [low, high] : [low, low + (Math.abs(low) || 1)];
   }
 
@@ -242,7 +239,7 @@ class Viewer {
       id("kinds").replaceChildren(...items);
       return;
     }
-    id("colours").style.background = gradient(id("map").value);
+    id("colours").style.background = gradient(id("map").value, low, high);
     const at = v => (100 * (v - low)) / (high - low);
     const marks = ticks(low / s.factor, high / s.factor, 5);
     const first = marks.length < 2 ? [low / s.factor, high / s.factor] : marks;
@@ -287,6 +284,11 @@ class Viewer {
       const at = part => end[Math.round(part * (end.length - 1))] ?? this.low[a];
       return [Math.min(this.low[a], at(0.02)), Math.max(this.high[a], at(0.98))];
     });
+    // rigid bodies in the first frame and the last
+    const { frames } = this.scene;
+    for (const { value } of [frames[0], frames.at(-1)]) {
+      for (const x of this.bodies.ends(value)) box.forEach((b, a) => ([b[0], b[1]] = [Math.min(b[0], x[a]), Math.max(b[1], x[a])]));
+    }
     this.middle = box.map(([l, h]) => 0.5 * (l + h));
     this.shownBox = box.map(([l, h], a) => h - l + 2 * half * (a < this.scene.dimension));
   }
@@ -351,7 +353,7 @@ class Viewer {
     this.view = {
       right: this.right, up: this.up, eye: this.eye, middle: this.middle, shift: this.shift, pixels: this.pixels,
       stretch: this.stretch, half: 0.5 * scene.spacing * (scene.atoms ? 0.95 : 1.04), balls: id("balls").value === "balls",
-      low, high: integer ? low + 255 : high, colours: integer ? kinds() : table(id("map").value),
+      low, high: integer ? low + 255 : high, colours: integer ? kinds() : table(id("map").value, low, high),
       deep: most, spread: 1.6 * scene.spacing, fine: this.ratio > 1.4 ? 1 : 2,
       cut: axis < 0 ? null : {
         axis,
@@ -359,20 +361,11 @@ class Viewer {
         side: this.cut.other ? -1 : 1,
       },
     };
-    this.view.spheres = id("spheres").checked ? this.spheres() : [];
+    this.view.bodies = id("spheres").checked ? this.bodies.at(scene.frames[this.frame].value) : [];
+    const far = ({ center, radius, corner }) => Math.max(...(corner ?? [center]).map(x => Math.hypot(...x.map((c, a) => c - this.middle[a])))) + (radius || 0);
+    this.view.deep = Math.max(most, ...this.view.bodies.map(far));
     this.draw.draw(this.view);
     this.marks();
-  }
-
-  /** Indenters at the time of the frame. */
-  spheres() {
-    const t = this.scene.frames[this.frame].value;
-    return this.scene.balls.map(({ radius, path }) => {
-      const k = Math.max(1, path.findIndex(p => p[0] >= t));
-      const [a, b] = [path[k - 1], path[k] ?? path.at(-1)];
-      const part = b[0] > a[0] ? Math.min(1, (t - a[0]) / (b[0] - a[0])) : 0;
-      return { radius, center: [1, 2, 3].map(c => a[c] + part * (b[c] - a[c])) };
-    });
   }
 
   /** Scale bar, axes, note of the deformation. */

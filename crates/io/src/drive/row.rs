@@ -37,7 +37,9 @@ pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
         columns.push(Column::new("temperature", &atoms.temperature_unit));
         columns.push(Column::new("pressure", &atoms.pressure_unit));
     }
-    columns.extend(sim.probe_columns().into_iter().map(|c| {
+    let mut probes = sim.probe_columns();
+    probes.truncate(probes.len().saturating_sub(plan.rigid.columns()));
+    columns.extend(probes.into_iter().map(|c| {
         let unit = match (c.rooted, c.moment, plan.units) {
             (true, _, units) => units.root_unit(c.dimension),
             (false, true, UnitSystem::Si) => "N m".into(),
@@ -66,6 +68,8 @@ pub(super) fn row(sim: &mut dyn Simulation, plan: &Plan, ledger: &Ledger) -> Vec
     if let Some(atoms) = &plan.atoms {
         row.extend(atoms.thermo(sim, ledger.kinetic));
     }
-    row.extend(sim.measure());
+    let mut measured = sim.measure();
+    measured.truncate(measured.len().saturating_sub(plan.rigid.columns()));
+    row.extend(measured);
     row
 }

@@ -9,8 +9,6 @@ use super::mesh::{Group, Mesh};
 use super::{ReadError, Sourced};
 use std::collections::HashMap;
 
-/// Its elements belong to entities that this section numbers anew, without the groups of the whole.
-
 /// The corners and the number of nodes of a gmsh element type.
 fn element(kind: u32) -> Option<(Kind, usize)> {
     Some(match kind {

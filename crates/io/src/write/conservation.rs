@@ -1,6 +1,7 @@
 //! Files of a conservation law: `frames.npz` (`x`, `t`, `u[frame, point]`), pictures, `run.json`.
 
 use super::atomic::{WriteError, write_file};
+use super::picture::label;
 use super::plot::{ColorMap, Map, Plot};
 use super::run_json::{Setting, Status};
 use crate::deck::Dim;
@@ -104,19 +105,28 @@ pub fn write_pictures(dir: &Path, deck: &LawDeck, frames: &Frames) -> Result<(),
         plot = plot.line(label.trim_end(), &x, &frames.frame(f)[middle..][..n]);
     }
     plot.save(dir, "profiles")?;
-    let [low, high] = measure::extremes(&frames.values);
+    let plane = rows > 1;
+    let last = frames.frame(count - 1);
+    // a plane shows its last state alone
+    let shown = if plane { last } else { &frames.values };
+    let [low, high] = measure::extremes(shown);
     // a state that does not vary is shown too
     let spread = (high - low).max(1e-12 * high.abs()).max(1e-300);
-    let map = Map::new(&deck.title)
+    let title = match plane {
+        true => format!(
+            "{}, t = {}",
+            deck.title,
+            label::quantity(frames.times[count - 1], &time)
+        ),
+        false => deck.title.clone(),
+    };
+    let map = Map::new(title)
         .x("x", &length, ends(0))
         .value("u", &u)
         .between(low, low + spread)
-        .colors(ColorMap::Sequential);
-    if rows > 1 {
-        let map = map
-            .y("y", &length, ends(1))
-            .equal()
-            .grid(n, frames.frame(count - 1));
+        .colors(ColorMap::of([low, low + spread]));
+    if plane {
+        let map = map.y("y", &length, ends(1)).equal().grid(n, last);
         map.save(dir, "last")?;
     } else if count > 1 {
         let map = map.y("t", &time, [frames.times[0], frames.times[count - 1]]);

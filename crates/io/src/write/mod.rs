@@ -6,6 +6,7 @@ pub mod conservation;
 pub mod continuum;
 pub mod data;
 pub mod dump;
+pub mod earlier;
 pub mod exodus;
 pub mod extxyz;
 pub mod fields;

@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 
 use super::atomic::{WriteError, write_file};
 use super::picture::marks::{Mark, Marks};
+use super::picture::rigid::{Form, Placed};
 use crate::deck::UnitSystem;
 
 /// Everything `run.json` holds. Numbers are in the units of the run; a number that is not finite reads `null`.
@@ -34,6 +35,8 @@ pub struct RunReport {
     pub parts_of_a_step: u32,
     /// Wall time inside the steps alone (s).
     pub seconds_stepping: f64,
+    /// What was spent beside them.
+    pub seconds: Spent,
     /// [`ns_per_bond_step`].
     pub ns_per_bond_step: Option<f64>,
     /// [`peak_memory_bytes`].
@@ -51,6 +54,38 @@ pub struct RunReport {
     /// What reports tell besides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub setting: Option<Setting>,
+}
+
+/// Wall time of a run (s): all of it, and the parts that are not steps.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Spent {
+    pub all: f64,
+    /// Frames, rows of the history and what else is written as a run goes on.
+    pub frames: f64,
+    /// Continuum fields.
+    pub fields: f64,
+    /// Pictures and films.
+    pub pictures: f64,
+    /// The report; it is made of `run.json`, which does not know.
+    #[serde(skip)]
+    pub report: f64,
+}
+
+impl Spent {
+    /// A sentence of the parts that took time, with that of the steps.
+    pub fn told(&self, stepping: f64) -> String {
+        let parts = [
+            ("steps", stepping),
+            ("frames", self.frames),
+            ("fields", self.fields),
+            ("pictures", self.pictures),
+            ("report", self.report),
+        ];
+        let there = parts.iter().filter(|(_, seconds)| *seconds >= 0.005);
+        let each = there.map(|(name, seconds)| format!("{name} {seconds:.2} s"));
+        let each: Vec<String> = each.collect();
+        format!("in all {:.2} s: {}", self.all, each.join(", "))
+    }
 }
 
 /// How a run was asked for, and what its files hold: with them, all that a report tells.
@@ -72,7 +107,7 @@ pub struct Setting {
     pub atoms: bool,
     pub units: UnitNames,
     pub fields: Vec<FieldNote>,
-    pub indenters: Vec<MovingBall>,
+    pub indenters: Vec<RigidNote>,
     pub marks: MarkNotes,
     /// Pictures of continuum fields, in the folder.
     pub slices: Vec<String>,
@@ -92,11 +127,56 @@ pub struct UnitNames {
     pub energy: String,
 }
 
-/// An indenter that is moved: radius, and time and centre here and there, linear between.
+/// A rigid body: what it looks like along its own axes, a ball of this radius or triangles; and where it was, linear between.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct MovingBall {
+#[serde(default)]
+pub struct RigidNote {
     pub radius: f64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub corner: Vec<[f32; 3]>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub face: Vec<[u32; 3]>,
+    /// Normal of a plane, all that is behind it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plane: Option<[f64; 3]>,
+    /// Time and centre.
     pub path: Vec<[f64; 4]>,
+    /// Of each of these the axes, rows from its own to space; none of one that never turns.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<[[f64; 3]; 3]>,
+}
+
+/// Triangles of a body in a report.
+const TRIANGLES: usize = 6000;
+
+impl RigidNote {
+    pub fn of(form: &Form) -> RigidNote {
+        let mut note = RigidNote::default();
+        match form {
+            Form::Ball(radius) => note.radius = *radius,
+            Form::Plane(normal) => note.plane = Some(*normal),
+            Form::Surface(surface) => {
+                let surface = surface.coarser(TRIANGLES);
+                note.corner = { surface.corner.iter() }
+                    .map(|x| x.map(|c| c as f32))
+                    .collect();
+                note.face = surface.face;
+            }
+        }
+        note
+    }
+
+    /// Where it is at a time, of which it has none yet.
+    pub fn push(&mut self, time: f64, placed: &Placed) {
+        if self.path.last().is_some_and(|p| p[0] >= time) {
+            return;
+        }
+        let [x, y, z] = placed.center;
+        self.path.push([time, x, y, z]);
+        if self.radius == 0.0 {
+            self.axes.push(placed.axes);
+        }
+    }
 }
 
 /// What is done to a body, in its reference configuration (lengths).
@@ -281,6 +361,7 @@ mod tests {
             time_step: 1e-7,
             parts_of_a_step: 1,
             seconds_stepping: 10.5,
+            seconds: Spent::default(),
             ns_per_bond_step: ns_per_bond_step(10.5, 10_009_800, 2000),
             peak_memory_bytes: None,
             broken_directed_bonds: 12,
@@ -339,6 +420,19 @@ mod tests {
         let json = written(&bad);
         assert_eq!(json["status"], "stopped: point 7 is not finite");
         assert_eq!(json["energy"]["kinetic"], Value::Null);
+    }
+
+    #[test]
+    fn what_took_time_is_told() {
+        let spent = Spent {
+            all: 9.5,
+            fields: 4.0,
+            pictures: 0.25,
+            report: 1.0,
+            frames: 0.001,
+        };
+        let text = "in all 9.50 s: steps 4.20 s, fields 4.00 s, pictures 0.25 s, report 1.00 s";
+        assert_eq!(spent.told(4.2), text);
     }
 
     #[test]

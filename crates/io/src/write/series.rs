@@ -7,7 +7,9 @@ use peridyne::observe::Snapshot;
 
 use super::atomic::{WriteError, create_directory, write_file};
 use super::dump::{DumpBox, write_frame};
+use super::earlier::{sweep_frames, told};
 use super::picture::film::{Film, HURRY};
+use super::picture::rigid::Placed;
 use super::picture::shown::About;
 use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
@@ -39,8 +41,7 @@ impl Default for SeriesOptions {
 }
 
 /// Writes snapshots into a directory. Whatever happens, each file there is whole, and the collections list
-/// exactly the files of this run: those of an older run in the same directory are replaced where they
-/// have the same step, and otherwise left alone.
+/// exactly the files of this run: frames that those of an earlier run list are removed at the start.
 #[derive(Debug)]
 pub struct Series {
     dir: PathBuf,
@@ -53,13 +54,17 @@ pub struct Series {
     films: Vec<Option<Film>>,
     /// Films are drawn short.
     hurried: bool,
+    /// Frames there that are not of this run.
+    strange: Vec<String>,
 }
 
 impl Series {
-    /// Creates the directory and its parents.
+    /// Creates the directory and its parents; frames of an earlier run are removed.
     pub fn new(dir: impl Into<PathBuf>, options: SeriesOptions) -> Result<Self, WriteError> {
         let dir = dir.into();
         create_directory(&dir)?;
+        let mut strange = sweep_frames(&dir, "points")?;
+        strange.extend(sweep_frames(&dir, "bonds")?);
         let (points, bonds) = (
             Pvd::new(dir.join("points.pvd")),
             Pvd::new(dir.join("bonds.pvd")),
@@ -77,6 +82,7 @@ impl Series {
         Ok(Series {
             hurried: false,
             films,
+            strange,
             dir,
             options,
             points,
@@ -89,6 +95,11 @@ impl Series {
         &self.dir
     }
 
+    /// What to say about frames there that are not of this run.
+    pub fn strange(&self) -> Option<String> {
+        told(&self.dir, &self.strange)
+    }
+
     /// Does it need snapshots of all frames?
     pub fn wants_frames(&self) -> bool {
         let options = &self.options;
@@ -97,7 +108,7 @@ impl Series {
     }
 
     /// Writes all files of a snapshot. One of the same step is replaced, but the dump keeps the first.
-    pub fn write(&mut self, s: &Snapshot) -> Result<(), WriteError> {
+    pub fn write(&mut self, s: &Snapshot, bodies: &[Placed]) -> Result<(), WriteError> {
         if self.options.points {
             let name = format!("points_{:08}.vtu", s.step);
             write_file(&self.dir.join(&name), |w| write_points(w, s))?;
@@ -119,7 +130,7 @@ impl Series {
                 let failed = WriteError::at("make a film in", &self.dir);
                 let component = picture.component.as_deref();
                 let shown = (picture.field(About::Motion), component);
-                film.push(s, shown, picture.arrows.as_deref())
+                film.push(s, bodies, shown, picture.arrows.as_deref())
                     .map_err(failed)?;
             }
         }
@@ -132,8 +143,13 @@ impl Series {
         self.films.iter().any(Option::is_some)
     }
 
-    /// Draws the last snapshot, as pictures were asked for; returns their paths.
-    pub fn finish(self, last: &Snapshot, about: About) -> Result<Vec<PathBuf>, WriteError> {
+    /// Draws the last snapshot with the rigid bodies beside it, as pictures were asked for; returns their paths.
+    pub fn finish(
+        self,
+        last: &Snapshot,
+        bodies: &[Placed],
+        about: About,
+    ) -> Result<Vec<PathBuf>, WriteError> {
         if let Some((dump, _)) = self.dump {
             dump.finish()?;
         }
@@ -142,7 +158,7 @@ impl Series {
         for (options, film) in self.options.pictures.iter().zip(self.films) {
             let path = self.dir.join(format!("{}.png", options.stem(about)));
             let begun = Instant::now();
-            picture::write(&path, last, options, about)?;
+            picture::write(&path, last, bodies, options, about)?;
             // a frame of a film is smaller
             let each = begun.elapsed().max(Duration::from_millis(1));
             let most = (HURRY / films).as_secs_f64() / each.as_secs_f64();
@@ -190,16 +206,16 @@ mod tests {
             ..Default::default()
         };
         let mut series = Series::new(&out, options).unwrap();
-        series.write(&small()).unwrap();
+        series.write(&small(), &[]).unwrap();
         let later = Snapshot {
             step: 12,
             time: 2e-7,
             ..with(small(), "damage", Values::Scalars(vec![0.5; 3]))
         };
-        series.write(&later).unwrap();
-        series.write(&later).unwrap();
+        series.write(&later, &[]).unwrap();
+        series.write(&later, &[]).unwrap();
         assert_eq!(
-            series.finish(&later, About::Fracture).unwrap(),
+            series.finish(&later, &[], About::Fracture).unwrap(),
             [out.join("damage.png")]
         );
         let files = [
@@ -227,15 +243,46 @@ mod tests {
     }
 
     #[test]
+    fn frames_of_an_earlier_run_with_another_schedule_are_gone() {
+        let dir = tempfile::tempdir().unwrap();
+        let run = |steps: &[u64]| {
+            let mut series = Series::new(dir.path(), SeriesOptions::default()).unwrap();
+            for step in steps {
+                let frame = Snapshot {
+                    step: *step,
+                    ..small()
+                };
+                series.write(&frame, &[]).unwrap();
+            }
+            series.strange()
+        };
+        assert_eq!(run(&[0, 50, 100]), None);
+        std::fs::write(dir.path().join("points_00000007.vtu"), "not listed").unwrap();
+        let told = run(&[0, 40, 80]).unwrap();
+        assert!(
+            told.starts_with("1 frame ") && told.contains("points_00000007.vtu"),
+            "{told}"
+        );
+        let files = [
+            "points.pvd",
+            "points_00000000.vtu",
+            "points_00000007.vtu",
+            "points_00000040.vtu",
+            "points_00000080.vtu",
+        ];
+        assert_eq!(names(dir.path()), files);
+    }
+
+    #[test]
     fn a_snapshot_that_cannot_be_written_is_not_listed() {
         let dir = tempfile::tempdir().unwrap();
         let mut series = Series::new(dir.path(), SeriesOptions::default()).unwrap();
-        series.write(&small()).unwrap();
+        series.write(&small(), &[]).unwrap();
         let bad = Snapshot {
             step: 8,
             ..with(small(), "velocity", Values::Vectors(vec![[0.0; 3]]))
         };
-        let text = series.write(&bad).unwrap_err().to_string();
+        let text = series.write(&bad, &[]).unwrap_err().to_string();
         assert!(
             text.contains("points_00000008.vtu") && text.contains("1 values of velocity"),
             "{text}"

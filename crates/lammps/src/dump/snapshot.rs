@@ -144,7 +144,7 @@ impl Session<'_> {
             ..PictureOptions::default()
         };
         let mut bytes = Vec::new();
-        picture::picture(&snapshot, &options, About::Fracture)
+        picture::picture(&snapshot, &[], &options, About::Fracture)
             .and_then(|image| image.write_png(&mut bytes))
             .map_err(|e| Problem::new(format!("the picture cannot be drawn: {e}")))?;
         out.write_bytes(&bytes)

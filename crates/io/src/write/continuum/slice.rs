@@ -86,7 +86,7 @@ fn slices(table: &Table) -> Vec<Slice> {
     all.into_iter().filter_map(of).collect()
 }
 
-/// Lowest and highest finite value; of numbers of both signs as far below 0 as above.
+/// Lowest and highest finite value; of numbers of both signs those that are not all 0.
 fn ends(values: impl Iterator<Item = f64>, signed: bool) -> Option<[f64; 2]> {
     let finite = values.filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
@@ -94,7 +94,7 @@ fn ends(values: impl Iterator<Item = f64>, signed: bool) -> Option<[f64; 2]> {
     });
     let most = low.abs().max(high.abs());
     match signed {
-        true => (most > 0.0 && most.is_finite()).then_some([-most, most]),
+        true => (low < high && most > 0.0 && most.is_finite()).then_some([low, high]),
         false => (low < high).then_some([low, high]),
     }
 }
@@ -114,7 +114,7 @@ impl Slice {
         .equal()
         .grid(self.columns, &self.values);
         match (between, self.signed) {
-            (Some([low, high]), true) => map.colors(ColorMap::Diverging).between(low, high),
+            (Some(ends), true) => map.colors(ColorMap::of(ends)).between(ends[0], ends[1]),
             (Some([low, high]), false) => map.between(low, high),
             (None, _) => map,
         }

@@ -1,16 +1,19 @@
 //! Pictures of plates and solids: layout, frame, scale bar and colour bar.
 
+use std::cell::OnceCell;
+
 use peridyne::observe::Snapshot;
-use peridyne::space::AXES;
+use peridyne::space::{AXES, Point};
 
 use super::arrows::Arrows;
-use super::extent::{REACH, bounds, longest, moved, strays};
-use super::image::{Align, Font, GREY, INK, Image};
+use super::cells::{Cell, Cells};
+use super::extent::{REACH, bounds, longest, moved, principal, strays};
+use super::image::{Align, Font, GREY, Image};
 use super::marks;
+use super::rigid::Placed;
 use super::shown::Shown;
-use super::sizes;
-use super::view::{Camera, Frame, cross, draw as draw_view};
-use super::{FOOT, HEAD, MARGIN, PictureOptions, head, label};
+use super::view::{Beside, Camera, Frame, cross, draw as draw_view};
+use super::{FOOT, HEAD, MARGIN, PictureOptions, foot, head};
 
 /// Elevation of the viewer of the section (degrees): low enough to see the cut, high enough to see the top.
 const ELEVATION: f64 = 30.0;
@@ -18,14 +21,18 @@ const ELEVATION: f64 = 30.0;
 const MAGNIFIED: f64 = 1.25;
 /// Room between and below the views (pixels).
 const GAP: f64 = 48.0;
-/// Height of the key of arrows, length of the colour bar (pixels).
+/// Height of the key of arrows (pixels).
 const KEY: f64 = 44.0;
-const BAR: f64 = 320.0;
 const CAPTION: f64 = 40.0;
 /// A view is not drawn higher than this part of the picture's width.
 const TALLEST: f64 = 0.75;
 /// Views go below each other when that makes them larger by this factor.
 const WORTH_STACKING: f64 = 1.6;
+
+/// A rigid body hides so much of what it is in front of, seen from above.
+const GLASS: f32 = 0.6;
+/// Points in front of a cut by less than this part of a spacing lie in it: lattices may be perturbed.
+const IN_CUT: f64 = 0.3;
 
 /// Keeps the points whose reference coordinate along `axis` is at or behind `at` in the direction `sign` (±1).
 #[derive(Debug, Clone, Copy)]
@@ -36,8 +43,14 @@ struct Cut {
 }
 
 impl Cut {
-    fn keeps(&self, reference: &[f64; 3]) -> bool {
-        self.sign * reference[self.axis] >= self.sign * self.at
+    fn keeps(&self, reference: &Point, spacing: f64) -> bool {
+        self.sign * (reference[self.axis] - self.at) >= -IN_CUT * spacing
+    }
+
+    /// Where a ray through a place of the screen meets it, towards the viewer (length).
+    fn met(&self, camera: &Camera, right: f64, up: f64) -> f64 {
+        let a = self.axis;
+        (self.at - camera.right[a] * right - camera.up[a] * up) / camera.toward[a]
     }
 }
 
@@ -49,78 +62,158 @@ struct Panel {
     cut: Option<Cut>,
 }
 
-pub fn draw(
-    s: &Snapshot,
-    (what, arrows): (&Shown, Option<&Arrows>),
-    scale: f64,
-    options: &PictureOptions,
-) -> Image {
-    let bounds = bounds(s);
-    let guesses = [s.spacing, longest(&bounds) / 100.0, 1.0];
-    // where displacements are magnified, strains are, too, and points must not come apart
-    let wide = if scale > 1.0 { MAGNIFIED } else { 1.0 };
-    let spacing = wide * guesses.into_iter().find(|l| *l > 0.0).unwrap_or(1.0);
-    let near = |x: &[f64; 3]| {
-        let reach = REACH * longest(&bounds) + spacing;
-        (0..3).all(|a| x[a] >= bounds[a][0] - reach && x[a] <= bounds[a][1] + reach)
-    };
-    // cubes in space hide what is behind gaps anyway, and overlap badly
-    let edges = match s.dimension {
-        2 => sizes::edges(&s.reference, s.spacing),
-        _ => None,
-    };
-    let size = |i: usize| edges.as_ref().map_or(1.0, |e| e[i] / s.spacing);
-    let shown = |cut: Option<Cut>| {
-        let all = moved(s, scale).zip(&s.reference).zip(&what.values);
-        let points = all.enumerate().filter(move |(_, ((x, reference), _))| {
-            near(x) && cut.is_none_or(|cut| cut.keeps(reference))
-        });
-        points.map(|(i, ((x, _), value))| (x, what.part(*value), size(i)))
-    };
-    // bodies beside a plate belong into its picture, as far as it reaches
-    let beside: Vec<[f64; 3]> = match s.dimension {
-        2 => (options.marks.rigid_places(s.time).into_iter())
-            .map(|x| {
-                let reach = REACH * longest(&bounds);
-                std::array::from_fn(|a| x[a].clamp(bounds[a][0] - reach, bounds[a][1] + reach))
-            })
-            .collect(),
-        _ => vec![],
-    };
-    let strays = strays(s);
-    let panels: Vec<Panel> = cameras(s, &bounds)
-        .into_iter()
-        .filter_map(|(camera, caption, cut)| {
-            let all = moved(s, scale).zip(&s.reference).zip(&strays);
+/// What is seen of a body and how: the same for all frames of a film.
+pub struct Sight {
+    panels: Vec<Panel>,
+    bounds: [[f64; 2]; 3],
+    spacing: f64,
+    /// Of a plate, where it is drawn.
+    cells: OnceCell<Cells>,
+}
+
+/// Points and rigid bodies at a time.
+struct Scene {
+    moved: Vec<Point>,
+    strays: Vec<bool>,
+    bodies: Vec<Placed>,
+}
+
+impl Sight {
+    /// Of one frame.
+    pub fn of(s: &Snapshot, bodies: &[Placed], scale: f64) -> Sight {
+        let bounds = bounds(s);
+        let guesses = [s.spacing, longest(&bounds) / 100.0, 1.0];
+        // where displacements are magnified, strains are, too, and points must not come apart
+        let wide = if scale > 1.0 && s.dimension > 2 {
+            MAGNIFIED
+        } else {
+            1.0
+        };
+        let spacing = wide * guesses.into_iter().find(|l| *l > 0.0).unwrap_or(1.0);
+        let mut sight = Sight {
+            cells: OnceCell::new(),
+            panels: vec![],
+            bounds,
+            spacing,
+        };
+        let scene = sight.scene(s, bodies, scale);
+        let framed = |(camera, caption, cut): (Camera, String, Option<Cut>)| {
+            let all = scene.moved.iter().zip(&s.reference).zip(&scene.strays);
             let points = all.filter(|((x, reference), stray)| {
-                !**stray && near(x) && cut.is_none_or(|cut| cut.keeps(reference))
+                !**stray && sight.near(x) && cut.is_none_or(|c| c.keeps(reference, spacing))
             });
-            let points = points.map(|((x, _), _)| x);
-            let frame = Frame::around(&camera, points.chain(beside.iter().copied()), spacing)?;
+            let ways = [camera.right, camera.up, camera.toward];
+            let ends = scene.bodies.iter().flat_map(|b| b.ends(&ways));
+            // as far as the picture reaches
+            let ends = ends.map(|x| sight.reached(x));
+            let points = points.map(|((x, _), _)| *x).chain(ends);
+            let frame = Frame::around(&camera, points, spacing)?;
             Some(Panel {
                 camera,
                 frame,
                 caption,
                 cut,
             })
-        })
-        .collect();
+        };
+        sight.panels = cameras(s, &bounds).into_iter().filter_map(framed).collect();
+        sight
+    }
 
+    /// What shows both.
+    pub fn with(mut self, other: &Sight) -> Sight {
+        if self.panels.is_empty() {
+            self.panels = { other.panels.iter() }
+                .map(|p| Panel {
+                    caption: p.caption.clone(),
+                    ..*p
+                })
+                .collect();
+        }
+        for (own, other) in self.panels.iter_mut().zip(&other.panels) {
+            own.frame = own.frame.with(&other.frame);
+        }
+        self
+    }
+
+    fn reach(&self) -> f64 {
+        REACH * longest(&self.bounds)
+    }
+
+    fn near(&self, x: &Point) -> bool {
+        let reach = self.reach() + self.spacing;
+        (0..3).all(|a| x[a] >= self.bounds[a][0] - reach && x[a] <= self.bounds[a][1] + reach)
+    }
+
+    fn reached(&self, x: Point) -> Point {
+        let reach = self.reach();
+        std::array::from_fn(|a| x[a].clamp(self.bounds[a][0] - reach, self.bounds[a][1] + reach))
+    }
+
+    fn scene(&self, s: &Snapshot, bodies: &[Placed], scale: f64) -> Scene {
+        let bodies = bodies.iter().map(|b| b.bounded(&self.bounds, s.dimension));
+        Scene {
+            moved: moved(s, scale).collect(),
+            strays: strays(s),
+            bodies: bodies.collect(),
+        }
+    }
+}
+
+pub fn draw(
+    s: &Snapshot,
+    bodies: &[Placed],
+    (what, arrows): (&Shown, Option<&Arrows>),
+    scale: f64,
+    sight: &Sight,
+    options: &PictureOptions,
+) -> Image {
+    let scene = sight.scene(s, bodies, scale);
+    let spacing = sight.spacing;
+    let cells = (s.dimension == 2).then(|| {
+        let made = || Cells::of(&s.reference, s.spacing);
+        sight.cells.get_or_init(made).at(&scene.moved)
+    });
+    let shown = |cut: Option<Cut>| {
+        let all = scene.moved.iter().zip(&s.reference).zip(&what.values);
+        let points = all.enumerate().filter(move |(_, ((x, reference), _))| {
+            sight.near(x) && cut.is_none_or(|cut| cut.keeps(reference, spacing))
+        });
+        points.map(|(i, ((x, _), value))| {
+            let cell = cells.as_ref().map_or(Cell::WHOLE, |c| c[i]);
+            (*x, what.part(*value), cell)
+        })
+    };
+    let panels = &sight.panels;
     let width = options.width as f64;
-    let placed = place(&panels, width - 2.0 * MARGIN, TALLEST * width);
+    let placed = place(panels, width - 2.0 * MARGIN, TALLEST * width);
     let key = if arrows.is_some() { KEY } else { 0.0 };
     let height = HEAD + placed.height + FOOT + key;
     let mut image = Image::new(options.width, height.ceil() as usize);
     head(&mut image, s, scale, options);
+    let flat = s.dimension == 2;
     for ((panel, corner), caption) in panels.iter().zip(&placed.corners).zip(&placed.captions) {
         let corner = [MARGIN + corner[0], HEAD + corner[1]];
+        let nearest = |right: f64, up: f64| match &panel.cut {
+            Some(cut) => cut.met(&panel.camera, right, up),
+            None => f64::INFINITY,
+        };
+        let beside = Beside {
+            bodies: &scene.bodies,
+            flat,
+            opacity: if flat || panel.cut.is_some() {
+                1.0
+            } else {
+                GLASS
+            },
+            nearest: &nearest,
+        };
         draw_view(
             &mut image,
             (corner, placed.scale),
-            &panel.camera,
-            &panel.frame,
+            (&panel.camera, &panel.frame),
             spacing,
             what.map,
+            &beside,
             shown(panel.cut),
         );
         let view = marks::View {
@@ -129,16 +222,18 @@ pub fn draw(
             scale: placed.scale,
             camera: &panel.camera,
             frame: &panel.frame,
-            flat: s.dimension == 2,
+            flat,
+            open: panel.cut.is_some(),
         };
         if let Some(arrows) = arrows {
-            let seen = moved(s, scale).zip(&s.reference).enumerate();
+            let seen = scene.moved.iter().zip(&s.reference).enumerate();
             let seen = seen.filter(|(_, (x, reference))| {
-                near(x) && panel.cut.is_none_or(|cut| cut.keeps(reference))
+                sight.near(x) && panel.cut.is_none_or(|cut| cut.keeps(reference, spacing))
             });
-            arrows.draw(&mut image, &view, seen.map(|(i, (x, _))| (i, x)));
+            arrows.draw(&mut image, &view, seen.map(|(i, (x, _))| (i, *x)));
         }
-        marks::draw(&mut image, &view, &options.marks, s.time);
+        let points = (&*s.reference, &*scene.moved);
+        marks::draw(&mut image, &view, &options.marks, points);
         let middle = corner[0] + 0.5 * panel.frame.size()[0] * placed.scale;
         image.text(
             middle,
@@ -150,7 +245,7 @@ pub fn draw(
         );
     }
     let outside = s.reference.len() - shown(None).count();
-    foot(&mut image, (placed.scale, key), outside, what, options);
+    foot::draw(&mut image, (placed.scale, key), outside, what, options);
     if let Some(arrows) = arrows {
         let at = [MARGIN, image.height as f64 - 0.62 * KEY];
         arrows.key(&mut image, at, options.units);
@@ -166,37 +261,13 @@ fn cameras(s: &Snapshot, bounds: &[[f64; 2]; 3]) -> Vec<(Camera, String, Option<
     if s.dimension == 2 {
         return vec![(Camera::new(unit(0), unit(2), straight), String::new(), None)];
     }
-    let extent = bounds.map(|[low, high]| high - low);
-    // equal extents differ by round-off and half cells: prefer z up and x to the right
-    let tie = 1.02;
-    let thin = [2, 1, 0].into_iter().reduce(|best, a| {
-        if extent[a] * tie < extent[best] {
-            a
-        } else {
-            best
-        }
-    });
-    let thin = thin.unwrap_or(2);
-    let long = (0..3).filter(|&a| a != thin);
-    let long = long
-        .reduce(|best, a| {
-            if extent[a] > tie * extent[best] {
-                a
-            } else {
-                best
-            }
-        })
-        .unwrap_or(0);
-    let deep = 3 - thin - long;
+    let [thin, long, deep] = principal(bounds);
     let (right, top) = (unit(long), unit(thin));
     // the half behind the cut stays
-    let sign = cross(top, right)[deep];
-    let middle = 0.5 * (bounds[deep][0] + bounds[deep][1]);
-    // a plane of points in the middle belongs to the half, whatever the round-off
     let cut = Some(Cut {
         axis: deep,
-        at: middle - sign * 1e-6 * extent[deep],
-        sign,
+        at: 0.5 * (bounds[deep][0] + bounds[deep][1]),
+        sign: cross(top, right)[deep],
     });
     let [t, l] = [thin, long].map(|a| AXES[a]);
     vec![
@@ -272,78 +343,5 @@ fn place(panels: &[Panel], width: f64, tallest: f64) -> Placement {
         corners,
         captions,
         height: at - GAP,
-    }
-}
-
-/// Scale bar to the left, colour bar to the right, what is missing between them.
-fn foot(
-    image: &mut Image,
-    (scale, below): (f64, f64),
-    outside: usize,
-    what: &Shown,
-    options: &PictureOptions,
-) {
-    let right = image.width as f64 - MARGIN;
-    let y = image.height as f64 - below - 52.0;
-    let length = label::round_down(0.16 * image.width as f64 / scale);
-    let pixels = length * scale;
-    for (dx, dy, w, h) in [
-        (0.0, 6.0, pixels, 3.0),
-        (0.0, 0.0, 3.0, 15.0),
-        (pixels - 3.0, 0.0, 3.0, 15.0),
-    ] {
-        image.rectangle(MARGIN + dx, y + dy, w, h, INK);
-    }
-    let text = label::quantity(length, &options.length_unit);
-    image.text(
-        MARGIN + pixels + 14.0,
-        y - 5.0,
-        &text,
-        Font::Normal,
-        Align::Left,
-        INK,
-    );
-
-    let [low, high] = what.range.map(|v| options.units.show(v, what.dimension));
-    let bar = BAR;
-    let start = right - bar - Font::Normal.width(&high) - 14.0;
-    // a long name stands above its bar
-    let beside = format!("{}  {low}", what.name);
-    let left = MARGIN + pixels + 14.0 + Font::Normal.width(&text) + GAP;
-    let fits = start - 14.0 - Font::Normal.width(&beside) > left;
-    if !fits {
-        image.text(
-            start + 0.5 * bar,
-            y - 32.0,
-            &what.name,
-            Font::Normal,
-            Align::Center,
-            INK,
-        );
-    }
-    for i in 0..bar as usize {
-        let tint = what.map.color((i as f64 + 0.5) / bar);
-        image.rectangle(start + i as f64, y - 2.0, 1.0, 18.0, tint);
-    }
-    image.text(
-        start - 14.0,
-        y - 5.0,
-        if fits { &beside } else { &low },
-        Font::Normal,
-        Align::Right,
-        INK,
-    );
-    image.text(right, y - 5.0, &high, Font::Normal, Align::Right, INK);
-    if outside > 0 {
-        let noun = if outside == 1 { "point" } else { "points" };
-        let text = format!("{} {noun} outside", label::count(outside as u64));
-        image.text(
-            MARGIN + pixels + 14.0,
-            y + 22.0,
-            &text,
-            Font::Small,
-            Align::Left,
-            GREY,
-        );
     }
 }

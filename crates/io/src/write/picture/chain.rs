@@ -35,7 +35,48 @@ impl Axes {
     }
 }
 
-pub fn draw(s: &Snapshot, what: &Shown, options: &PictureOptions) -> Image {
+/// Where the curves of a line are: reference positions, displacements and values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits([[f64; 2]; 3]);
+
+impl Limits {
+    /// Of one frame.
+    pub fn of(s: &Snapshot, what: &Shown) -> Limits {
+        let Curves { x, u, values } = Curves::of(s, what);
+        Limits([&x, &u, &values].map(|all| ends(all)))
+    }
+
+    /// Around both.
+    pub fn with(self, other: &Limits) -> Limits {
+        Limits(std::array::from_fn(|k| {
+            let ([a, b], [c, d]) = (self.0[k], other.0[k]);
+            [a.min(c), b.max(d)]
+        }))
+    }
+}
+
+/// What is drawn, in the order along the line.
+struct Curves {
+    x: Vec<f64>,
+    u: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Curves {
+    fn of(s: &Snapshot, what: &Shown) -> Curves {
+        let mut order: Vec<usize> = (0..s.reference.len())
+            .filter(|&i| s.reference[i][0].is_finite() && s.displacement()[i][0].is_finite())
+            .collect();
+        order.sort_by(|&a, &b| s.reference[a][0].total_cmp(&s.reference[b][0]));
+        Curves {
+            x: order.iter().map(|&i| s.reference[i][0]).collect(),
+            u: order.iter().map(|&i| s.displacement()[i][0]).collect(),
+            values: order.iter().map(|&i| what.values[i]).collect(),
+        }
+    }
+}
+
+pub fn draw(s: &Snapshot, what: &Shown, limits: &Limits, options: &PictureOptions) -> Image {
     // displacements are shown anyhow
     let plots = if what.name.starts_with("displacement") {
         1
@@ -45,30 +86,25 @@ pub fn draw(s: &Snapshot, what: &Shown, options: &PictureOptions) -> Image {
     let room = plots as f64 * PLOT + (plots - 1) as f64 * BETWEEN;
     let mut image = Image::new(options.width, (HEAD + NAME + room + BELOW) as usize);
     head(&mut image, s, 1.0, options);
-    let mut order: Vec<usize> = (0..s.reference.len())
-        .filter(|&i| s.reference[i][0].is_finite() && s.displacement()[i][0].is_finite())
-        .collect();
-    order.sort_by(|&a, &b| s.reference[a][0].total_cmp(&s.reference[b][0]));
-    let x: Vec<f64> = order.iter().map(|&i| s.reference[i][0]).collect();
-    let u: Vec<f64> = order.iter().map(|&i| s.displacement()[i][0]).collect();
-    let values: Vec<f64> = order.iter().map(|&i| what.values[i]).collect();
+    let Curves { x, u, values } = Curves::of(s, what);
     let tints: Vec<Color> = { values.iter() }
         .map(|v| what.map.color(what.part(*v)))
         .collect();
 
     let unit = options.length_unit.as_str();
+    let [across, moved, shown] = limits.0.map(range);
     let at = |top: f64, y: [f64; 2]| Axes {
         left: MARGIN + NUMBERS,
         right: image.width as f64 - MARGIN,
         top,
         bottom: top + PLOT,
-        x: range(&x),
+        x: across,
         y,
     };
-    let upper = at(HEAD + NAME, range(&u));
+    let upper = at(HEAD + NAME, moved);
     let lower = match what.name.as_str() {
         "damage" => at(HEAD + NAME + PLOT + BETWEEN, [-0.04, 1.04]),
-        _ => at(HEAD + NAME + PLOT + BETWEEN, range(&values)),
+        _ => at(HEAD + NAME + PLOT + BETWEEN, shown),
     };
     grid(&mut image, &upper, "displacement", unit);
     if plots == 1 {
@@ -88,10 +124,16 @@ pub fn draw(s: &Snapshot, what: &Shown, options: &PictureOptions) -> Image {
     image
 }
 
-/// Smallest interval around the values with a little room; of some width even if they are all equal.
-fn range(values: &[f64]) -> [f64; 2] {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+/// Lowest and highest finite one.
+fn ends(values: &[f64]) -> [f64; 2] {
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    })
+}
+
+/// An interval with a little room; of some width even if all values are equal.
+fn range([low, high]: [f64; 2]) -> [f64; 2] {
     if low > high {
         return [0.0, 1.0];
     }

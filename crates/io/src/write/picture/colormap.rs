@@ -27,10 +27,13 @@ pub enum Map {
     Diverging,
 }
 
+/// Numbers are of both signs if the lesser end is at least this part of the other.
+const SIGNED: f64 = 0.1;
+
 impl Map {
     /// Numbers of both signs diverge.
     pub fn for_range([low, high]: [f64; 2]) -> Map {
-        match low < 0.0 && high > 0.0 {
+        match (-low).min(high) > SIGNED * (-low).max(high) {
             true => Map::Diverging,
             false => Map::Sequential,
         }

@@ -10,17 +10,44 @@ const FEW: f64 = 0.05;
 
 /// Bounds of the reference positions per axis, `[0, 0]` without points.
 pub fn bounds(s: &Snapshot) -> [[f64; 2]; 3] {
+    bounds_of(s.reference.iter())
+}
+
+/// Bounds of places per axis.
+pub fn bounds_of<'a>(places: impl Iterator<Item = &'a [f64; 3]>) -> [[f64; 2]; 3] {
     let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-    for x in s
-        .reference
-        .iter()
-        .filter(|x| x.iter().all(|c| c.is_finite()))
-    {
+    for x in places.filter(|x| x.iter().all(|c| c.is_finite())) {
         for (b, c) in bounds.iter_mut().zip(x) {
             *b = [b[0].min(*c), b[1].max(*c)];
         }
     }
     bounds.map(|b| if b[0] <= b[1] { b } else { [0.0; 2] })
+}
+
+/// Axes along which a body is thinnest, longest, and the third.
+pub fn principal(bounds: &[[f64; 2]; 3]) -> [usize; 3] {
+    let extent = bounds.map(|[low, high]| high - low);
+    // equal extents differ by round-off and half cells: prefer z up and x to the right
+    let tie = 1.02;
+    let thin = [2, 1, 0].into_iter().reduce(|best, a| {
+        if extent[a] * tie < extent[best] {
+            a
+        } else {
+            best
+        }
+    });
+    let thin = thin.unwrap_or(2);
+    let long = (0..3).filter(|&a| a != thin);
+    let long = long
+        .reduce(|best, a| {
+            if extent[a] > tie * extent[best] {
+                a
+            } else {
+                best
+            }
+        })
+        .unwrap_or(0);
+    [thin, long, 3 - thin - long]
 }
 
 pub fn longest(bounds: &[[f64; 2]; 3]) -> f64 {

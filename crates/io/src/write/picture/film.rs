@@ -13,8 +13,9 @@ use peridyne::observe::{Column, Snapshot, Values};
 use super::super::atomic::{WriteError, temporary_in, write_file};
 use super::arrows::Arrows;
 use super::image::Image;
+use super::rigid::Placed;
 use super::shown::{Shown, range};
-use super::{PictureOptions, draw, invalid};
+use super::{PictureOptions, Sight, draw, invalid};
 
 /// Width of a frame (pixels); narrower than a picture, so that a film stays small.
 const WIDTH: usize = 960;
@@ -34,6 +35,8 @@ pub struct Film {
     /// Lowest and highest value so far.
     ends: [f64; 2],
     frames: Vec<(u64, f64)>,
+    /// Rigid bodies of each.
+    bodies: Vec<Vec<Placed>>,
 }
 
 impl Film {
@@ -49,6 +52,7 @@ impl Film {
             arrows: None,
             ends: [f64::INFINITY, f64::NEG_INFINITY],
             frames: vec![],
+            bodies: vec![],
         })
     }
 
@@ -59,6 +63,7 @@ impl Film {
     pub fn push(
         &mut self,
         s: &Snapshot,
+        bodies: &[Placed],
         (field, component): (&str, Option<&str>),
         arrows: Option<&str>,
     ) -> io::Result<()> {
@@ -67,9 +72,8 @@ impl Film {
         }
         let shown = Shown::of(s, field, component)?;
         let arrows = arrows.map(|field| Arrows::of(s, field)).transpose()?;
-        for value in shown.values.iter().filter(|v| v.is_finite()) {
-            self.ends = [self.ends[0].min(*value), self.ends[1].max(*value)];
-        }
+        let [low, high] = shown.ends;
+        self.ends = [self.ends[0].min(low), self.ends[1].max(high)];
         for (u, value) in s.displacement().iter().zip(&shown.values) {
             for number in [u[0], u[1], u[2], *value] {
                 self.waiting.write_all(&(number as f32).to_le_bytes())?;
@@ -92,6 +96,7 @@ impl Film {
         }
         self.shown = Some(shown);
         self.frames.push((s.step, s.time));
+        self.bodies.push(bodies.to_vec());
         Ok(())
     }
 
@@ -115,11 +120,8 @@ impl Film {
         let (Some(first), Some(shown)) = (self.first, self.shown) else {
             return Ok(());
         };
-        let failed = WriteError::at("draw", path);
         let file = self.waiting.into_inner().map_err(|e| e.into_error());
-        let mut file = file
-            .and_then(|mut f| f.seek(SeekFrom::Start(0)).map(|_| f))
-            .map_err(failed)?;
+        let file = file.map_err(WriteError::at("draw", path))?;
         let ends = options
             .range
             .unwrap_or_else(|| range(field, self.ends[0], self.ends[1]));
@@ -127,24 +129,26 @@ impl Film {
             width: WIDTH,
             ..options.clone()
         };
+        let frames: Vec<Frame> = self.frames.into_iter().zip(self.bodies).collect();
         let shown = shown.between(ends);
         let same = Same {
             first: &first,
             shown: &shown,
             arrows: self.arrows.as_ref(),
         };
-        let step = stride(self.frames.len(), most);
-        let points = first.reference.len() as u64;
-        let bytes = Film::bytes(points, self.arrows.is_some()) as u64;
-        let mut waiting = BufReader::new(&mut file);
-        let frames = self.frames.iter().enumerate().step_by(step);
-        let count = frames.len();
-        let images = frames.map(|(n, frame)| {
-            waiting.seek(SeekFrom::Start(n as u64 * bytes))?;
-            let (snapshot, shown, arrows) = same.next(&mut waiting, *frame)?;
-            Ok(draw(&snapshot, (&shown, arrows.as_ref()), scale, &options))
+        let step = stride(frames.len(), most);
+        let sight = same.sight(&file, &frames, scale);
+        let (sight, mut waiting) = sight.map_err(WriteError::at("draw", path))?;
+        let images = frames.iter().enumerate().filter_map(|(n, (when, bodies))| {
+            let (snapshot, shown, arrows) = match same.next(&mut waiting, *when) {
+                Ok(next) => next,
+                Err(e) => return Some(Err(e)),
+            };
+            let what = (&shown, arrows.as_ref());
+            let drawn = n.is_multiple_of(step);
+            drawn.then(|| Ok(draw(&snapshot, bodies, what, &sight, &options)))
         });
-        write_file(path, |w| animate(w, count, images))
+        write_file(path, |w| animate(w, frames.len().div_ceil(step), images))
     }
 }
 
@@ -159,7 +163,16 @@ pub fn stride(frames: usize, most: Option<usize>) -> usize {
 /// Time for drawing films of a run that was ended from outside: who ends it waits for some seconds only.
 pub const HURRY: Duration = Duration::from_secs(2);
 
-/// An animated PNG of so many images; all get the size of the first: debris makes frames of other heights.
+/// Step and time of a frame, and its rigid bodies.
+type Frame = ((u64, f64), Vec<Placed>);
+
+/// From the first frame that waits.
+fn rewound(mut file: &File) -> io::Result<BufReader<&File>> {
+    file.seek(SeekFrom::Start(0))?;
+    Ok(BufReader::new(file))
+}
+
+/// An animated PNG of so many images; all get the size of the first.
 ///
 /// # Errors
 /// The operating system's, those of the images; there is none.
@@ -217,6 +230,27 @@ struct Same<'a> {
 }
 
 impl Same<'_> {
+    /// Of all frames, so that camera and limits stand still; and the frames again from the first.
+    fn sight<'f>(
+        &self,
+        file: &'f File,
+        frames: &[Frame],
+        scale: f64,
+    ) -> io::Result<(Sight, BufReader<&'f File>)> {
+        let mut waiting = rewound(file)?;
+        let mut all: Option<Sight> = None;
+        for (when, bodies) in frames {
+            let (snapshot, shown, _) = self.next(&mut waiting, *when)?;
+            let own = Sight::of(&snapshot, bodies, &shown, scale);
+            all = Some(match all {
+                Some(sight) => sight.with(&own),
+                None => own,
+            });
+        }
+        let all = all.ok_or_else(|| invalid("a film has frames".into()))?;
+        Ok((all, rewound(file)?))
+    }
+
     /// The next frame of those that wait.
     fn next(
         &self,

@@ -1,28 +1,30 @@
-//! What is drawn over a body: cracks, indenters, supports and loads.
+//! What is drawn over a body: cracks, supports and loads. They are carried by its points.
 
 use peridyne::columns::Dimension;
-use peridyne::condition::rigid::Rigid;
 use peridyne::expression::Expression;
 use peridyne::run::Simulation;
 use peridyne::space::Point;
-use peridyne::space::rigid::RigidShape;
-use peridyne::space::triangles::Triangles;
-use peridyne::spec::{ConditionKind, CrackShape, IndenterMotion, IndenterSpec, Spec};
-use std::collections::HashMap;
+use peridyne::spec::{ConditionKind, ConditionSpec, CrackShape, Spec};
 
+use super::extent::{bounds_of, principal};
 use super::image::{Color, Image};
 use super::view::{Camera, Frame};
 
 const CRACK: Color = [232, 236, 240];
 const EDGE: Color = [34, 38, 46];
-const INDENTER: Color = [90, 98, 110];
 const LOAD: Color = [0, 122, 92];
 const SUPPORT: Color = [46, 84, 158];
 
 /// Arrows or supports along a set.
 const ALONG: usize = 7;
-/// The same along the longest side of one in space.
-const ACROSS: usize = 5;
+/// The same along the longest side of one in space, and along a cut.
+const ACROSS: usize = 3;
+const SECTION: usize = 5;
+/// Points so many spacings from a cut are seen on it.
+const NEAR: f64 = 0.75;
+/// Parts of a line of a crack, and how far around the points are that carry it (spacings).
+const PARTS: usize = 24;
+const AROUND: f64 = 1.6;
 /// Times of a run at which loads are looked at.
 const TIMES: u32 = 32;
 /// Length of an arrow, and size of a support (pixels).
@@ -34,16 +36,17 @@ const SIZE: f64 = 9.0;
 pub struct Marks {
     /// Corners of pre-cracks.
     cracks: Vec<Vec<Point>>,
-    /// Rigid bodies whose place is known at every time, and lines along the axes of their shapes.
-    rigid: Vec<(IndenterSpec, Vec<[Point; 2]>)>,
     supports: Vec<Mark>,
     loads: Vec<Mark>,
+    /// The same where a solid is cut open.
+    section: [Vec<Mark>; 2],
 }
 
-/// Something that is done to a set, at one place of it.
+/// Something that is done to a set, at one of its points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
     pub at: Point,
+    pub point: usize,
     /// Where to; 0 of a support.
     pub toward: Point,
     /// What is done, the set, and the largest of the run.
@@ -54,178 +57,86 @@ pub struct Mark {
 }
 
 impl Marks {
-    /// Of what a spec does to a body until the time `end`. Free indenters are left out: where they go is not known beforehand.
+    /// Of what a spec does to a body until the time `end`.
     pub fn of(spec: &Spec, sim: &mut dyn Simulation, end: f64) -> Marks {
         let mut marks = Marks::default();
         for crack in &spec.precracks {
             marks.cracks.extend(corners(&crack.shape));
         }
-        for indenter in &spec.indenters {
-            if let IndenterMotion::Kinematic(_) = &indenter.motion {
-                let lines = outline(&indenter.shape, spec.dimension);
-                marks.rigid.push((indenter.clone(), lines));
-            }
-        }
         let reference = sim.vectors("reference");
+        let spacing = sim.info().spacing;
         for condition in &spec.conditions {
             let members = sim.members(&condition.set).unwrap_or_default();
-            let points = members.iter().filter_map(|i| reference.get(*i as usize));
-            let places = spread(points.copied().collect(), spec.dimension);
-            for at in places {
-                marks.add(&condition.kind, &condition.set, at, end);
+            let there = members.iter().map(|i| *i as usize);
+            let members: Vec<usize> = there.filter(|i| *i < reference.len()).collect();
+            for point in spread(&reference, &members, spec.dimension) {
+                let mark = made(condition, (point, reference[point]), end);
+                put(&mut marks.supports, &mut marks.loads, mark);
+            }
+            if spec.dimension == 3 {
+                let [supports, loads] = &mut marks.section;
+                for point in along_cut(&reference, &members, spacing) {
+                    let mark = made(condition, (point, reference[point]), end);
+                    put(supports, loads, mark);
+                }
             }
         }
         marks
-    }
-
-    /// Ends of what is drawn of rigid bodies at this time.
-    pub fn rigid_places(&self, time: f64) -> Vec<Point> {
-        let mut all = vec![];
-        for (indenter, lines) in &self.rigid {
-            let mut body = Rigid::<3>::new(indenter);
-            body.place(time);
-            if let RigidShape::Sphere { radius } = indenter.shape {
-                for (a, way) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
-                    let mut x = body.center;
-                    x[a] += way * radius;
-                    all.push(x);
-                }
-            }
-            all.extend(lines.iter().flatten().map(|x| body.in_space(x)));
-        }
-        all
     }
 
     /// What holds, what loads, and the corners of cracks.
     pub fn seen(&self) -> (&[Mark], &[Mark], &[Vec<Point>]) {
         (&self.supports, &self.loads, &self.cracks)
     }
+}
 
-    fn add(&mut self, kind: &ConditionKind, set: &str, at: Point, end: f64) {
-        // a pulse is over in the end, what grows begins with nothing: the largest of the run counts
-        let towards = |v: &[Option<Expression>; 3]| -> Point {
-            let then = |k: u32| -> Point {
-                let t = end * f64::from(k) / f64::from(TIMES);
-                std::array::from_fn(|a| v[a].as_ref().map_or(0.0, |e| e.eval(&at, t)))
-            };
-            let size = |p: &Point| p.iter().map(|c| c * c).sum::<f64>();
-            let all = (0..=TIMES).map(then).filter(|p| size(p).is_finite());
-            all.fold(
-                [0.0; 3],
-                |most, p| if size(&p) > size(&most) { p } else { most },
-            )
-        };
-        let (what, dimension, v) = match kind {
-            ConditionKind::Displacement(v) => ("displacement", Dimension::LENGTH, v),
-            ConditionKind::Velocity(v) => ("velocity", Dimension::VELOCITY, v),
-            ConditionKind::BodyForce(v) => ("body force", Dimension::FORCE_DENSITY, v),
-            ConditionKind::SetForce(v) => ("force density", Dimension::FORCE_DENSITY, v),
-            ConditionKind::Traction { value: v, .. } => ("traction", Dimension::PRESSURE, v),
-            ConditionKind::Damping(_) | ConditionKind::Own(_) => return,
-        };
-        let holds = matches!(
-            kind,
-            ConditionKind::Displacement(_) | ConditionKind::Velocity(_)
-        );
-        let toward = towards(v);
-        let mark = Mark {
-            at,
-            toward,
-            what,
-            set: set.into(),
-            size: toward.iter().map(|c| c * c).sum::<f64>().sqrt(),
-            dimension,
-        };
-        match (mark.size == 0.0, holds) {
-            (false, _) => self.loads.push(mark),
-            (true, true) if !self.supports.iter().any(|s| s.at == at) => self.supports.push(mark),
-            (true, _) => {}
-        }
+fn put(supports: &mut Vec<Mark>, loads: &mut Vec<Mark>, mark: Option<Mark>) {
+    match mark {
+        Some(mark) if mark.size != 0.0 => loads.push(mark),
+        Some(mark) if !supports.iter().any(|s| s.point == mark.point) => supports.push(mark),
+        Some(_) | None => {}
     }
 }
 
-/// Edges of a rigid shape along its own axes; none of a sphere, and of a plane, which has no end.
-fn outline(shape: &RigidShape, dimension: usize) -> Vec<[Point; 2]> {
-    match shape {
-        RigidShape::Sphere { .. } | RigidShape::Plane { .. } => vec![],
-        RigidShape::Box { half } => {
-            let corner = |n: usize| -> Point {
-                std::array::from_fn(|a| match (n >> a & 1, a < dimension) {
-                    (_, false) => 0.0,
-                    (1, _) => half[a],
-                    _ => -half[a],
-                })
-            };
-            let edge = |n: usize, a: usize| [corner(n), corner(n | 1 << a)];
-            let all = (0..1 << dimension).flat_map(|n: usize| (0..dimension).map(move |a| (n, a)));
-            all.filter(|(n, a)| n >> a & 1 == 0)
-                .map(|(n, a)| edge(n, a))
-                .collect()
-        }
-        RigidShape::Cylinder { radius, half, axis } => rims(*radius, *half, axis),
-        RigidShape::Solid(solid) => creases(solid.triangles()),
-    }
-}
-
-/// Both ends of a cylinder, and lines between them.
-fn rims(radius: f64, half: f64, axis: &Point) -> Vec<[Point; 2]> {
-    const SIDES: usize = 48;
-    let least = (1..3).fold(0, |m, a| if axis[a].abs() < axis[m].abs() { a } else { m });
-    let mut e = [0.0; 3];
-    e[least] = 1.0;
-    let p = unit(&cross(axis, &e));
-    let q = cross(axis, &p);
-    let at = |n: usize, end: f64| -> Point {
-        let (sine, cosine) = (std::f64::consts::TAU * n as f64 / SIDES as f64).sin_cos();
-        std::array::from_fn(|a| radius * (cosine * p[a] + sine * q[a]) + end * axis[a])
+/// What a condition does at a point; `None`: nothing that is marked.
+fn made(condition: &ConditionSpec, (point, at): (usize, Point), end: f64) -> Option<Mark> {
+    // a pulse is over in the end, what grows begins with nothing: the largest of the run counts
+    let towards = |v: &[Option<Expression>; 3]| -> Point {
+        let then = |k: u32| -> Point {
+            let t = end * f64::from(k) / f64::from(TIMES);
+            std::array::from_fn(|a| v[a].as_ref().map_or(0.0, |e| e.eval(&at, t)))
+        };
+        let size = |p: &Point| p.iter().map(|c| c * c).sum::<f64>();
+        let all = (0..=TIMES).map(then).filter(|p| size(p).is_finite());
+        all.fold(
+            [0.0; 3],
+            |most, p| if size(&p) > size(&most) { p } else { most },
+        )
     };
-    let around = |end: f64| (0..SIDES).map(move |n| (n, end));
-    let mut lines: Vec<[Point; 2]> = { around(-half).chain(around(half)) }
-        .map(|(n, end)| [at(n, end), at(n + 1, end)])
-        .collect();
-    lines.extend(
-        (0..SIDES)
-            .step_by(SIDES / 4)
-            .map(|n| [at(n, -half), at(n, half)]),
+    let (what, dimension, v) = match &condition.kind {
+        ConditionKind::Displacement(v) => ("displacement", Dimension::LENGTH, v),
+        ConditionKind::Velocity(v) => ("velocity", Dimension::VELOCITY, v),
+        ConditionKind::BodyForce(v) => ("body force", Dimension::FORCE_DENSITY, v),
+        ConditionKind::SetForce(v) => ("force density", Dimension::FORCE_DENSITY, v),
+        ConditionKind::Traction { value: v, .. } => ("traction", Dimension::PRESSURE, v),
+        ConditionKind::Damping(_) | ConditionKind::Own(_) => return None,
+    };
+    let holds = matches!(
+        condition.kind,
+        ConditionKind::Displacement(_) | ConditionKind::Velocity(_)
     );
-    lines
-}
-
-/// Edges between triangles that meet at more than 30°.
-fn creases(triangles: &Triangles) -> Vec<[Point; 2]> {
-    let normal = |n: usize| {
-        let [a, b, c] = triangles.corners(n);
-        let way = |x: &Point| -> Point { std::array::from_fn(|k| x[k] - a[k]) };
-        unit(&cross(&way(&b), &way(&c)))
+    let toward = towards(v);
+    let mark = Mark {
+        at,
+        point,
+        toward,
+        what,
+        set: condition.set.clone(),
+        size: toward.iter().map(|c| c * c).sum::<f64>().sqrt(),
+        dimension,
     };
-    let mut met: HashMap<(u32, u32), usize> = HashMap::new();
-    let mut lines = vec![];
-    for (n, face) in triangles.face.iter().enumerate() {
-        for k in 0..3 {
-            let (from, to) = (face[k], face[(k + 1) % 3]);
-            let Some(other) = met.insert((from.min(to), from.max(to)), n) else {
-                continue;
-            };
-            let (p, q) = (normal(n), normal(other));
-            if (0..3).map(|a| p[a] * q[a]).sum::<f64>() < 30f64.to_radians().cos() {
-                lines.push([from, to].map(|c| triangles.corner[c as usize]));
-            }
-        }
-    }
-    lines
-}
-
-fn cross(a: &Point, b: &Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn unit(a: &Point) -> Point {
-    let size = a.iter().map(|c| c * c).sum::<f64>().sqrt();
-    a.map(|c| c / size)
+    // no force is none, and a velocity of 0 holds
+    (holds || mark.size != 0.0).then_some(mark)
 }
 
 /// Corners of a crack that has some.
@@ -243,57 +154,127 @@ fn corners(shape: &CrackShape) -> Option<Vec<Point>> {
     }
 }
 
-/// A few places along the longest sides of a set, across it in the middle.
-fn spread(points: Vec<Point>, dimension: usize) -> Vec<Point> {
-    if points.is_empty() || dimension < 2 {
+/// A few points of a set: along its longest side, across it in the middle; of one that bends around its middle, far from each other.
+fn spread(reference: &[Point], members: &[usize], dimension: usize) -> Vec<usize> {
+    if members.is_empty() || dimension < 2 {
         return vec![];
     }
-    let bound = |pick: fn(f64, f64) -> f64, start: f64| -> Point {
-        std::array::from_fn(|a| points.iter().map(|x| x[a]).fold(start, pick))
-    };
-    let (low, high) = (
-        bound(f64::min, f64::INFINITY),
-        bound(f64::max, f64::NEG_INFINITY),
-    );
-    if dimension == 3 {
-        return over(low, high);
-    }
-    let long = if high[0] - low[0] >= high[1] - low[1] {
-        0
-    } else {
-        1
-    };
-    let middle: Point = std::array::from_fn(|a| 0.5 * (low[a] + high[a]));
-    let count = if high[long] > low[long] { ALONG } else { 1 };
-    let place = |n: usize| {
-        let mut at = middle;
-        if count > 1 {
-            let part = (n as f64 + 0.5) / count as f64;
-            at[long] = low[long] + part * (high[long] - low[long]);
+    let bounds = bounds_of(members.iter().map(|i| &reference[*i]));
+    let counts = counts(&bounds, dimension);
+    let step = |a: usize| (bounds[a][1] - bounds[a][0]) / counts[a] as f64;
+    let place = |a: usize, n: usize| bounds[a][0] + (n as f64 + 0.5) * step(a);
+    let mut chosen = vec![];
+    let mut off = false;
+    for n in 0..counts.iter().product() {
+        let (i, j, k) = (
+            n % counts[0],
+            n / counts[0] % counts[1],
+            n / counts[0] / counts[1],
+        );
+        let at = [place(0, i), place(1, j), place(2, k)];
+        let point = nearest(reference, members, &at);
+        let far = |a: usize| counts[a] > 1 && (reference[point][a] - at[a]).abs() > 0.5 * step(a);
+        off |= (0..3).any(far);
+        if !chosen.contains(&point) {
+            chosen.push(point);
         }
-        at
-    };
-    (0..count).map(place).collect()
+    }
+    match off {
+        false => chosen,
+        true => apart(reference, members, ALONG),
+    }
 }
 
-/// Places over the two longest sides of a box, in the middle of the third.
-fn over(low: Point, high: Point) -> Vec<Point> {
-    let extent = |a: usize| high[a] - low[a];
-    let longest = (0..3).map(extent).fold(0.0, f64::max);
-    let thin = (0..3).min_by(|a, b| extent(*a).total_cmp(&extent(*b)));
-    let thin = thin.unwrap_or(2);
-    let count = |a: usize| match a == thin || !(longest > 0.0) {
-        true => 1,
-        false => ((ACROSS as f64 * extent(a) / longest).round() as usize).max(1),
-    };
-    let at = |a: usize, n: usize| low[a] + (n as f64 + 0.5) / count(a) as f64 * extent(a);
-    let mut all = vec![];
-    for i in 0..count(0) {
-        for j in 0..count(1) {
-            all.extend((0..count(2)).map(|k| [at(0, i), at(1, j), at(2, k)]));
+/// How many marks along each axis.
+fn counts(bounds: &[[f64; 2]; 3], dimension: usize) -> [usize; 3] {
+    let extent = bounds.map(|[low, high]| high - low);
+    let longest = extent.iter().copied().fold(0.0, f64::max);
+    if !(longest > 0.0) {
+        return [1; 3];
+    }
+    let [thin, long, _] = principal(bounds);
+    std::array::from_fn(|a| match dimension {
+        2 if a == (if extent[0] >= extent[1] { 0 } else { 1 }) => ALONG,
+        2 => 1,
+        _ if a == long => ACROSS,
+        _ if a == thin => 1,
+        _ => ((ACROSS as f64 * extent[a] / longest).round() as usize).max(1),
+    })
+}
+
+fn square(a: &Point, b: &Point) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum()
+}
+
+fn nearest(reference: &[Point], members: &[usize], at: &Point) -> usize {
+    let far = |i: &&usize| square(&reference[**i], at);
+    let all = members.iter().min_by(|i, j| far(i).total_cmp(&far(j)));
+    all.copied().unwrap_or(0)
+}
+
+/// So many points of a set, each the one that is furthest from those before.
+fn apart(reference: &[Point], members: &[usize], count: usize) -> Vec<usize> {
+    let mut chosen = vec![members[0]];
+    let mut far: Vec<f64> = vec![f64::INFINITY; members.len()];
+    while chosen.len() < count.min(members.len()) {
+        let last = reference[chosen[chosen.len() - 1]];
+        for (far, i) in far.iter_mut().zip(members) {
+            *far = far.min(square(&reference[*i], &last));
+        }
+        let most = (0..far.len()).max_by(|i, j| far[*i].total_cmp(&far[*j]));
+        let Some(most) = most.filter(|n| far[*n] > 0.0) else {
+            break;
+        };
+        chosen.push(members[most]);
+    }
+    chosen
+}
+
+/// Points of a set along the cut through the middle of a body.
+fn along_cut(reference: &[Point], members: &[usize], spacing: f64) -> Vec<usize> {
+    let bounds = bounds_of(reference.iter());
+    let [_, long, deep] = principal(&bounds);
+    let middle = 0.5 * (bounds[deep][0] + bounds[deep][1]);
+    let on = |i: &usize| (reference[*i][deep] - middle).abs() < NEAR * spacing;
+    let on: Vec<usize> = members.iter().copied().filter(on).collect();
+    if on.is_empty() {
+        return vec![];
+    }
+    let own = bounds_of(on.iter().map(|i| &reference[*i]));
+    let mut chosen = vec![];
+    for n in 0..SECTION {
+        let mut at = own.map(|b| 0.5 * (b[0] + b[1]));
+        let [low, high] = own[long];
+        at[long] = low + (n as f64 + 0.5) / SECTION as f64 * (high - low);
+        let point = nearest(reference, &on, &at);
+        if !chosen.contains(&point) {
+            chosen.push(point);
         }
     }
-    all
+    chosen
+}
+
+/// The line of a crack, carried by the points around it: the mean of both of its sides.
+fn carried(ends: &[Point], reference: &[Point], moved: &[Point], reach: f64) -> Vec<Point> {
+    let way = |x: &Point| -> Point {
+        let mut sum = [0.0; 4];
+        for (r, m) in reference.iter().zip(moved) {
+            if square(r, x) < reach * reach && m.iter().all(|c| c.is_finite()) {
+                (0..3).for_each(|a| sum[a] += m[a] - r[a]);
+                sum[3] += 1.0;
+            }
+        }
+        match sum[3] > 0.0 {
+            true => std::array::from_fn(|a| x[a] + sum[a] / sum[3]),
+            // beyond the body there is none
+            false => [f64::NAN; 3],
+        }
+    };
+    let part = |n: usize| -> Point {
+        let part = n as f64 / PARTS as f64;
+        std::array::from_fn(|a| ends[0][a] + part * (ends[1][a] - ends[0][a]))
+    };
+    (0..=PARTS).map(|n| way(&part(n))).collect()
 }
 
 /// Where on the image a view lies.
@@ -305,8 +286,9 @@ pub struct View<'a> {
     pub scale: f64,
     pub camera: &'a Camera,
     pub frame: &'a Frame,
-    /// Is it a plate?
+    /// Is it a plate? If not, is it cut open?
     pub flat: bool,
+    pub open: bool,
 }
 
 impl View<'_> {
@@ -319,51 +301,45 @@ impl View<'_> {
     }
 }
 
-/// Draws over a view what there is at this time.
-pub fn draw(image: &mut Image, view: &View, marks: &Marks, time: f64) {
-    for (indenter, lines) in &marks.rigid {
-        let mut body = Rigid::<3>::new(indenter);
-        body.place(time);
-        if let RigidShape::Sphere { radius } = indenter.shape {
-            circle(
-                image,
-                view.place(body.center),
-                radius * view.scale,
-                INDENTER,
-            );
-        }
-        for line in lines {
-            let [from, to] = line.each_ref().map(|x| view.place(body.in_space(x)));
-            image.line(from, to, 2.5, INDENTER);
-        }
-    }
-    if !view.flat {
-        return;
-    }
-    for crack in &marks.cracks {
-        for ends in crack.windows(2) {
-            let (from, to) = (view.place(ends[0]), view.place(ends[1]));
-            image.line(from, to, 4.0, EDGE);
-            image.line(from, to, 2.0, CRACK);
+/// Draws over a view of points that were at `reference` and are at `moved`; on a cut what is seen there, of a solid as a whole nothing.
+pub fn draw(
+    image: &mut Image,
+    view: &View,
+    marks: &Marks,
+    (reference, moved): (&[Point], &[Point]),
+) {
+    let (supports, loads) = match (view.flat, view.open) {
+        (true, _) => (&marks.supports, &marks.loads),
+        (false, true) => (&marks.section[0], &marks.section[1]),
+        (false, false) => return,
+    };
+    let cracks = marks.cracks.iter().filter(|_| view.flat);
+    for ends in cracks.flat_map(|c| c.windows(2)) {
+        let line = carried(ends, reference, moved, AROUND * view.step);
+        for (width, color) in [(4.0, EDGE), (2.0, CRACK)] {
+            for part in line.windows(2) {
+                image.line(view.place(part[0]), view.place(part[1]), width, color);
+            }
         }
     }
-    for mark in &marks.supports {
-        let [x, y] = view.place(mark.at);
+    let place = |mark: &Mark| moved.get(mark.point).map(|x| view.place(*x));
+    for [x, y] in supports.iter().filter_map(place) {
         let (l, r, b) = (
             [x - SIZE, y + 1.6 * SIZE],
             [x + SIZE, y + 1.6 * SIZE],
             [x, y],
         );
-        for (from, to) in [(b, l), (l, r), (r, b)] {
-            image.line(from, to, 5.0, [255; 3]);
-            image.line(from, to, 3.0, SUPPORT);
+        for (width, color) in [(5.5, [255; 3]), (3.0, SUPPORT)] {
+            for (from, to) in [(b, l), (l, r), (r, b)] {
+                image.line(from, to, width, color);
+            }
         }
     }
-    for mark in &marks.loads {
-        let from = view.place(mark.at);
+    for mark in loads {
+        let Some(from) = place(mark) else { continue };
         let toward = view.camera.project(mark.toward);
         let length = toward[0].hypot(toward[1]);
-        if length > 0.0 && length.is_finite() {
+        if length > 1e-6 * mark.size && length.is_finite() {
             arrow(image, from, [toward[0] / length, -toward[1] / length]);
         }
     }
@@ -384,11 +360,80 @@ fn arrow(image: &mut Image, from: [f64; 2], d: [f64; 2]) {
     }
 }
 
-fn circle(image: &mut Image, center: [f64; 2], radius: f64, color: Color) {
-    let sides = (radius.abs().ceil() as usize).clamp(24, 720);
-    let at = |n: usize| {
-        let (sine, cosine) = (std::f64::consts::TAU * n as f64 / sides as f64).sin_cos();
-        [center[0] + radius * cosine, center[1] + radius * sine]
-    };
-    (0..sides).for_each(|n| image.line(at(n), at(n + 1), 2.5, color));
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_points_of_their_set_and_few() {
+        let all: Vec<Point> = (0..400)
+            .map(|n| [f64::from(n % 20), f64::from(n / 20), 0.0])
+            .collect();
+        let of = |keep: &dyn Fn(&Point) -> bool| -> Vec<usize> {
+            (0..all.len()).filter(|i| keep(&all[*i])).collect()
+        };
+        // a band, a frame around an empty middle, a single point
+        let round = |x: &Point| x[0] < 1.0 || x[0] > 18.0 || x[1] < 1.0 || x[1] > 18.0;
+        let sets = [
+            of(&|x| x[1] < 2.5),
+            of(&round),
+            of(&|x| x[0] == 7.0 && x[1] == 3.0),
+        ];
+        for (set, count) in sets.iter().zip([ALONG, ALONG, 1]) {
+            let chosen = spread(&all, set, 2);
+            assert_eq!(chosen.len(), count);
+            assert!(chosen.iter().all(|i| set.contains(i)));
+        }
+        // of the frame they are on all four sides
+        let chosen = spread(&all, &sets[1], 2);
+        for side in [
+            of(&|x| x[0] < 1.0),
+            of(&|x| x[0] > 18.0),
+            of(&|x| x[1] < 1.0),
+            of(&|x| x[1] > 18.0),
+        ] {
+            assert!(chosen.iter().any(|i| side.contains(i)));
+        }
+        // of a solid at most nine, and some on the cut
+        let solid: Vec<Point> = (0..1000)
+            .map(|n| {
+                [
+                    f64::from(n % 10),
+                    f64::from(n / 10 % 10),
+                    f64::from(n / 100),
+                ]
+            })
+            .collect();
+        let floor: Vec<usize> = (0..100).collect();
+        assert!(spread(&solid, &floor, 3).len() <= 9);
+        let cut = along_cut(&solid, &floor, 1.0);
+        assert_eq!(cut.len(), SECTION);
+        assert!(cut.iter().all(|i| solid[*i][2] == 0.0));
+    }
+
+    #[test]
+    fn a_crack_goes_with_its_points() {
+        let reference: Vec<Point> = (0..100)
+            .map(|n| [f64::from(n % 10), f64::from(n / 10), 0.0])
+            .collect();
+        // the halves above and below come apart, and all of it moves to the right
+        let moved: Vec<Point> = { reference.iter() }
+            .map(|x| [x[0] + 3.0, x[1] + if x[1] > 4.5 { 0.5 } else { -0.5 }, 0.0])
+            .collect();
+        let line = carried(
+            &[[-9.0, 4.5, 0.0], [4.0, 4.5, 0.0]],
+            &reference,
+            &moved,
+            1.6,
+        );
+        let there: Vec<&Point> = line.iter().filter(|x| x[0].is_finite()).collect();
+        // what lies outside is not drawn
+        assert!(there.len() < line.len() && there.len() > 4);
+        assert!(
+            there
+                .iter()
+                .all(|x| (x[1] - 4.5).abs() < 1e-12 && x[0] > 1.0)
+        );
+        assert!((there[there.len() - 1][0] - 7.0).abs() < 1e-12);
+    }
 }

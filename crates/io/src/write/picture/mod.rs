@@ -1,19 +1,24 @@
 //! A PNG of a field: a body from above and cut open, a plate, or a chain as curves; and films of them.
 //!
-//! Files: `shown` says which numbers, `body` lays out the views of 2-D and 3-D bodies, `view` draws one of them, `marks` what is drawn
-//! over it, `arrows` a vector field, `chain` plots 1-D; `image` is what they draw on; `film` keeps frames.
+//! Files: `shown` says which numbers, `body` lays out the views of 2-D and 3-D bodies, `view` draws one of them, its points as `cells`,
+//! `rigid` is what rigid bodies look like and `solid` draws them, `marks` and `arrows` are drawn over it, `foot` below; `chain` plots 1-D;
+//! `image` is what they draw on; `film` keeps frames.
 
 pub mod arrows;
 mod body;
+mod cells;
 mod chain;
 pub mod colormap;
 mod extent;
 pub mod film;
+mod foot;
 pub mod image;
 pub(super) mod label;
 pub mod marks;
+pub mod rigid;
 pub mod shown;
 mod sizes;
+mod solid;
 mod view;
 
 use std::path::Path;
@@ -23,6 +28,7 @@ use peridyne::observe::Snapshot;
 use self::arrows::Arrows;
 use self::image::{Align, Font, GREY, INK, Image};
 use self::marks::Marks;
+use self::rigid::Placed;
 use self::shown::{About, Shown};
 use super::atomic::{WriteError, write_file};
 use super::fields::{fields, invalid};
@@ -141,11 +147,16 @@ impl PictureOptions {
     }
 }
 
-/// Draws a field of a snapshot; positions that are not finite are left out.
+/// Draws a field of a snapshot and the rigid bodies beside it; positions that are not finite are left out.
 ///
 /// # Errors
 /// `InvalidInput` for arrays of unequal lengths, or without the field.
-pub fn picture(s: &Snapshot, options: &PictureOptions, about: About) -> std::io::Result<Image> {
+pub fn picture(
+    s: &Snapshot,
+    bodies: &[Placed],
+    options: &PictureOptions,
+    about: About,
+) -> std::io::Result<Image> {
     fields(s)?;
     let shown = Shown::of(s, options.field(about), options.component.as_deref())?;
     let shown = match options.range {
@@ -155,13 +166,48 @@ pub fn picture(s: &Snapshot, options: &PictureOptions, about: About) -> std::io:
     let arrows = options.arrows.as_deref();
     let arrows = arrows.map(|field| Arrows::of(s, field)).transpose()?;
     let scale = options.scale_of(s, about);
-    Ok(draw(s, (&shown, arrows.as_ref()), scale, options))
+    let sight = Sight::of(s, bodies, &shown, scale);
+    Ok(draw(s, bodies, (&shown, arrows.as_ref()), &sight, options))
+}
+
+/// What does not change from frame to frame.
+pub(super) struct Sight {
+    /// Displacements are drawn so many times as large.
+    scale: f64,
+    of: Seen,
+}
+
+enum Seen {
+    Line(chain::Limits),
+    Body(body::Sight),
+}
+
+impl Sight {
+    /// Of one frame.
+    fn of(s: &Snapshot, bodies: &[Placed], shown: &Shown, scale: f64) -> Sight {
+        let of = match s.dimension {
+            1 => Seen::Line(chain::Limits::of(s, shown)),
+            _ => Seen::Body(body::Sight::of(s, bodies, scale)),
+        };
+        Sight { scale, of }
+    }
+
+    /// What shows both.
+    fn with(self, other: &Sight) -> Sight {
+        let of = match (self.of, &other.of) {
+            (Seen::Line(own), Seen::Line(other)) => Seen::Line(own.with(other)),
+            (Seen::Body(own), Seen::Body(other)) => Seen::Body(own.with(other)),
+            (own, _) => own,
+        };
+        Sight { of, ..self }
+    }
 }
 
 fn draw(
     s: &Snapshot,
-    (shown, arrows): (&Shown, Option<&Arrows>),
-    scale: f64,
+    bodies: &[Placed],
+    what: (&Shown, Option<&Arrows>),
+    sight: &Sight,
     options: &PictureOptions,
 ) -> Image {
     // narrower than this, title and bars would overlap
@@ -169,9 +215,9 @@ fn draw(
         width: options.width.clamp(800, 8192),
         ..options.clone()
     };
-    match s.dimension {
-        1 => chain::draw(s, shown, &options),
-        _ => body::draw(s, (shown, arrows), scale, &options),
+    match &sight.of {
+        Seen::Line(limits) => chain::draw(s, what.0, limits, &options),
+        Seen::Body(seen) => body::draw(s, bodies, what, sight.scale, seen, &options),
     }
 }
 
@@ -182,10 +228,11 @@ fn draw(
 pub fn write(
     path: &Path,
     s: &Snapshot,
+    bodies: &[Placed],
     options: &PictureOptions,
     about: About,
 ) -> Result<(), WriteError> {
-    let image = picture(s, options, about).map_err(WriteError::at("draw", path))?;
+    let image = picture(s, bodies, options, about).map_err(WriteError::at("draw", path))?;
     write_file(path, |w| image.write_png(w))
 }
 

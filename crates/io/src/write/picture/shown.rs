@@ -48,6 +48,8 @@ pub struct Shown {
     pub name: String,
     pub dimension: Dimension,
     pub values: Vec<f64>,
+    /// Lowest and highest of these, but for points that have flown away.
+    pub ends: [f64; 2],
     /// What the ends of the colours mean.
     pub range: [f64; 2],
     pub map: Map,
@@ -93,6 +95,7 @@ impl Shown {
             name,
             dimension: column.declaration.dimension,
             map: Map::for_range(range),
+            ends: [low, high],
             values,
             range,
         })
@@ -105,24 +108,29 @@ impl Shown {
         self
     }
 
-    /// Where a value lies between the ends, 0 to 1; what is no number lies at the lower one.
+    /// Where a value lies in the map, 0 to 1: between the ends; of a diverging map 0 in its middle, as far on either side. What is no number
+    /// lies at the lower end.
     pub fn part(&self, value: f64) -> f64 {
-        let part = (value - self.range[0]) / (self.range[1] - self.range[0]);
-        match part.is_nan() {
-            true => 0.0,
-            false => part.clamp(0.0, 1.0),
+        let [low, high] = self.range;
+        if value.is_nan() {
+            return self.part(low);
+        }
+        let value = value.clamp(low, high);
+        match self.map {
+            Map::Sequential => (value - low) / (high - low),
+            Map::Diverging => 0.5 + 0.5 * value / low.abs().max(high),
         }
     }
 }
 
-/// Ends of the colours: of damage always 0 and 1, of numbers of both signs alike, of others from 0 where that is near.
+/// Ends of the colours: of damage always 0 and 1, of others from 0 where that is near.
 pub fn range(field: &str, low: f64, high: f64) -> [f64; 2] {
     if field == "damage" || low > high {
         return [0.0, 1.0];
     }
     let size = low.abs().max(high.abs());
     match (low < 0.0 && high > 0.0, low == high) {
-        (true, _) => [-size, size],
+        (true, _) => [low, high],
         (false, true) if size == 0.0 => [0.0, 1.0],
         (false, _) if high > 0.0 && low < 0.5 * high => [0.0, high],
         (false, _) if high <= 0.0 && high > 0.5 * low => [low, 0.0],
@@ -181,7 +189,7 @@ mod tests {
     #[test]
     fn ends_of_colours() {
         assert_eq!(range("damage", 0.2, 0.3), [0.0, 1.0]);
-        assert_eq!(range("stress", -1.0, 3.0), [-3.0, 3.0]);
+        assert_eq!(range("stress", -1.0, 3.0), [-1.0, 3.0]);
         assert_eq!(range("velocity", 0.1, 3.0), [0.0, 3.0]);
         assert_eq!(range("stress", -3.0, -0.1), [-3.0, 0.0]);
         assert_eq!(range("density", 9.0, 10.0), [9.0, 10.0]);
@@ -191,6 +199,35 @@ mod tests {
             range("nothing", f64::INFINITY, f64::NEG_INFINITY),
             [0.0, 1.0]
         );
+    }
+
+    #[test]
+    fn zero_is_neutral_and_no_colour_stands_for_values_that_are_not_there() {
+        let of = |range: [f64; 2]| {
+            let values = Values::Scalars(range.to_vec());
+            let still = Values::Vectors(vec![[0.0; 3]; 2]);
+            let places = vec![[0.0; 3], [1.0, 0.0, 0.0]];
+            let columns = vec![("displacement", still), ("stress", values)];
+            Shown::of(&of_columns(places, columns), "stress", None).unwrap()
+        };
+        // both signs: the key ends where the values do, 0 is grey, the same size has the same depth of colour
+        for range in [[-1.0, 3.0], [-4.0, 1.0], [-2.0, 2.0]] {
+            let shown = of(range);
+            assert_eq!((shown.map, shown.range), (Map::Diverging, range));
+            assert_eq!(shown.part(0.0), 0.5);
+            assert_eq!(shown.part(0.7) - 0.5, 0.5 - shown.part(-0.7));
+            let most = range.map(|v| (shown.part(v) - 0.5).abs());
+            assert_eq!(most[0].max(most[1]), 0.5);
+            assert_eq!(shown.part(9.0), shown.part(range[1]));
+        }
+        // of one sign, or nearly: all of the colours
+        for range in [[0.0, 5.0], [-0.2, 5.0], [-5.0, 0.3]] {
+            let shown = of(range);
+            assert_eq!(shown.map, Map::Sequential);
+            assert_eq!(range.map(|v| shown.part(v)), [0.0, 1.0]);
+        }
+        let told = of([-1.0, 1.0]).between([-1.0, 3.0]);
+        assert_eq!((told.part(0.0), told.part(3.0)), (0.5, 1.0));
     }
 
     #[test]

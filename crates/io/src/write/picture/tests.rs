@@ -31,7 +31,7 @@ fn damaged(s: Snapshot, at: impl Fn(&[f64; 3]) -> bool) -> Snapshot {
 }
 
 fn draw(s: &Snapshot) -> Image {
-    picture(s, &PictureOptions::default(), About::Fracture).unwrap()
+    picture(s, &[], &PictureOptions::default(), About::Fracture).unwrap()
 }
 
 fn number_of(image: &Image, color: Color) -> usize {
@@ -185,7 +185,7 @@ fn a_chain_is_two_curves() {
 #[test]
 fn damage_must_be_there() {
     let s = with(block([3, 3, 1], 2), "damage", Values::Scalars(vec![]));
-    let text = picture(&s, &PictureOptions::default(), About::Fracture)
+    let text = picture(&s, &[], &PictureOptions::default(), About::Fracture)
         .unwrap_err()
         .to_string();
     assert!(text.contains("no damage"), "{text}");
@@ -201,14 +201,14 @@ fn the_file_is_a_png_of_the_picture() {
         width: 900,
         ..PictureOptions::default()
     };
-    write(&path, &s, &options, About::Fracture).unwrap();
+    write(&path, &s, &[], &options, About::Fracture).unwrap();
     let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut bytes).unwrap();
     assert_eq!(
         bytes,
-        picture(&s, &options, About::Fracture)
+        picture(&s, &[], &options, About::Fracture)
             .unwrap()
             .pixels
             .as_flattened()
@@ -284,4 +284,193 @@ fn a_point_that_flew_away_sets_neither_colours_nor_limits() {
     // a body in pieces is what there is to see
     let crushed = moved(&|i| if i % 2 == 0 { 3.5 } else { 0.0 });
     assert_eq!((count(&crushed), end(&crushed)), (0, 3.51));
+}
+
+fn ball(radius: f64, center: [f64; 3]) -> Placed {
+    Placed::new(rigid::Form::Ball(radius), center)
+}
+
+/// Rows and columns (fractions of a picture between head and foot) of pixels of steel: grey, and no part of a map.
+fn steel(image: &Image) -> Vec<[f64; 2]> {
+    let grey = |p: &Color| {
+        let [r, g, b] = p.map(f64::from);
+        (70.0..235.0).contains(&r)
+            && (1.0..1.1).contains(&(g / r))
+            && (1.03..1.2).contains(&(b / r))
+    };
+    let views = views(image);
+    let all = (0..views.pixels.len()).filter(|i| grey(&views.pixels[*i]));
+    all.map(|i| {
+        let [row, column] = [i / views.width, i % views.width];
+        [
+            row as f64 / views.height as f64,
+            column as f64 / views.width as f64,
+        ]
+    })
+    .collect()
+}
+
+fn seen(s: &Snapshot, bodies: &[Placed]) -> Vec<[f64; 2]> {
+    steel(&picture(s, bodies, &PictureOptions::default(), About::Fracture).unwrap())
+}
+
+#[test]
+fn rigid_bodies_are_drawn_where_they_are_and_shaded() {
+    let plate = block([40, 20, 1], 2);
+    assert_eq!(seen(&plate, &[]).len(), 0);
+    let middle =
+        |all: &[[f64; 2]], k: usize| all.iter().map(|p| p[k]).sum::<f64>() / all.len() as f64;
+    let [left, right] = [6.0, 33.0].map(|x| seen(&plate, &[ball(3.0, [x, 23.0, 0.0])]));
+    assert!(
+        left.len() > 2000 && right.len() > 2000,
+        "{} {}",
+        left.len(),
+        right.len()
+    );
+    assert!(middle(&left, 1) < 0.3 && middle(&right, 1) > 0.7);
+    // a block, turned by 45°, is as high as its diagonal
+    let half = [4.0, 4.0, 1.0];
+    let square = rigid::Form::of(&peridyne::space::rigid::RigidShape::Box { half }, 2);
+    let c = 0.5f64.sqrt();
+    let turned = Placed {
+        axes: [[c, -c, 0.0], [c, c, 0.0], [0.0, 0.0, 1.0]],
+        ..Placed::new(square.clone(), [20.0, 9.0, 0.0])
+    };
+    let width = |all: &[[f64; 2]]| {
+        let ends = all
+            .iter()
+            .map(|p| p[1])
+            .fold([1.0, 0.0], |[l, h]: [f64; 2], x| [l.min(x), h.max(x)]);
+        ends[1] - ends[0]
+    };
+    let straight = seen(&plate, &[Placed::new(square, [20.0, 9.0, 0.0])]);
+    let ratio = width(&seen(&plate, &[turned])) / width(&straight);
+    assert!((ratio / 2f64.sqrt() - 1.0).abs() < 0.03, "{ratio}");
+    // in space light falls from above left, and the cut shows the inside
+    let solid = block([30, 30, 8], 3);
+    let image = picture(
+        &solid,
+        &[ball(6.0, [14.5, 14.5, 14.0])],
+        &PictureOptions::default(),
+        About::Fracture,
+    )
+    .unwrap();
+    let greys: std::collections::HashSet<Color> = image
+        .pixels
+        .iter()
+        .copied()
+        .filter(|p| p[0] < p[2] && p[2] - p[0] < 30 && p[0] > 80)
+        .collect();
+    assert!(greys.len() > 30, "{}", greys.len());
+    assert!(steel(&image).iter().any(|p| p[1] > 0.5));
+}
+
+#[test]
+fn a_solid_in_front_hides_and_one_behind_does_not_show() {
+    let solid = block([30, 30, 8], 3);
+    let above = seen(&solid, &[ball(4.0, [14.5, 14.5, 14.0])]);
+    let inside = seen(&solid, &[ball(2.0, [14.5, 22.0, 3.5])]);
+    assert!(above.len() > 1000, "{}", above.len());
+    assert_eq!(inside.len(), 0);
+    // one that the cut goes through is seen on it
+    let cut = seen(&solid, &[ball(3.0, [14.5, 14.5, 3.5])]);
+    assert!(
+        cut.len() > 500 && cut.iter().all(|p| p[1] > 0.5),
+        "{}",
+        cut.len()
+    );
+}
+
+/// Frames of an animated PNG.
+fn frames(path: &Path) -> Vec<Image> {
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let count = reader.info().animation_control().unwrap().num_frames;
+    let (width, height) = reader.info().size();
+    (0..count)
+        .map(|_| {
+            let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut bytes).unwrap();
+            let pixels = bytes.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
+            Image {
+                width: width as usize,
+                height: height as usize,
+                pixels,
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn in_a_film_key_scale_and_camera_stand_still_and_bodies_move() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("film.png");
+    let mut film = film::Film::new().unwrap();
+    // a plate grows and its values with it; a ball comes down beside it
+    for n in 0..4u64 {
+        let s = block([30, 12, 1], 2);
+        let by = 0.1 * n as f64;
+        let u = s.reference.iter().map(|x| [by * x[0], 0.0, 0.0]).collect();
+        let values = s.reference.iter().map(|x| by * x[0]).collect();
+        let s = with(
+            with(s, "displacement", Values::Vectors(u)),
+            "damage",
+            Values::Scalars(values),
+        );
+        let mut s = Snapshot {
+            step: n,
+            time: n as f64,
+            ..s
+        };
+        for column in &mut s.columns {
+            if column.name() == "damage" {
+                column.declaration.name = "energy_density".into();
+            }
+        }
+        let bodies = [ball(2.0, [2.0, 20.0 - 2.0 * n as f64, 0.0])];
+        film.push(&s, &bodies, ("energy_density", None), None)
+            .unwrap();
+    }
+    film.finish(&path, "energy_density", &PictureOptions::default(), 1.0)
+        .unwrap();
+    let all = frames(&path);
+    assert_eq!(all.len(), 4);
+    // the foot, with lengths and colours, is the same in all
+    let foot = |i: &Image| i.pixels[(i.height - FOOT as usize) * i.width..].to_vec();
+    assert!(all.iter().all(|i| foot(i) == foot(&all[0])));
+    // a corner of the plate that nothing moves stays where it is; it has the lowest colour
+    let dark = |i: &Image| {
+        let first = i.pixels.iter().position(|p| *p == colormap::color(0.0));
+        first.map(|n| [n % i.width, n / i.width])
+    };
+    assert!(dark(&all[0]).is_some() && all.iter().all(|i| dark(i) == dark(&all[0])));
+    let heights: Vec<f64> = { all.iter() }
+        .map(|i| {
+            let seen = steel(i);
+            assert!(seen.len() > 300);
+            seen.iter().map(|p| p[0]).sum::<f64>() / seen.len() as f64
+        })
+        .collect();
+    assert!(
+        heights.windows(2).all(|w| w[1] > w[0] + 0.02),
+        "{heights:?}"
+    );
+}
+
+#[test]
+fn a_stretched_plate_shows_no_gaps() {
+    let s = block([30, 10, 1], 2);
+    let u = s
+        .reference
+        .iter()
+        .map(|x| [1.2 * x[0], 0.1 * x[0], 0.0])
+        .collect();
+    let s = with(s, "displacement", Values::Vectors(u));
+    let image = views(&draw(&s));
+    // white pixels between two of the body in its middle rows
+    for row in [0.45, 0.5, 0.55].map(|p| (p * image.height as f64) as usize) {
+        let row = &image.pixels[row * image.width..][..image.width];
+        let body: Vec<usize> = (0..row.len()).filter(|c| row[*c] != WHITE).collect();
+        assert_eq!(body[body.len() - 1] - body[0] + 1, body.len());
+    }
 }

@@ -6,8 +6,10 @@
 
 use std::ops::Range;
 
+use super::cells::Cell;
 use super::colormap::Map;
 use super::image::{Color, Image};
+use super::solid::{Layer, Measure, Part, STEEL, Solids};
 
 /// Pixels drawn per final pixel and axis.
 const FINE: usize = 2;
@@ -102,6 +104,25 @@ impl Frame {
     pub fn size(&self) -> [f64; 2] {
         [self.high[0] - self.low[0], self.high[1] - self.low[1]]
     }
+
+    /// The smallest one around both.
+    pub fn with(&self, other: &Frame) -> Frame {
+        Frame {
+            low: std::array::from_fn(|a| self.low[a].min(other.low[a])),
+            high: std::array::from_fn(|a| self.high[a].max(other.high[a])),
+        }
+    }
+}
+
+/// Rigid bodies in a view.
+pub struct Beside<'a> {
+    pub bodies: &'a [super::rigid::Placed],
+    /// Do they lie flat over a plate?
+    pub flat: bool,
+    /// How much of what is behind them they hide, 0 to 1.
+    pub opacity: f32,
+    /// How near to the viewer something may be on the ray through a place of the camera's screen (lengths), where the body is cut open.
+    pub nearest: &'a dyn Fn(f64, f64) -> f64,
 }
 
 /// A colour channel (0…255) in a light: darkened towards black below 1, lightened towards white above.
@@ -130,7 +151,7 @@ struct Buffer {
     edge: f64,
 }
 
-/// Light of a cube seen from straight above, and of its top and its front seen obliquely.
+/// Light of a cell seen from straight above, and of the top and the front of a cube seen obliquely.
 const FACES: [f32; 3] = [1.0, TOP_LIGHT, SIDE_LIGHT];
 
 /// Rows and columns of a buffer that come into the image, with the light of each pixel.
@@ -150,10 +171,10 @@ impl Core {
     }
 }
 
-/// A point as it is drawn: where, its place among the colours from 0 to 1, and its edge in spacings.
-pub type Seen = ([f64; 3], f64, f64);
+/// A point as it is drawn: where, its place among the colours from 0 to 1, and its cell.
+pub type Seen = ([f64; 3], f64, Cell);
 
-/// Cells of points that lie anyhow overlap: a place shows the point that is nearest, in edges of each. By this part of an edge only, which is no relief.
+/// Cells overlap: a place shows the point that is nearest, in edges of each. By this part of an edge only, which is no relief.
 const NEARER: f64 = 1e-4;
 
 /// Draws points with the upper left corner of the frame at `corner` (pixels), `scale` pixels per
@@ -161,18 +182,27 @@ const NEARER: f64 = 1e-4;
 pub fn draw(
     image: &mut Image,
     (corner, scale): ([f64; 2], f64),
-    camera: &Camera,
-    frame: &Frame,
+    (camera, frame): (&Camera, &Frame),
     spacing: f64,
     map: Map,
+    beside: &Beside,
     points: impl Iterator<Item = Seen> + Clone,
 ) {
     let fine = scale * FINE as f64;
     let [w, h] = frame.size().map(|s| (s * fine).ceil() as usize + FINE);
     let edge = (spacing * OVERLAP * fine).max(1.0);
     // light and shade of a row depend on the rows within the widest blur
+    let deep = 1.0 / (spacing * OVERLAP);
+    let measure = Measure {
+        camera,
+        frame,
+        fine,
+        deep,
+    };
+    let solids = Solids::of(beside.bodies, &measure, beside.flat);
     let margin = hollow_radius(edge)
         .max(slope_radius(edge) + 1)
+        .max(if solids.is_empty() { 0 } else { Solids::MARGIN })
         .div_ceil(FINE)
         * FINE;
     // parts are as narrow as what they need around them is wide
@@ -201,13 +231,34 @@ pub fn draw(
                 face: vec![0; width * height],
                 edge,
             };
-            for (x, part, size) in points.clone() {
+            for (x, part, cell) in points.clone() {
                 let p = camera.project(x);
                 let screen = [(p[0] - frame.low[0]) * fine, (frame.high[1] - p[1]) * fine];
-                let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
+                let depth = (p[2] - frame.low[2]) * deep;
                 let place = ((part as f32).clamp(0.0, 1.0) * 255.0).round() as u8;
-                buffer.cube(screen, (depth as f32, place), size, camera);
+                match camera.cosine == 0.0 {
+                    true => buffer.cell(screen, (depth as f32, place), &cell),
+                    false => buffer.cube(screen, (depth as f32, place), camera),
+                }
             }
+            let steel = (!solids.is_empty()).then(|| {
+                let part = Part {
+                    width,
+                    height,
+                    first: [row, column],
+                };
+                let most = |x: f64, y: f64| {
+                    let [right, up] = [frame.low[0] + x / fine, frame.high[1] - y / fine];
+                    ((beside.nearest)(right, up) - frame.low[2]) * deep
+                };
+                let mut layer = solids.seen(part, most);
+                for (at, depth) in buffer.depth.iter().enumerate() {
+                    if !beside.flat && *depth > layer.depth[at] {
+                        layer.hide(at);
+                    }
+                }
+                layer
+            });
             buffer.raise(camera);
             let mut core = Core {
                 light: vec![],
@@ -220,7 +271,8 @@ pub fn draw(
                 buffer.light_slopes(&mut core);
             }
             buffer.darken_hollows(&mut core);
-            buffer.average_onto(image, corner, &core, &table);
+            let steel = steel.as_ref().map(|layer| (layer, beside.opacity));
+            buffer.average_onto(image, corner, &core, &table, steel);
         }
     }
 }
@@ -235,41 +287,68 @@ fn hollow_radius(edge: f64) -> usize {
 }
 
 impl Buffer {
-    /// A cube seen from `elevation`: its top face above its front face, each a rectangle; of so many edges where it is seen from above.
-    fn cube(&mut self, [x, y]: [f64; 2], (depth, part): (f32, u8), size: f64, camera: &Camera) {
-        let (e, s, c) = (size * self.edge, camera.sine, camera.cosine);
-        let [first_row, first_column] = self.first;
-        let whole = |from: f64, to: f64, first: usize, count: usize| {
-            let low = ((from - 0.5).ceil().max(0.0) as usize).max(first);
-            low..((to - 0.5).ceil().max(0.0) as usize).min(first + count)
-        };
+    /// A cube seen from `elevation`: its top face above its front face, each a rectangle.
+    fn cube(&mut self, [x, y]: [f64; 2], (depth, part): (f32, u8), camera: &Camera) {
+        let (e, s, c) = (self.edge, camera.sine, camera.cosine);
         let top = y - 0.5 * e * (s + c);
         // the front upper edge of the cube is the part nearest to the viewer
         let ridge = top + e * s;
         let nearest = depth + (0.5 * (s + c)) as f32;
-        let overlaps = size != 1.0 && c == 0.0;
-        for row in whole(top, top + e * (s + c), first_row, self.height) {
+        let [rows, columns] = self.span([x - 0.5 * e, x + 0.5 * e], [top, top + e * (s + c)]);
+        for row in rows {
             let v = row as f64 + 0.5 - ridge;
-            let (fall, face) = match (v < 0.0, c == 0.0) {
-                (_, true) => (0.0, 0),
-                (true, _) => (-v * c / s / e, 1),
-                (false, _) => (v * s / c / e, 2),
+            let (fall, face) = match v < 0.0 {
+                true => (-v * c / s / e, 1),
+                false => (v * s / c / e, 2),
             };
-            let depth = nearest - fall as f32;
-            for column in whole(x - 0.5 * e, x + 0.5 * e, first_column, self.width) {
-                let at = (row - first_row) * self.width + column - first_column;
-                let mut depth = depth;
-                if overlaps {
-                    let away = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
-                    let square = away[0] * away[0] + away[1] * away[1];
-                    depth -= (NEARER * square / (e * e)) as f32;
-                }
-                if depth > self.depth[at] {
-                    self.depth[at] = depth;
-                    self.part[at] = part;
-                    self.face[at] = face;
-                }
+            for column in columns.clone() {
+                self.put(row, column, (nearest - fall as f32, part, face));
             }
+        }
+    }
+
+    /// A cell seen from straight above.
+    fn cell(&mut self, [x, y]: [f64; 2], (depth, part): (f32, u8), cell: &Cell) {
+        // rows grow downwards
+        let e = self.edge;
+        let [a, b] = cell.edges.map(|v| [e * v[0], -e * v[1]]);
+        let area = a[0] * b[1] - a[1] * b[0];
+        let [w, h] = [0, 1].map(|k| 0.5 * (a[k].abs() + b[k].abs()));
+        let [rows, columns] = self.span([x - w, x + w], [y - h, y + h]);
+        for row in rows {
+            for column in columns.clone() {
+                let d = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
+                let along = (d[0] * b[1] - d[1] * b[0]) / area;
+                let across = (a[0] * d[1] - a[1] * d[0]) / area;
+                if along.abs() > 0.5 || across.abs() > 0.5 {
+                    continue;
+                }
+                let away = NEARER * (along * along + across * across);
+                self.put(row, column, (depth + (0.5 - away) as f32, part, 0));
+            }
+        }
+    }
+
+    /// Rows and columns of the view whose middles are between these pixels.
+    fn span(&self, x: [f64; 2], y: [f64; 2]) -> [Range<usize>; 2] {
+        let whole = |[from, to]: [f64; 2], first: usize, count: usize| {
+            let low = ((from - 0.5).ceil().max(0.0) as usize).max(first);
+            low..((to - 0.5).ceil().max(0.0) as usize).min(first + count)
+        };
+        let [first_row, first_column] = self.first;
+        [
+            whole(y, first_row, self.height),
+            whole(x, first_column, self.width),
+        ]
+    }
+
+    /// Keeps what is nearest to the viewer.
+    fn put(&mut self, row: usize, column: usize, (depth, part, face): (f32, u8, u8)) {
+        let at = (row - self.first[0]) * self.width + column - self.first[1];
+        if depth > self.depth[at] {
+            self.depth[at] = depth;
+            self.part[at] = part;
+            self.face[at] = face;
         }
     }
 
@@ -353,7 +432,14 @@ impl Buffer {
     }
 
     /// Averages fine pixels down to the image.
-    fn average_onto(&self, image: &mut Image, corner: [f64; 2], core: &Core, table: &[Color]) {
+    fn average_onto(
+        &self,
+        image: &mut Image,
+        corner: [f64; 2],
+        core: &Core,
+        table: &[Color],
+        steel: Option<(&Layer, f32)>,
+    ) {
         let (down, across) = (core.rows.len(), core.columns.len());
         for row in 0..down.div_ceil(FINE) {
             for column in 0..across.div_ceil(FINE) {
@@ -364,12 +450,24 @@ impl Buffer {
                     .filter(|(x, y)| *x < across && *y < down)
                 {
                     let at = (core.rows.start + y) * self.width + core.columns.start + x;
-                    if self.depth[at].is_finite() {
-                        for (s, c) in sum.iter_mut().zip(table[usize::from(self.part[at])]) {
-                            *s += lit(f32::from(c), core.light[y * across + x]);
+                    let body = self.depth[at].is_finite().then(|| {
+                        let light = core.light[y * across + x];
+                        table[usize::from(self.part[at])].map(|c| lit(f32::from(c), light))
+                    });
+                    let front = steel.and_then(|(layer, opacity)| {
+                        let light = layer.light(at)?;
+                        Some((STEEL.map(|c| lit(f32::from(c), light)), opacity))
+                    });
+                    let seen = match (body, front) {
+                        (None, None) => continue,
+                        (Some(body), None) => body,
+                        (body, Some((front, opacity))) => {
+                            let behind = body.unwrap_or([255.0; 3]);
+                            std::array::from_fn(|c| behind[c] + (front[c] - behind[c]) * opacity)
                         }
-                        covered += 1.0;
-                    }
+                    };
+                    sum.iter_mut().zip(seen).for_each(|(s, c)| *s += c);
+                    covered += 1.0;
                 }
                 if covered > 0.0 {
                     let mean = sum.map(|s| (s / covered).round() as u8);

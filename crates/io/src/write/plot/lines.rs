@@ -78,6 +78,14 @@ struct Series {
     mark: Mark,
     /// Unequal lengths, told when it is drawn.
     lengths: [usize; 2],
+    /// Place in the colours.
+    color: usize,
+}
+
+impl Series {
+    fn color(&self) -> Color {
+        COLORS[self.color % COLORS.len()]
+    }
 }
 
 /// A plot of series; built step by step, then saved.
@@ -168,9 +176,22 @@ impl Plot {
         self.series(label, x, y, Stroke::None, Mark::Disc)
     }
 
+    /// Discs that belong to the last series: of its colour, without a place in the legend.
+    #[must_use]
+    pub fn points_of_it(self, x: &[f64], y: &[f64]) -> Plot {
+        let mut plot = self.points("", x, y);
+        let count = plot.series.len();
+        if count > 1 {
+            plot.series[count - 1].color = plot.series[count - 2].color;
+        }
+        plot
+    }
+
     #[must_use]
     pub fn series(mut self, label: &str, x: &[f64], y: &[f64], stroke: Stroke, mark: Mark) -> Plot {
+        let color = self.series.last().map_or(0, |s| s.color + 1);
         self.series.push(Series {
+            color,
             label: label.to_string(),
             points: x.iter().zip(y).map(|(x, y)| [*x, *y]).collect(),
             stroke,
@@ -249,8 +270,8 @@ impl Plot {
                 drawing.text([top[0], top[1] - 5.0], name, TICK, Align::Center, INK);
             }
         }
-        for (k, s) in self.series.iter().enumerate() {
-            self.draw_series(&mut drawing, &frame, s, COLORS[k % COLORS.len()]);
+        for s in &self.series {
+            self.draw_series(&mut drawing, &frame, s, s.color());
         }
         drawing.frame(frame.corner, frame.size, 1.2, INK);
         if let (Some(size), Some(corner)) = (size, corner) {
@@ -285,17 +306,16 @@ impl Plot {
         }
     }
 
-    /// Series with a name, and their numbers.
-    fn named_series(&self) -> impl Iterator<Item = (usize, &Series)> {
-        let all = self.series.iter().enumerate();
-        all.filter(|(_, s)| !s.label.is_empty())
+    /// Series with a name.
+    fn named_series(&self) -> impl Iterator<Item = &Series> {
+        self.series.iter().filter(|s| !s.label.is_empty())
     }
 
     /// Of the box with the names; `None`: there are none.
     fn legend_size(&self) -> Option<[f64; 2]> {
         let widths = self
             .named_series()
-            .map(|(_, s)| font::width(&s.label, TICK, Weight::Regular));
+            .map(|s| font::width(&s.label, TICK, Weight::Regular));
         let widest = widths.fold(0.0, f64::max);
         let rows = self.named_series().count();
         (rows > 0).then_some([widest + 56.0, 19.0 * rows as f64 + 10.0])
@@ -344,9 +364,9 @@ impl Plot {
             fill: WHITE,
         });
         drawing.frame(corner, size, 0.8, [190, 194, 200]);
-        for (row, (k, s)) in self.named_series().enumerate() {
+        for (row, s) in self.named_series().enumerate() {
             let y = corner[1] + 5.0 + 19.0 * row as f64 + 9.5;
-            let color = COLORS[k % COLORS.len()];
+            let color = s.color();
             let place = [corner[0] + 8.0, corner[0] + 40.0];
             let dash = s.stroke.dash();
             if s.stroke != Stroke::None {

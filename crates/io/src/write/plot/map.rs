@@ -19,12 +19,29 @@ const MISSING: Color = [214, 216, 220];
 pub enum ColorMap {
     /// From dark to light.
     Sequential,
-    /// Blue, white in the middle of the range, red.
+    /// Blue, white, red: white is 0 where the range has both signs, as deep on either side, else its middle.
     Diverging,
 }
 
 impl ColorMap {
-    /// Of a part 0…1 of the bar; grey for what is no number.
+    /// The one for values from `low` to `high`: numbers of both signs diverge.
+    pub fn of([low, high]: [f64; 2]) -> ColorMap {
+        match colormap::Map::for_range([low, high]) {
+            colormap::Map::Sequential => ColorMap::Sequential,
+            colormap::Map::Diverging => ColorMap::Diverging,
+        }
+    }
+
+    /// Of a value on a bar.
+    fn tint(self, bar: Scale, value: f64) -> Color {
+        let most = (-bar.low).max(bar.high);
+        match self == ColorMap::Diverging && bar.low < 0.0 && bar.high > 0.0 {
+            true => self.color(0.5 + 0.5 * value.clamp(bar.low, bar.high) / most),
+            false => self.color(bar.part(value)),
+        }
+    }
+
+    /// Of a part 0…1 of the map; grey for what is no number.
     pub(super) fn color(self, part: f64) -> Color {
         if part.is_nan() {
             return MISSING;
@@ -274,7 +291,8 @@ impl Map {
         let size = [16.0, frame.size[1]];
         let mut image = Image::new(1, 256);
         for (k, pixel) in image.pixels.iter_mut().enumerate() {
-            *pixel = self.colors.color(1.0 - k as f64 / 255.0);
+            let part = 1.0 - k as f64 / 255.0;
+            *pixel = self.colors.tint(bar, bar.low + part * (bar.high - bar.low));
         }
         drawing.shapes.push(Shape::Pixels {
             corner,
@@ -312,7 +330,7 @@ impl Map {
                                 count += 1.0;
                             }
                         }
-                        image.pixels[y * w + x] = self.colors.color(bar.part(sum / count));
+                        image.pixels[y * w + x] = self.colors.tint(bar, sum / count);
                     }
                 }
                 image
@@ -334,7 +352,7 @@ impl Map {
                         (at(b, 0) - x).max(1.0),
                         (at(b, 1) - at(a, 1)).abs().max(1.0),
                     );
-                    image.rectangle(x, y, w, h, self.colors.color(bar.part(*value)));
+                    image.rectangle(x, y, w, h, self.colors.tint(bar, *value));
                 }
                 image
             }

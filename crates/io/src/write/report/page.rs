@@ -8,11 +8,12 @@ use base64::engine::general_purpose::STANDARD;
 
 const PAGE: &str = include_str!("../../../assets/report/page.html");
 const STYLE: &str = include_str!("../../../assets/report/style.css");
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 8] = [
     include_str!("../../../assets/report/numbers.js"),
     include_str!("../../../assets/report/data.js"),
     include_str!("../../../assets/report/colours.js"),
     include_str!("../../../assets/report/render.js"),
+    include_str!("../../../assets/report/bodies.js"),
     include_str!("../../../assets/report/plots.js"),
     include_str!("../../../assets/report/viewer.js"),
     include_str!("../../../assets/report/page.js"),

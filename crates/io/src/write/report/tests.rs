@@ -70,7 +70,7 @@ fn folder(dir: &Path, points: usize, frames: u64) -> Vec<Snapshot> {
     };
     let mut series = Series::new(dir, options).unwrap();
     let all: Vec<Snapshot> = (0..frames).map(|n| snapshot(10 * n, points)).collect();
-    all.iter().for_each(|s| series.write(s).unwrap());
+    all.iter().for_each(|s| series.write(s, &[]).unwrap());
     let columns = [Column::new("time", "s"), Column::new("kinetic energy", "J")];
     let mut history = History::create(&dir.join("history.csv"), &columns).unwrap();
     for n in 0..frames {
@@ -187,7 +187,7 @@ fn what_is_large_is_thinned_and_said() {
         let mut s = snapshot(step, n);
         let rows = (0..n).map(|_| [noise(), noise(), noise(), 0.0, noise(), noise()]);
         put(&mut s, "stress", Values::Symmetric(rows.collect()));
-        series.write(&s).unwrap();
+        series.write(&s, &[]).unwrap();
         all.push(s);
     }
     let made = write(dir.path()).unwrap();
