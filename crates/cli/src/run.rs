@@ -11,7 +11,6 @@ use crate::script;
 use crate::signals;
 use peridyne::columns::Shape;
 use peridyne::error::BuildError;
-use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Spec, Stepper, TimeStep};
@@ -309,14 +308,6 @@ fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
     deck.spec.indenters.iter().map(ball).collect()
 }
 
-/// Columns of a frame.
-pub fn fields(deck: &Deck) -> Vec<String> {
-    let usual = || USUAL.map(String::from).to_vec();
-    let spread = deck.spec.transfers.iter().map(|t| t.quantity.column());
-    let spread = || spread.map(str::to_string).chain(usual()).collect();
-    deck.spec.fields.clone().unwrap_or_else(spread)
-}
-
 /// The Exodus file that a deck asks for.
 fn exodus(deck: &Deck) -> Option<ExodusPlan> {
     let path = deck.output.exodus.clone()?;
@@ -371,7 +362,7 @@ fn plan(
             pictures,
         },
         exodus: exodus(deck),
-        fields: fields(deck),
+        fields: deck::fields(deck),
         continuum: continuum(deck),
         units: deck.units,
         time_unit: time_unit.to_string(),
