@@ -4,6 +4,7 @@ use crate::Input;
 use crate::failure::Failure;
 use crate::numbers::{memory, whole};
 use peridyne::execute::simd::Simd;
+use peridyne::observe::observables::USUAL;
 use peridyne::run::{Info, Options, Simulation, TransferInfo, build};
 use peridyne::spec::{Spec, Stepper, TransferMethod};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
@@ -140,6 +141,14 @@ pub fn model_of(deck: &Deck, spec: &Spec, input: &Input) -> Result<Box<dyn Simul
         ..Options::default()
     };
     build(spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
+}
+
+/// Columns of a frame.
+pub fn fields(deck: &Deck) -> Vec<String> {
+    let usual = || USUAL.map(String::from).to_vec();
+    let spread = deck.spec.transfers.iter().map(|t| t.quantity.column());
+    let spread = || spread.map(str::to_string).chain(usual()).collect();
+    deck.spec.fields.clone().unwrap_or_else(spread)
 }
 
 /// What looks wrong in a deck of which this was built.

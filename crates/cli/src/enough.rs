@@ -1,7 +1,7 @@
 //! Is there enough disk and memory for what a deck asks to write? Judged before the first step.
 
+use crate::deck::fields;
 use crate::failure::Failure;
-use crate::run::fields;
 use peridyne::error::{BuildError, size};
 use peridyne::run::Simulation;
 use peridyne_io::deck::Deck;

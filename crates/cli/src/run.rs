@@ -11,7 +11,6 @@ use crate::script;
 use crate::signals;
 use peridyne::columns::Shape;
 use peridyne::error::BuildError;
-use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne::spec::{BodySpec, Schedule, Spec, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
@@ -283,12 +282,6 @@ fn counts_load(schedule: &Schedule) -> bool {
     schedule.statics().is_some() && (end - 1.0).abs() < 1e-9
 }
 
-/// Columns of a frame.
-pub fn fields(deck: &Deck) -> Vec<String> {
-    let usual = || USUAL.map(String::from).to_vec();
-    let spread = deck.spec.transfers.iter().map(|t| t.quantity.column());
-    let spread = || spread.map(str::to_string).chain(usual()).collect();
-    deck.spec.fields.clone().unwrap_or_else(spread)
 }
 
 /// The Exodus file that a deck asks for.
@@ -345,7 +338,7 @@ fn plan(
             pictures,
         },
         exodus: exodus(deck),
-        fields: fields(deck),
+        fields: deck::fields(deck),
         continuum: continuum(deck),
         units: deck.units,
         time_unit: time_unit.to_string(),

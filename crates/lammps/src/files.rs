@@ -111,17 +111,14 @@ impl Sink {
     /// # Errors
     /// The file cannot be written; it then ends with the record before.
     pub fn flush(&mut self) -> Result<()> {
-        let end = match &mut self.out {
-            Some(out) => out
-                .flush()
-                .and_then(|()| out.get_mut().seek(SeekFrom::End(0))),
-            None => Ok(self.whole),
+        let flushed = match &mut self.out {
+            Some(out) => out.flush(),
+            None => Ok(()),
         };
-        match end {
-            Ok(end) => self.whole = end,
-            // a device has no end
-            Err(_) if !self.path.is_file() => {}
-            Err(e) => return Err(self.cut(&e)),
+        flushed.map_err(|e| self.cut(&e))?;
+        // a device has no end
+        if let Some(Ok(end)) = { self.out.as_mut() }.map(|o| o.get_mut().seek(SeekFrom::End(0))) {
+            self.whole = end;
         }
         Ok(())
     }

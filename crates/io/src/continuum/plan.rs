@@ -1,7 +1,9 @@
 //! What fields a deck asks for.
 
-use crate::write::space::film_frames;
 use peridyne_fields::{PairForce, Partition, Quantity, Shape};
+
+/// A picture of a slice in a film (bytes).
+const PICTURE: f64 = 100e3;
 
 /// Fields of the running model.
 #[derive(Debug, Clone)]
@@ -75,7 +77,7 @@ impl FieldsSpec {
         let frames = if self.each { self.frames(steps) } else { 0 };
         // slices of stress and temperature
         let films = if self.film { 2 * self.frames(steps) } else { 0 };
-        film_frames(films) + bytes(self.place.points(), frames)
+        PICTURE * films as f64 + bytes(self.place.points(), frames)
     }
 }
 

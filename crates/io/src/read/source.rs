@@ -89,14 +89,14 @@ pub fn left() -> Option<f64> {
     available()
 }
 
-/// What tells two files apart, whatever their names.
+/// What tells two files apart, whatever their names: numbers are given again to new files, which were made later.
 #[cfg(unix)]
-type Identity = (u64, u64);
+type Identity = (u64, u64, Option<std::time::SystemTime>);
 
 #[cfg(unix)]
 fn identity(of: &Metadata) -> Identity {
     use std::os::unix::fs::MetadataExt;
-    (of.dev(), of.ino())
+    (of.dev(), of.ino(), of.created().ok())
 }
 
 /// Without numbers of files: when it was made and how long it is.

@@ -68,11 +68,6 @@ pub fn dump_frame(points: u64, numbers: u64) -> f64 {
     NUMBER * points as f64 * numbers as f64
 }
 
-/// The part of a film that its pictures take, where no frame waits (bytes).
-pub fn film_frames(frames: u64) -> f64 {
-    PICTURE * frames as f64
-}
-
 /// Bytes that the disk of a folder has left, which need not exist yet; `None` where the system does not say.
 #[cfg(unix)]
 pub fn free(folder: &Path) -> Option<f64> {

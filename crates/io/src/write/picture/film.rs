@@ -1,6 +1,7 @@
 //! A film of the frames of a run, as an animated PNG. Frames wait in a temporary file beside it, small, until the run has ended: then
 //! the ends of the colours are known, and how many frames there are.
 
+use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::time::Duration;

@@ -405,7 +405,7 @@ fn frames(path: &Path) -> Vec<Image> {
 fn in_a_film_key_scale_and_camera_stand_still_and_bodies_move() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("film.png");
-    let mut film = film::Film::new().unwrap();
+    let mut film = film::Film::new(dir.path()).unwrap();
     // a plate grows and its values with it; a ball comes down beside it
     for n in 0..4u64 {
         let s = block([30, 12, 1], 2);
@@ -431,8 +431,14 @@ fn in_a_film_key_scale_and_camera_stand_still_and_bodies_move() {
         film.push(&s, &bodies, ("energy_density", None), None)
             .unwrap();
     }
-    film.finish(&path, "energy_density", &PictureOptions::default(), 1.0)
-        .unwrap();
+    film.finish(
+        &path,
+        "energy_density",
+        &PictureOptions::default(),
+        1.0,
+        None,
+    )
+    .unwrap();
     let all = frames(&path);
     assert_eq!(all.len(), 4);
     // the foot, with lengths and colours, is the same in all
