@@ -3,6 +3,7 @@
 use crate::failure::{Failure, note, say};
 use peridyne_io::convert;
 use peridyne_io::deck::{Deck, counted};
+use peridyne_io::excerpt::one_line;
 use peridyne_io::write::atomic::write_file;
 use std::io::Write;
 use std::path::PathBuf;
@@ -37,7 +38,9 @@ pub fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     for u in &converted.unmapped {
         note(&format!(
             "{file}:{}: not mapped: {}: {}",
-            u.line, u.entry, u.why
+            u.line,
+            one_line(&u.entry),
+            one_line(&u.why)
         ));
     }
     for remark in &converted.remarks {
