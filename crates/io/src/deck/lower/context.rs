@@ -268,10 +268,15 @@ impl<'a> Context<'a> {
             None => span.clone(),
         };
         let name = text.get(error.span.clone()).unwrap_or("").trim();
-        let unit = error.message.starts_with("unknown name") && units::unit(name).is_ok();
+        // a letter within a formula is a constant that was forgotten
+        let alone = name.len() > 1 || name == text.trim();
+        let unknown = error.message.starts_with("unknown name");
+        let unit = unknown && alone && units::unit(name).is_ok();
         if unit && self.units.has_units() {
             let message = format!("the unit \"{name}\" has no number");
-            let help = format!("write the number before it: \"1 {name}\"");
+            let help = format!(
+                "write the number before it: \"1 {name}\"; if a constant is meant, give it in [constants]"
+            );
             return self.source.error(Some(inner), message, Some(help));
         }
         self.source.error(Some(inner), error.message, error.help)
