@@ -114,7 +114,6 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         asked.stop = || signals::received().is_some();
     }
     plan.warnings = warnings;
-    let end = (steps - plan.increments) as f64 * sim.info().time_step;
     plan.rigid = rigid;
     let until = until(&deck.spec, steps - plan.increments, sim.info().time_step);
     let marks = Marks::of(&deck.spec, sim.as_mut(), until);
@@ -280,8 +279,6 @@ fn counts_load(schedule: &Schedule) -> bool {
         TimeStep::Fraction(_) | TimeStep::Auto => 1.0,
     };
     schedule.statics().is_some() && (end - 1.0).abs() < 1e-9
-}
-
 }
 
 /// The Exodus file that a deck asks for.

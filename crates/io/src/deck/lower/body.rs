@@ -191,9 +191,6 @@ fn extents(cloud: &Cloud) -> [f64; 3] {
     })
 }
 
-/// Part of the length of a body that its points may leave its line or plane by.
-const FLAT: f64 = 1e-6;
-
 /// A file of atoms in other units, or of isotopes, would be another body than it says.
 fn atoms_fit(context: &Context, atoms: &AtomsFile, file: &At<String>) -> Result<()> {
     let own = context.units.name();

@@ -138,7 +138,7 @@ impl Film {
             arrows: self.arrows.as_ref(),
         };
         let step = stride(frames.len(), most);
-        let sight = same.sight(&file, &frames, scale);
+        let sight = same.sight(file.as_file(), &frames, scale);
         let (sight, mut waiting) = sight.map_err(WriteError::at("draw", path))?;
         let images = frames.iter().enumerate().filter_map(|(n, (when, bodies))| {
             let (snapshot, shown, arrows) = match same.next(&mut waiting, *when) {

@@ -192,7 +192,6 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
 mod tests {
     use super::*;
     use crate::write::history::{Column as Written, History};
-    use std::fs;
 
     #[test]
     fn what_is_written_is_read() {
