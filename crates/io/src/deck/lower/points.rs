@@ -89,18 +89,12 @@ pub(super) fn odd_volumes(
     Ok(Some(context.source.remark(&file.span, &text)))
 }
 
-/// How long points of a file are along an axis, if that is more than a period.
+/// How long a mesh is along an axis, if that is more than a period. Of points without cells the engine knows no more than their places, and looks
+/// at these.
 pub(super) fn longer(context: &Context, body: &BodySpec, a: usize, period: f64) -> Option<f64> {
-    let length = |body: &BodySpec, ends: Option<[[f64; 2]; 3]>| match body {
-        // atoms may have left their box
-        BodySpec::Cloud(cloud) if context.atoms.is_none() => {
-            let [low, high] = ends.unwrap_or_else(|| plane::bounds(cloud.position.iter()))[a];
-            Some(high - low).filter(|length| *length > period * (1.0 + ROUND_OFF))
-        }
-        _ => None,
-    };
-    match body {
-        BodySpec::Several(pieces) => pieces.iter().find_map(|p| length(&p.body, None)),
-        _ => length(body, context.ends),
-    }
+    let ends = context
+        .ends
+        .filter(|_| matches!(body, BodySpec::Cloud(_)))?;
+    let [low, high] = ends[a];
+    Some(high - low).filter(|length| *length > period * (1.0 + ROUND_OFF))
 }
