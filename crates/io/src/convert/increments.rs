@@ -4,8 +4,20 @@
 //! does not depend on time, and `u₀ + f(t) − f(t₀)` where it changes in every step, from the initial displacement u₀ and the initial
 //! time t₀ on.
 
-use super::conditions::{Clock, Stage};
+use super::Program;
+use super::clock::Clock;
+use super::points::Points;
+use super::solver::Solver;
 use peridyne::expression::Expression;
+
+/// What conditions act on, and when.
+pub struct Stage<'a> {
+    pub program: Program,
+    pub points: &'a Points,
+    pub names: &'a [String],
+    pub solver: &'a Solver,
+    pub dimension: usize,
+}
 
 /// Most steps that are looked at.
 const STEPS: u64 = 1000;

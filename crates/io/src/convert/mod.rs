@@ -4,12 +4,14 @@
 //! Points, blocks and node sets become an Exodus mesh beside the deck, whatever they came from: what the numbers of a node set mean
 //! depends on the program. Numbers stay as they are: such decks have no units, and neither has the new one (`units = "none"`).
 
+mod clock;
 mod conditions;
 mod family;
 mod filters;
 mod increments;
 mod laws;
 mod points;
+mod probes;
 mod solver;
 mod syntax;
 mod tree;
@@ -287,7 +289,7 @@ impl<'a> Converter<'a> {
             .filter(|(_, points)| !points.is_empty());
         names.extend(sets.map(|(name, _)| name.clone()));
         if let Some(given) = given {
-            let stage = conditions::Stage {
+            let stage = increments::Stage {
                 program: self.program,
                 points: &self.points,
                 names: &names,
@@ -298,7 +300,7 @@ impl<'a> Converter<'a> {
         }
         let mut labels = vec![];
         if let Some(all) = root.list("Compute Class Parameters") {
-            let (probes, named) = conditions::probes(all, &names, &mut self.remarks);
+            let (probes, named) = probes::probes(all, &names, &mut self.remarks);
             out += &probes;
             labels = named;
         }

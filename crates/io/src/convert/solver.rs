@@ -1,6 +1,7 @@
 //! Solvers and outputs of both programs.
 
-use super::conditions::{Clock, field};
+use super::clock::Clock;
+use super::probes::field;
 use super::tree::{Entry, Value, same};
 use super::{Program, quoted};
 

@@ -1,4 +1,4 @@
-use super::conditions::Clock;
+use super::clock::Clock;
 use super::*;
 use crate::deck::Deck;
 use crate::read::exodus::parse_exodus;
