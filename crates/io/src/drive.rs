@@ -6,6 +6,7 @@ mod modes;
 mod names;
 mod rigid;
 mod row;
+mod setting;
 
 pub use atoms::AtomsPlan;
 pub use exodus::ExodusPlan;
@@ -24,7 +25,7 @@ use peridyne_fields::FieldsError;
 
 use crate::balance::BalanceWatch;
 use crate::continuum::run::{FieldsPlan, RunningFields};
-use crate::deck::{Dim, UnitSystem};
+use crate::deck::UnitSystem;
 use crate::write::data::write_data;
 use crate::write::earlier::sweep_pictures;
 use crate::write::folder::Folder;
@@ -34,10 +35,7 @@ use crate::write::picture::film::HURRY;
 use crate::write::picture::rigid::Placed;
 use crate::write::picture::shown::About;
 use crate::write::report::{self, ReportError};
-use crate::write::run_json::{
-    self, EnergyReport, FieldNote, MarkNotes, RigidNote, RunReport, Setting, Spent, Status,
-    UnitNames,
-};
+use crate::write::run_json::{self, EnergyReport, MarkNotes, RunReport, Setting, Spent, Status};
 use crate::write::trajectory::Trajectory;
 use crate::write::{Series, SeriesOptions, WriteError};
 
@@ -123,58 +121,6 @@ impl Plan {
     fn placed(&self, sim: &mut dyn Simulation) -> Vec<Placed> {
         let begun = self.begun(sim);
         self.rigid.placed(sim, begun)
-    }
-
-    /// What reports tell of this run.
-    fn setting(
-        &self,
-        sim: &mut dyn Simulation,
-        last: &Snapshot,
-        pictures: &[String],
-        indenters: Vec<RigidNote>,
-    ) -> Setting {
-        let series = &self.series;
-        let mut files = vec!["history.csv".to_string()];
-        let mut file = |there: bool, name: &str| files.extend(there.then(|| name.to_string()));
-        file(series.points, "points.pvd");
-        file(series.bonds, "bonds.pvd");
-        pictures.iter().for_each(|name| file(true, name));
-        let modes = self.modes > 0 && self.dir.join("modes.csv").is_file();
-        file(modes, "modes.csv");
-        file(modes, "modes/points.pvd");
-        file(self.linear_body, "linear_body.npz");
-        let dump = series.dump.iter().map(|(name, _)| name);
-        let dump = dump.chain(self.exodus.iter().map(|e| &e.path));
-        let atoms = self.atoms.iter();
-        let named = atoms.flat_map(|a| a.trajectories.iter().map(|(n, _)| n).chain(&a.data));
-        files.extend(dump.chain(named).map(|n| n.display().to_string()));
-        let fields = last.columns.iter().map(|c| FieldNote {
-            name: c.name().to_string(),
-            unit: self.units.unit(c.declaration.dimension),
-            says: c.declaration.doc.to_string(),
-        });
-        Setting {
-            command: self.command.clone(),
-            deck_text: self.deck_text.clone(),
-            understood: self.understood.clone(),
-            sources: self.sources.clone(),
-            dimension: sim.info().dimension,
-            spacing: sim.info().spacing,
-            statics: matches!(sim.info().stepper, Stepper::Statics(_)),
-            atoms: self.atoms.is_some(),
-            units: UnitNames {
-                length: self.units.unit(Dim::LENGTH),
-                time: self.time_unit.clone(),
-                energy: self.energy_unit.clone(),
-            },
-            fields: fields.collect(),
-            indenters,
-            marks: self.marks.clone(),
-            slices: vec![],
-            dumps: vec![],
-            columns: vec![],
-            files,
-        }
     }
 }
 

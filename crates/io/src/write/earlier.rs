@@ -58,12 +58,9 @@ pub fn told(dir: &Path, left: &[String]) -> Option<String> {
     let first: Vec<&str> = first.collect();
     let more = if left.len() > TOLD { ", …" } else { "" };
     (!left.is_empty()).then(|| {
-        let (noun, verb) = match left.len() {
-            1 => ("frame", "is"),
-            _ => ("frames", "are"),
-        };
+        let noun = if left.len() == 1 { "frame" } else { "frames" };
         format!(
-            "{} {noun} in {} {verb} not of this run and stay: {}{more}",
+            "{} {noun} of another run left in {}: {}{more}",
             left.len(),
             dir.display(),
             first.join(", ")
@@ -140,7 +137,7 @@ mod tests {
         assert!(!there("points.pvd") && there("run.json") && !outside.exists());
         let text = told(dir.path(), &["points_00000002.vtu".into()]).unwrap();
         assert!(
-            text.starts_with("1 frame in ") && text.ends_with("stay: points_00000002.vtu"),
+            text.starts_with("1 frame in ") && text.ends_with(": points_00000002.vtu"),
             "{text}"
         );
         assert_eq!(told(dir.path(), &[]), None);

@@ -362,23 +362,26 @@ fn rigid_bodies_are_drawn_where_they_are_and_shaded() {
         .filter(|p| p[0] < p[2] && p[2] - p[0] < 30 && p[0] > 80)
         .collect();
     assert!(greys.len() > 30, "{}", greys.len());
-    assert!(steel(&image).iter().any(|p| p[1] > 0.5));
+    // captions are below the views
+    let there = |p: &&[f64; 2]| p[1] > 0.5 && p[0] < 0.85;
+    assert!(steel(&image).iter().filter(there).count() > 500);
 }
 
 #[test]
 fn a_solid_in_front_hides_and_one_behind_does_not_show() {
     let solid = block([30, 30, 8], 3);
-    let above = seen(&solid, &[ball(4.0, [14.5, 14.5, 14.0])]);
-    let inside = seen(&solid, &[ball(2.0, [14.5, 22.0, 3.5])]);
-    assert!(above.len() > 1000, "{}", above.len());
-    assert_eq!(inside.len(), 0);
-    // one that the cut goes through is seen on it
-    let cut = seen(&solid, &[ball(3.0, [14.5, 14.5, 3.5])]);
-    assert!(
-        cut.len() > 500 && cut.iter().all(|p| p[1] > 0.5),
-        "{}",
-        cut.len()
-    );
+    let drawn = |bodies: &[Placed]| {
+        picture(&solid, bodies, &PictureOptions::default(), About::Fracture).unwrap()
+    };
+    // in the middle of what the cut leaves
+    let inside = ball(2.0, [14.5, 22.0, 3.5]);
+    assert_eq!(drawn(&[inside]), drawn(&[]));
+    // its upper half stands out of the body, and the picture shows as much as before
+    let out = drawn(&[ball(2.0, [14.5, 22.0, 7.0])]);
+    let before = drawn(&[]);
+    let changed = |i: &&usize| out.pixels.get(**i) != before.pixels.get(**i);
+    let count = (0..before.pixels.len()).collect::<Vec<usize>>();
+    assert!(count.iter().filter(changed).count() > 1000);
 }
 
 /// Frames of an animated PNG.
@@ -444,12 +447,16 @@ fn in_a_film_key_scale_and_camera_stand_still_and_bodies_move() {
     // the foot, with lengths and colours, is the same in all
     let foot = |i: &Image| i.pixels[(i.height - FOOT as usize) * i.width..].to_vec();
     assert!(all.iter().all(|i| foot(i) == foot(&all[0])));
-    // a corner of the plate that nothing moves stays where it is; it has the lowest colour
+    // a corner of the plate that nothing moves stays where it is, but for half the stretch of its cell; it has the lowest colour
     let dark = |i: &Image| {
         let first = i.pixels.iter().position(|p| *p == colormap::color(0.0));
         first.map(|n| [n % i.width, n / i.width])
     };
-    assert!(dark(&all[0]).is_some() && all.iter().all(|i| dark(i) == dark(&all[0])));
+    let first = dark(&all[0]).unwrap();
+    for [column, row] in all.iter().map(|i| dark(i).unwrap()) {
+        assert_eq!(row, first[1]);
+        assert!(column.abs_diff(first[0]) < 8, "{column} {first:?}");
+    }
     let heights: Vec<f64> = { all.iter() }
         .map(|i| {
             let seen = steel(i);

@@ -1,0 +1,62 @@
+//! What reports tell of a run.
+
+use super::Plan;
+use crate::deck::Dim;
+use crate::write::run_json::{FieldNote, RigidNote, Setting, UnitNames};
+use peridyne::observe::Snapshot;
+use peridyne::run::Simulation;
+use peridyne::spec::Stepper;
+
+impl Plan {
+    /// What reports tell of this run.
+    pub(super) fn setting(
+        &self,
+        sim: &mut dyn Simulation,
+        last: &Snapshot,
+        pictures: &[String],
+        indenters: Vec<RigidNote>,
+    ) -> Setting {
+        let series = &self.series;
+        let mut files = vec!["history.csv".to_string()];
+        let mut file = |there: bool, name: &str| files.extend(there.then(|| name.to_string()));
+        file(series.points, "points.pvd");
+        file(series.bonds, "bonds.pvd");
+        pictures.iter().for_each(|name| file(true, name));
+        let modes = self.modes > 0 && self.dir.join("modes.csv").is_file();
+        file(modes, "modes.csv");
+        file(modes, "modes/points.pvd");
+        file(self.linear_body, "linear_body.npz");
+        let dump = series.dump.iter().map(|(name, _)| name);
+        let dump = dump.chain(self.exodus.iter().map(|e| &e.path));
+        let atoms = self.atoms.iter();
+        let named = atoms.flat_map(|a| a.trajectories.iter().map(|(n, _)| n).chain(&a.data));
+        files.extend(dump.chain(named).map(|n| n.display().to_string()));
+        let fields = last.columns.iter().map(|c| FieldNote {
+            name: c.name().to_string(),
+            unit: self.units.unit(c.declaration.dimension),
+            says: c.declaration.doc.to_string(),
+        });
+        Setting {
+            command: self.command.clone(),
+            deck_text: self.deck_text.clone(),
+            understood: self.understood.clone(),
+            sources: self.sources.clone(),
+            dimension: sim.info().dimension,
+            spacing: sim.info().spacing,
+            statics: matches!(sim.info().stepper, Stepper::Statics(_)),
+            atoms: self.atoms.is_some(),
+            units: UnitNames {
+                length: self.units.unit(Dim::LENGTH),
+                time: self.time_unit.clone(),
+                energy: self.energy_unit.clone(),
+            },
+            fields: fields.collect(),
+            indenters,
+            marks: self.marks.clone(),
+            slices: vec![],
+            dumps: vec![],
+            columns: vec![],
+            files,
+        }
+    }
+}
