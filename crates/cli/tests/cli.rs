@@ -414,13 +414,13 @@ fn what_is_no_deck_and_what_looks_wrong_is_said() {
         }
     }
     let text = "horizon = { m_ratio = 2 }\n[body]\nlattice = \"chain\"\nspacing = \"1 mm\"\ncells = [10]\n\
-        [material]\ndensity = \"1 g/cm^3\"\nlaw = { pmb = { young = \"1 GPa\" } }\n[[precrack]]\npoint = \"4.5 mm\"\n[run]\nduration = \"300\"\nthreads = 1000\n";
+        [material]\ndensity = \"1 g/cm^3\"\nlaw = { pmb = { young = \"1 GPa\" } }\n[[precrack]]\npoint = \"4.5 mm\"\n[run]\nduration = \"300\"\nthreads = 200\n";
     let file = dir.path().join("slow.toml");
     std::fs::write(&file, text).unwrap();
     let output = good(peridyne(&["check", file.to_str().unwrap()]));
     let said = errors(&output);
     for part in [
-        "warning: 1000 threads on",
+        "warning: 200 threads on",
         "slow.toml:9: this crack never grows, as no material can break",
         "check the unit of run.duration",
         "slow.toml:12: \"300\" has no unit and is taken as 300 s",

@@ -4,8 +4,8 @@
 //! In one direction `σ = (λ + 2μ) ln F`. In simple shear it does not oscillate (Dienes 1979).
 //!
 //! Such a law has no potential: what it has for energy is the work of its stress, `ẇ = J σ_u : d`, by the trapezoidal rule, which a closed path
-//! does not give back in full. Energy is balanced with it to second order in the step; where bonds let go after the force, to first order, as
-//! their family then has its stress by another path than its energy.
+//! does not give back in full. Energy is balanced with it to second order in the step. Where
+//! bonds let go, what that changes of the gradient is a step of no length of its own.
 
 use super::rate::{self, INCREMENT, Increment, Step};
 use super::{Classical, Stressed, Unseen};
