@@ -174,10 +174,7 @@ fn plane(
         };
     }
     let symmetry = material.text("Symmetry").unwrap_or("").to_lowercase();
-    if ["anisotropic", "orthotropic", "transverse"]
-        .iter()
-        .any(|w| symmetry.contains(w))
-    {
+    if symmetry.contains("tropic") && !symmetry.trim_start().starts_with("isotropic") {
         return Err("laws here are isotropic");
     }
     let plane = match () {

@@ -1,24 +1,12 @@
 //! Slips of form that are common, said in words before the deck is read key by key.
 
 use super::error::DeckError;
-use super::source::Source;
+use super::source::{SEVERAL, Source};
 use crate::excerpt::steers;
 use peridyne::run::Shelf;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// Tables that a deck has several of.
-pub(super) const SEVERAL: [&str; 8] = [
-    "probe",
-    "fields",
-    "condition",
-    "initial",
-    "precrack",
-    "indenter",
-    "bond_factor",
-    "toughness",
-];
 
 /// Tables that it has one of.
 const ONE: [&str; 9] = [

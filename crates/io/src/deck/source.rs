@@ -4,10 +4,21 @@
 //! end, so one number tells the place in all of them.
 
 use super::error::DeckError;
-use super::form::SEVERAL;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
+
+/// Tables that a deck has several of.
+pub(super) const SEVERAL: [&str; 8] = [
+    "probe",
+    "fields",
+    "condition",
+    "initial",
+    "precrack",
+    "indenter",
+    "bond_factor",
+    "toughness",
+];
 
 /// A deck's text and its overrides.
 #[derive(Debug, Clone)]

@@ -1,6 +1,7 @@
 //! gmsh meshes, formats 2.2 and 4.1, as text or binary; physical groups become marks and sets.
 
 mod binary;
+mod bytes;
 mod partitioned;
 
 use super::cell::{Cell, Kind};

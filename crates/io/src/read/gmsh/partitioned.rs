@@ -1,6 +1,6 @@
 //! Entities of a mesh that gmsh cut into partitions (format 4.1): their cells are in the groups of the entities that they were cut from.
 
-use super::binary::Bytes;
+use super::bytes::Bytes;
 use super::{Gmsh, end};
 use crate::read::ReadError;
 use crate::read::lines::Lines;

@@ -6,13 +6,14 @@ use peridyne::observe::Snapshot;
 use peridyne::space::{AXES, Point};
 
 use super::arrows::Arrows;
+use super::camera::{Camera, Frame, cross};
 use super::cells::{Cell, Cells};
 use super::extent::{REACH, bounds, longest, moved, principal, strays};
 use super::image::{Align, Font, GREY, Image};
 use super::marks;
 use super::rigid::Placed;
 use super::shown::Shown;
-use super::view::{Beside, Camera, Frame, cross, draw as draw_view};
+use super::view::{Beside, draw as draw_view};
 use super::{FOOT, HEAD, MARGIN, PictureOptions, foot, head};
 
 /// Elevation of the viewer of the section (degrees): low enough to see the cut, high enough to see the top.

@@ -6,9 +6,9 @@ use peridyne::run::Simulation;
 use peridyne::space::Point;
 use peridyne::spec::{ConditionKind, ConditionSpec, CrackShape, Spec};
 
+use super::camera::{Camera, Frame};
 use super::extent::{bounds_of, principal};
 use super::image::{Color, Image};
-use super::view::{Camera, Frame};
 
 const CRACK: Color = [232, 236, 240];
 const EDGE: Color = [34, 38, 46];

@@ -6,6 +6,7 @@
 
 pub mod arrows;
 mod body;
+mod camera;
 mod cells;
 mod chain;
 pub mod colormap;

@@ -1,8 +1,8 @@
 //! Rigid bodies as a camera sees them: depth and light for each pixel of a part of a view, lit, with dark edges against what is behind.
 
+use super::camera::{Camera, Frame};
 use super::image::Color;
 use super::rigid::{Form, Placed};
-use super::view::{Camera, Frame};
 
 /// What they are made of; no field has this colour.
 pub const STEEL: Color = [168, 176, 188];
@@ -216,7 +216,7 @@ impl Solids {
     fn normal(&self, [a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
         let way = |p: [f64; 3]| [p[0] - a[0], a[1] - p[1], (p[2] - a[2]) / self.deep];
         let (u, v) = (way(b), way(c));
-        let n = super::view::cross(u, v);
+        let n = super::camera::cross(u, v);
         let size = n.iter().map(|c| c * c).sum::<f64>().sqrt();
         n.map(|c| c / size)
     }
