@@ -216,14 +216,19 @@ fn array(
 /// It cannot be read.
 pub fn collection(path: &Path) -> Result<Vec<(f64, String)>, ReadError> {
     let (text, _) = super::text_of(path)?;
+    let all = collected(&text);
+    all.ok_or_else(|| ReadError::file(path, "an entry without time or file".into()))
+}
+
+/// The same of its text; `None` where an entry has no time or file.
+pub fn collected(text: &str) -> Option<Vec<(f64, String)>> {
     let entries = text.split("<DataSet ").skip(1).map(|tag| {
         let time = attribute(tag, "timestep")?.parse().ok()?;
         let file = attribute(tag, "file")?;
         let file = file.replace("&lt;", "<").replace("&quot;", "\"");
         Some((time, file.replace("&amp;", "&")))
     });
-    let all: Option<Vec<_>> = entries.collect();
-    all.ok_or_else(|| ReadError::file(path, "an entry without time or file".into()))
+    entries.collect()
 }
 
 #[cfg(test)]

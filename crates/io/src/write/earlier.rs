@@ -8,7 +8,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::atomic::WriteError;
-use crate::read::vtu::collection;
+use crate::read::vtu::collected;
 
 /// Names that are told in a warning.
 const TOLD: usize = 3;
@@ -37,8 +37,9 @@ fn remove(dir: &Path, name: &str) -> Result<(), WriteError> {
 /// The operating system's.
 pub fn sweep_frames(dir: &Path, kind: &str) -> Result<Vec<String>, WriteError> {
     let index = format!("{kind}.pvd");
-    // one that cannot be read lists nothing
-    let listed = collection(&dir.join(&index)).unwrap_or_default();
+    // one that cannot be read lists nothing; this run has not read it, and writes its own in its place
+    let text = fs::read_to_string(dir.join(&index)).unwrap_or_default();
+    let listed = collected(&text).unwrap_or_default();
     for (_, name) in listed.iter().filter(|(_, name)| is_frame(name, kind)) {
         remove(dir, name)?;
     }
@@ -137,7 +138,8 @@ mod tests {
         assert!(!there("points.pvd") && there("run.json") && !outside.exists());
         let text = told(dir.path(), &["points_00000002.vtu".into()]).unwrap();
         assert!(
-            text.starts_with("1 frame in ") && text.ends_with(": points_00000002.vtu"),
+            text.starts_with("1 frame of another run left in ")
+                && text.ends_with(": points_00000002.vtu"),
             "{text}"
         );
         assert_eq!(told(dir.path(), &[]), None);

@@ -91,6 +91,8 @@ impl Made {
                     continue;
                 }
             };
+            let more = element.nodes.len() > kind.corners();
+            self.mesh.second_order[kind.dimension()] += usize::from(more);
             let nodes: Vec<u64> = element.nodes[..kind.corners()]
                 .iter()
                 .map(|n| of_scope(s, *n))
