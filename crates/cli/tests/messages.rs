@@ -57,7 +57,7 @@ const SQUARE: &str = "lattice = \"square\", spacing = \"1 mm\", cells = [8, 8]";
 
 #[test]
 fn mistakes_far_to_the_right_of_a_line_are_shown() {
-    let blocks: String = (0..2000)
+    let blocks: String = (0..2100)
         .map(|n| {
             format!(
                 "{{ block = {{ low = [{n}, 0], high = [{}, 1] }} }}, ",

@@ -71,6 +71,11 @@ pub fn dump_frame(points: u64, numbers: u64) -> f64 {
 /// Bytes that the disk of a folder has left, which need not exist yet; `None` where the system does not say.
 #[cfg(unix)]
 pub fn free(folder: &Path) -> Option<f64> {
+    // the folder of a plain name is the current one
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
     let absolute = std::path::absolute(folder).ok()?;
     let stat = absolute
         .ancestors()
@@ -120,5 +125,11 @@ mod tests {
     fn a_folder_that_does_not_exist_yet_has_the_space_of_its_disk() {
         let dir = tempfile::tempdir().unwrap();
         assert!(free(&dir.path().join("a/b/c")).unwrap() > 0.0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_folder_of_a_plain_name_has_room() {
+        assert!(free(Path::new("")).is_some());
     }
 }
