@@ -534,7 +534,7 @@ fn frames_of(path: &Path) -> u32 {
 fn a_signal_makes_films_short_and_a_hangup_ends_as_a_termination_does() {
     let text = film()
         .replace("every = 5000000", "every = 1")
-        .replace("100000000", "200000");
+        .replace("100000000", "30000");
     let case = Case::new(&[("d.toml", &text)]);
     let mut child = Command::new(env!("CARGO_BIN_EXE_peridyne"))
         .args(["run", "d.toml", "--out", "o", "--threads", "1"])
