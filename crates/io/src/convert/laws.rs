@@ -23,6 +23,8 @@ pub struct Setting {
     /// All points have one z.
     pub flat: bool,
     pub horizon: f64,
+    /// Another material of the body yields.
+    pub yields: bool,
 }
 
 /// What a material model is called here.
@@ -138,6 +140,11 @@ pub fn law(material: &Entry, setting: &Setting) -> Option<Law> {
         ("lps", true) => bulk_and_shear(material)
             .map(|[k, g]| format!("{{ lps_as_typed = {{ bulk = {k:?}, shear = {g:?} }} }}")),
         (_, true) => Err("PeriLab asks for plane stress or plane strain in 2-D (Symmetry)".into()),
+        // laws of a body are of one kind
+        ("lps", false) if setting.yields && plane.is_none() => keys(material, named).map(|keys| {
+            let keys = keys.join(", ");
+            format!("{{ elastic_plastic = {{ {keys}, yield_stress = {NEVER:?} }} }}")
+        }),
         _ => keys(material, named)
             .map(|keys| format!("{{ {} = {{ {} }} }}", named.here, keys.join(", "))),
     };
@@ -149,6 +156,16 @@ pub fn law(material: &Entry, setting: &Setting) -> Option<Law> {
         plane,
         height: thick.then(|| material.number("Height")).flatten(),
     })
+}
+
+/// A yield stress that no deformation reaches.
+const NEVER: f64 = 1e100;
+
+/// Does a material of the ordinary kind yield?
+pub fn yields(material: &Entry) -> bool {
+    let model = material.text("Material Model").unwrap_or("");
+    let named = NAMED.iter().find(|n| n.there.eq_ignore_ascii_case(model));
+    named.is_some_and(|n| n.here == "elastic_plastic")
 }
 
 /// The plane that a material is in.

@@ -181,6 +181,8 @@ struct Materials {
     height: Option<f64>,
     /// Can any break?
     breaks: bool,
+    /// Are there several of bonds that act directly?
+    bonds: bool,
 }
 
 /// A block of the deck: its set, and the list that describes it.
@@ -238,6 +240,7 @@ impl<'a> Converter<'a> {
             plane,
             height,
             breaks,
+            bonds,
         } = self.materials(&blocks, given_horizon, solver.damage);
         if materials.is_empty() {
             let mut whys: Vec<String> = root.unmapped().into_iter().map(|u| u.why).collect();
@@ -267,6 +270,10 @@ impl<'a> Converter<'a> {
         let influence = discretization.map_or("constant", influence);
         out += &format!("influence = \"{influence}\"\n");
         out += "volume_scaling = false\ncalibration = \"continuum\"\n";
+        if bonds {
+            // each end gives half of its own constant
+            out += "interface = \"parallel\"\n";
+        }
         if breaks {
             out += "contact = false\n";
         }
@@ -414,12 +421,6 @@ impl<'a> Converter<'a> {
 
     /// Materials of all blocks.
     fn materials(&mut self, blocks: &[Block], horizon: f64, damage: bool) -> Materials {
-        let setting = laws::Setting {
-            program: self.program,
-            dimension: self.points.dimension,
-            flat: self.points.flat(),
-            horizon,
-        };
         let models = self.root.list("Models");
         let root = self.root;
         let named = |list: &str| {
@@ -435,11 +436,22 @@ impl<'a> Converter<'a> {
             Program::Peridigm => "Material",
             Program::PeriLab => "Material Model",
         };
+        let of = |block: &Block| {
+            let name = block.entry.text(key_of).unwrap_or("");
+            materials.and_then(|all| all.list(name))
+        };
+        let setting = laws::Setting {
+            program: self.program,
+            dimension: self.points.dimension,
+            flat: self.points.flat(),
+            horizon,
+            yields: blocks.iter().filter_map(of).any(laws::yields),
+        };
         let mut made = Materials::default();
         let mut first = true;
         for block in blocks {
-            let name = block.entry.text(key_of).unwrap_or("");
-            let Some(material) = materials.and_then(|all| all.list(name)) else {
+            let Some(material) = of(block) else {
+                let name = block.entry.text(key_of).unwrap_or("");
                 block
                     .entry
                     .refuse(&format!("there is no material \"{name}\""));
@@ -461,6 +473,7 @@ impl<'a> Converter<'a> {
                 material.refuse("it has no Density");
                 continue;
             };
+            made.bonds |= blocks.len() > 1 && law.text.starts_with("{ pmb");
             made.text += &match blocks.len() {
                 1 => "\n[material]\n".to_string(),
                 _ => format!(

@@ -495,3 +495,73 @@ fn meshes_without_groups_are_block_1() {
         );
     }
 }
+
+/// Two points of two blocks of Peridigm; laws of the deck.
+fn two_blocks(first: &str, second: &str) -> (Converted, Deck) {
+    let mesh = "# x y z block volume\n0 0 0 1 1.0\n1 0 0 2 1.0\n0 1 0 1 1.0\n0 0 1 2 1.0\n";
+    let deck = format!(
+        "Peridigm:
+  Discretization:
+    Type: Text File
+    Input Mesh File: body.txt
+  Materials:
+    One:
+      Density: 1.0
+      Bulk Modulus: 2.0
+{first}
+    Other:
+      Density: 1.0
+      Bulk Modulus: 4.0
+{second}
+  Blocks:
+    A:
+      Block Names: block_1
+      Material: One
+      Horizon: 1.6
+    B:
+      Block Names: block_2
+      Material: Other
+      Horizon: 1.6
+  Solver:
+    Final Time: 1.0
+    Verlet:
+      Fixed dt: 0.5
+"
+    );
+    read(mesh, &deck)
+}
+
+#[test]
+fn ends_of_a_bond_between_materials_give_half_of_their_constants() {
+    // c/2 of each end is added there; here springs in a row where nothing is said
+    let pmb = "      Material Model: Elastic Bond Based";
+    let (found, _) = two_blocks(pmb, pmb);
+    assert!(
+        found.text.contains("\ninterface = \"parallel\"\n"),
+        "{}",
+        found.text
+    );
+    let lps = "      Material Model: Elastic\n      Shear Modulus: 1.0";
+    let (found, _) = two_blocks(lps, lps);
+    assert!(!found.text.contains("interface"), "{}", found.text);
+}
+
+#[test]
+fn what_is_elastic_beside_what_yields_is_a_law_that_never_yields() {
+    let lps = "      Material Model: Elastic\n      Shear Modulus: 1.0";
+    let plastic =
+        "      Material Model: Elastic Plastic\n      Shear Modulus: 1.0\n      Yield Stress: 0.1";
+    let (found, deck) = two_blocks(lps, plastic);
+    let laws = deck.spec.materials.iter().map(|m| m.law.name());
+    assert_eq!(
+        laws.collect::<Vec<_>>(),
+        ["elastic_plastic"; 2],
+        "{}",
+        found.text
+    );
+    assert!(
+        found.text.contains("yield_stress = 1e100"),
+        "{}",
+        found.text
+    );
+}
