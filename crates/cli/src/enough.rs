@@ -40,12 +40,14 @@ fn amounts(deck: &Deck, sim: &mut dyn Simulation) -> [f64; 5] {
     let (info, output) = (sim.info(), &deck.output);
     let steps = deck.steps(info.time_step);
     let films = || output.pictures.iter().filter(|p| p.film);
+    let cells = output.vtu && !deck.cells.is_empty();
     let amount = Amount {
         steps,
         every: output.every(steps),
         history: output.history.unwrap_or((steps / 100).max(1)),
         points: info.points,
-        files: u64::from(output.vtu) + u64::from(output.exodus.is_some()),
+        files: u64::from(output.vtu) + u64::from(cells) + u64::from(output.exodus.is_some()),
+        corners: if cells { deck.cells.corners() } else { 0 },
         bonds: if output.bonds {
             info.directed_bonds / 2
         } else {

@@ -327,6 +327,7 @@ fn plan(
         history: output.history.unwrap_or((steps / 100).max(1)),
         series: SeriesOptions {
             points: output.vtu,
+            cells: deck.cells.clone(),
             bonds: output.bonds,
             dump: output.dump.as_ref().map(|name| {
                 let cell = DumpBox::periodic(deck.corner, deck.spec.periodic);

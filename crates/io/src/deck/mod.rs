@@ -32,6 +32,7 @@ pub use source::Flag;
 pub use units::{Constants, Dim, UnitSystem, counted, example, named, rounded, usual};
 
 use crate::continuum::plan::FieldsSpec;
+use crate::read::Cells;
 use crate::write::trajectory::Format;
 use document::Document;
 use lower::{Entries, Files};
@@ -42,6 +43,7 @@ use serde::Deserialize;
 use source::Source;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use whole::Whole;
 
 /// A deck that was understood.
@@ -66,6 +68,8 @@ pub struct Deck {
     pub warnings: Vec<String>,
     /// What was passed over in files.
     pub notes: Vec<String>,
+    /// Cells of its meshes.
+    pub cells: Arc<Cells>,
     /// Entries of the deck that those of the spec come from.
     entries: Entries,
     source: Source,
@@ -182,6 +186,7 @@ impl Deck {
             modes: lowered.modes,
             warnings: lowered.warnings,
             notes: lowered.notes,
+            cells: Arc::new(lowered.cells),
             entries: lowered.entries,
             source,
         })

@@ -71,6 +71,7 @@ pub(super) fn write_modes(
         dump: None,
         bonds: false,
         points: true,
+        cells: plan.series.cells.clone(),
     };
     let mut series = Series::new(plan.dir.join(FOLDER), options)?;
     for (n, mode) in modes.into_iter().enumerate() {

@@ -20,6 +20,7 @@ impl Plan {
         let mut files = vec!["history.csv".to_string()];
         let mut file = |there: bool, name: &str| files.extend(there.then(|| name.to_string()));
         file(series.points, "points.pvd");
+        file(series.writes_cells(), "cells.pvd");
         file(series.bonds, "bonds.pvd");
         pictures.iter().for_each(|name| file(true, name));
         let modes = self.modes > 0 && self.dir.join("modes.csv").is_file();

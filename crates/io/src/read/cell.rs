@@ -66,6 +66,20 @@ impl Kind {
         }
     }
 
+    /// VTK's number of it ("VTK file formats", table of cell types); its corners have the order of these kinds of cells there.
+    pub fn vtk(self) -> u8 {
+        match self {
+            Kind::Vertex | Kind::Sphere => 1,
+            Kind::Line => 3,
+            Kind::Triangle => 5,
+            Kind::Quad => 9,
+            Kind::Tetra => 10,
+            Kind::Hexa => 12,
+            Kind::Prism => 13,
+            Kind::Pyramid => 14,
+        }
+    }
+
     /// Sides of a cell, by corner: edges in 2-D, faces in 3-D.
     pub fn sides(self) -> &'static [&'static [usize]] {
         match self {

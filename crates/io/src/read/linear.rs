@@ -1,7 +1,7 @@
 //! Linear bodies: the archives that [`crate::write::linear`] describes.
 
 use super::npz::Npz;
-use super::{Points, ReadError};
+use super::{Cells, Points, ReadError};
 use ndarray::{Array1, Array2, Array3};
 use peridyne::spec::{AnyLinearBody, Carriers, Cloud, LinearBody};
 use std::path::Path;
@@ -32,6 +32,7 @@ pub fn read(path: &Path) -> Result<Points, ReadError> {
         dimension: Some(dimension),
         atoms: None,
         ends: None,
+        cells: Cells::default(),
         micromoduli: Some(Arc::new(body)),
         notes: vec![],
     })

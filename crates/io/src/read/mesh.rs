@@ -8,6 +8,7 @@
 //! nodes that hold whole outer sides of all their cells, and no whole cell.
 
 use super::cell::{Cell, Kind, Nodes};
+use super::cells::Cells;
 use super::lines::Lines;
 use super::measure::measure;
 use super::plane;
@@ -89,6 +90,7 @@ impl Mesh {
         };
         let mut cloud = Cloud::default();
         let mut sources = Vec::new();
+        let mut shapes = Cells::default();
         let body: Vec<&Cell> = self
             .cells
             .iter()
@@ -101,6 +103,10 @@ impl Mesh {
         for cell in &body {
             let (centroid, volume) = measure(lines, &self.nodes, cell)?;
             cloud.position.push(centroid);
+            let corners = cell.nodes.iter().filter_map(|n| self.nodes.get(n)).copied();
+            // a plane body is one of z = 0
+            let flat = |x: [f64; 3]| [x[0], x[1], if dimension == 2 { 0.0 } else { x[2] }];
+            shapes.push(cell.kind.vtk(), corners.map(flat), flat(centroid));
             cloud.volume.push(volume);
             let mark = cell.groups.iter().map(|g| self.groups[*g].number).next();
             cloud.mark.push(mark.unwrap_or(0));
@@ -128,6 +134,7 @@ impl Mesh {
             // spheres are points of any dimension
             dimension: Some(dimension).filter(|_| body.iter().any(|c| c.kind != Kind::Sphere)),
             ends,
+            cells: shapes,
             lines: sources,
             notes,
         })

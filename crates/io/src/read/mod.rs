@@ -8,6 +8,7 @@
 mod abaqus;
 mod atoms;
 mod cell;
+mod cells;
 pub mod data;
 pub mod dump;
 pub mod eam;
@@ -36,6 +37,7 @@ pub mod vtu;
 mod whole;
 
 pub use atoms::{Atoms, Frame, Species};
+pub use cells::Cells;
 pub use mesh::Holds;
 pub use whole::text_of;
 
@@ -54,6 +56,8 @@ pub struct Points {
     pub dimension: Option<usize>,
     /// Lowest and highest coordinates of a mesh's cells.
     pub ends: Option<[[f64; 2]; 3]>,
+    /// Shapes of a mesh's cells.
+    pub cells: Cells,
     /// What files of atoms say besides.
     pub atoms: Option<AtomsFile>,
     /// Of a linear body.
@@ -241,6 +245,7 @@ fn whole(points: Sourced, name: &str) -> Result<Points, ReadError> {
         cloud: points.cloud,
         dimension: points.dimension,
         ends: points.ends,
+        cells: points.cells,
         atoms: points.atoms,
         micromoduli: None,
         notes: points.notes,
@@ -304,6 +309,7 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
         },
         dimension: None,
         ends: None,
+        cells: Cells::default(),
         lines: vec![],
         notes: vec![],
     })
@@ -314,6 +320,7 @@ struct Sourced {
     cloud: Cloud,
     dimension: Option<usize>,
     ends: Option<[[f64; 2]; 3]>,
+    cells: Cells,
     lines: Vec<usize>,
     atoms: Option<AtomsFile>,
     notes: Vec<String>,

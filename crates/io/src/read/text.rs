@@ -3,7 +3,7 @@
 use super::lines::Lines;
 use super::number::{comma, decimal_commas, number};
 use super::spacing::Spacing;
-use super::{ReadError, Sourced};
+use super::{Cells, ReadError, Sourced};
 use peridyne::spec::Cloud;
 
 /// What a column is, and how it may be called.
@@ -129,6 +129,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         cloud: reader.cloud,
         dimension: None,
         ends: None,
+        cells: Cells::default(),
         lines: reader.sources,
         notes: vec![],
     })

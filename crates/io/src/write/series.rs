@@ -1,6 +1,7 @@
 //! Everything a run writes of its points, one object: files per snapshot, collections, the last picture.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use peridyne::observe::Snapshot;
@@ -14,13 +15,16 @@ use super::picture::shown::About;
 use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
 use super::trajectory::Frames;
-use super::vtu::{write_bonds, write_points};
+use super::vtu::{write_bonds, write_cells, write_points};
+use crate::read::Cells;
 
 /// Which files a series writes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeriesOptions {
     /// `points_<step>.vtu` and `points.pvd`.
     pub points: bool,
+    /// `cells_<step>.vtu` and `cells.pvd` of the meshes that points stand for; none where it is empty.
+    pub cells: Arc<Cells>,
     /// `bonds_<step>.vtu` and `bonds.pvd`; the snapshots must carry bonds.
     pub bonds: bool,
     /// A LAMMPS dump of this name in the directory, all frames in it.
@@ -33,10 +37,18 @@ impl Default for SeriesOptions {
     fn default() -> Self {
         SeriesOptions {
             points: true,
+            cells: Arc::default(),
             bonds: false,
             dump: None,
             pictures: vec![PictureOptions::default()],
         }
+    }
+}
+
+impl SeriesOptions {
+    /// Are the cells of meshes written beside the points?
+    pub fn writes_cells(&self) -> bool {
+        self.points && !self.cells.is_empty()
     }
 }
 
@@ -47,6 +59,7 @@ pub struct Series {
     dir: PathBuf,
     options: SeriesOptions,
     points: Pvd,
+    cells: Pvd,
     bonds: Pvd,
     /// The dump and the step of its last frame.
     dump: Option<(Frames, Option<u64>)>,
@@ -64,11 +77,10 @@ impl Series {
         let dir = dir.into();
         create_directory(&dir)?;
         let mut strange = sweep_frames(&dir, "points")?;
+        strange.extend(sweep_frames(&dir, "cells")?);
         strange.extend(sweep_frames(&dir, "bonds")?);
-        let (points, bonds) = (
-            Pvd::new(dir.join("points.pvd")),
-            Pvd::new(dir.join("bonds.pvd")),
-        );
+        let [points, cells, bonds] =
+            ["points.pvd", "cells.pvd", "bonds.pvd"].map(|name| Pvd::new(dir.join(name)));
         let dump = match &options.dump {
             Some((name, _)) => Some((Frames::create(&dir.join(name))?, None)),
             None => None,
@@ -86,6 +98,7 @@ impl Series {
             dir,
             options,
             points,
+            cells,
             bonds,
             dump,
         })
@@ -113,6 +126,12 @@ impl Series {
             let name = format!("points_{:08}.vtu", s.step);
             write_file(&self.dir.join(&name), |w| write_points(w, s))?;
             self.points.push(s.time, &name)?;
+        }
+        if self.options.writes_cells() {
+            let name = format!("cells_{:08}.vtu", s.step);
+            let cells = &self.options.cells;
+            write_file(&self.dir.join(&name), |w| write_cells(w, s, cells))?;
+            self.cells.push(s.time, &name)?;
         }
         if self.options.bonds {
             let name = format!("bonds_{:08}.vtu", s.step);

@@ -6,6 +6,8 @@ use super::picture::film::Film;
 
 /// A frame of a point in a VTU or an Exodus file: positions and vectors as f64, scalars, ids (bytes).
 const POINT: f64 = 120.0;
+/// A corner of a mesh's cell in a VTU: its place and number.
+const CORNER: f64 = 32.0;
 /// An undirected bond in a VTU: two ids, offset, type.
 const BOND: f64 = 17.0;
 /// An atom in a text trajectory: three vectors and an energy in full digits.
@@ -29,6 +31,8 @@ pub struct Amount {
     pub points: u64,
     /// Files that have all points of a frame: VTU, Exodus.
     pub files: u64,
+    /// Corners of the cells of meshes, where they are written.
+    pub corners: u64,
     /// Undirected bonds, where they are written.
     pub bonds: u64,
     /// Atoms of all trajectories.
@@ -50,7 +54,10 @@ impl Amount {
             .every
             .map_or(2.0, |e| self.steps as f64 / e as f64 + 1.0);
         let points = (self.files * self.points) as f64;
-        let frame = POINT * points + BOND * self.bonds as f64 + ATOM * self.atoms as f64;
+        let frame = POINT * points
+            + CORNER * self.corners as f64
+            + BOND * self.bonds as f64
+            + ATOM * self.atoms as f64;
         let film = self.films as f64 * (PICTURE + Film::bytes(self.points, false))
             + self.arrows as f64
                 * (Film::bytes(self.points, true) - Film::bytes(self.points, false));
@@ -101,6 +108,7 @@ mod tests {
             history: 5,
             points: 100,
             files: 1,
+            corners: 8,
             bonds: 0,
             atoms: 0,
             dump: 10,
@@ -109,7 +117,7 @@ mod tests {
             probes: 3,
         };
         let [frames, dump, films, rows] = amount.bytes();
-        assert_eq!([frames, rows], [101.0 * 12_000.0, 200.0 * 260.0]);
+        assert_eq!([frames, rows], [101.0 * 12_256.0, 200.0 * 260.0]);
         assert_eq!(dump, 101.0 * 100.0 * 10.0 * 20.0);
         // four numbers of four bytes wait for each point, seven with arrows
         assert_eq!(films, 101.0 * (200e3 + 1600.0 + 2800.0));
@@ -117,7 +125,7 @@ mod tests {
             every: None,
             ..amount
         };
-        assert_eq!(ends.bytes()[0], 24_000.0);
+        assert_eq!(ends.bytes()[0], 24_512.0);
     }
 
     #[cfg(unix)]

@@ -8,6 +8,7 @@ use std::io::{self, Write};
 use peridyne::observe::{Snapshot, Values};
 
 use super::fields::{fields, invalid, positions};
+use crate::read::Cells;
 
 const VERTEX: u8 = 1;
 const LINE: u8 = 3;
@@ -20,7 +21,9 @@ enum Block<'a> {
     Field(&'a Values),
     /// 1-based numbers of the points.
     Ids(usize),
-    /// Point numbers of cells with one point each: 0, 1, 2, …
+    /// Corners of the points' cells, moved as the points are.
+    Corners(&'a Shapes<'a>),
+    /// Point numbers of cells that share no points: 0, 1, 2, …
     Vertices(usize),
     Lines(&'a [(u32, u32)]),
     /// Ends of `cells` cells with `width` points each.
@@ -32,6 +35,46 @@ enum Block<'a> {
         cells: usize,
         kind: u8,
     },
+    /// Ends and types of the cells of points.
+    Ends(&'a Shapes<'a>),
+    Kinds(&'a Shapes<'a>),
+}
+
+/// The cell of each point; one without is a vertex.
+struct Shapes<'a> {
+    cells: &'a Cells,
+    of: Vec<Option<usize>>,
+}
+
+impl Shapes<'_> {
+    /// Kind, corners in the reference, and number of a point.
+    fn each(&self) -> impl Iterator<Item = (u8, Option<&[[f64; 3]]>, usize)> {
+        self.of.iter().enumerate().map(|(i, cell)| match cell {
+            Some(n) => {
+                let (kind, corners) = self.cells.cell(*n);
+                (kind, Some(corners), i)
+            }
+            None => (VERTEX, None, i),
+        })
+    }
+
+    fn corners(&self) -> usize {
+        let each = self.each();
+        each.map(|(_, c, _)| c.map_or(1, <[_]>::len)).sum()
+    }
+}
+
+/// What a grid is made of.
+struct Topology<'a> {
+    /// Points and cells in the file.
+    points: usize,
+    cells: usize,
+    /// Where the fields of points go.
+    section: &'static str,
+    places: Block<'a>,
+    connectivity: Block<'a>,
+    offsets: Block<'a>,
+    types: Block<'a>,
 }
 
 /// An array of the file: where it goes, name, and contents. Blocks follow in the order of the header.
@@ -47,15 +90,40 @@ struct Array<'a> {
 /// Those of `w`; `InvalidInput` for arrays of unequal lengths.
 pub fn write_points<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
     let n = s.reference.len();
-    let cells = [
-        Block::Vertices(n),
-        Block::Offsets { cells: n, width: 1 },
-        Block::Types {
+    let topology = Topology {
+        points: n,
+        cells: n,
+        section: "PointData",
+        places: Block::Positions,
+        connectivity: Block::Vertices(n),
+        offsets: Block::Offsets { cells: n, width: 1 },
+        types: Block::Types {
             cells: n,
             kind: VERTEX,
         },
-    ];
-    write_grid(w, s, n, cells)
+    };
+    write_grid(w, s, topology)
+}
+
+/// Writes the cells of meshes that the points stand for, each moved as its point without turning, with all arrays the snapshot
+/// carries and `id` on the cells. Cells share no corners: what breaks gapes. Points without a cell are vertices.
+///
+/// # Errors
+/// Those of `w`; `InvalidInput` for arrays of unequal lengths.
+pub fn write_cells<W: Write>(w: &mut W, s: &Snapshot, cells: &Cells) -> io::Result<()> {
+    let of = cells.of_points(&s.reference);
+    let shapes = Shapes { cells, of };
+    let corners = shapes.corners();
+    let topology = Topology {
+        points: corners,
+        cells: s.reference.len(),
+        section: "CellData",
+        places: Block::Corners(&shapes),
+        connectivity: Block::Vertices(corners),
+        offsets: Block::Ends(&shapes),
+        types: Block::Kinds(&shapes),
+    };
+    write_grid(w, s, topology)
 }
 
 /// Writes the unbroken bonds as line cells between the current positions, with the same arrays on the points.
@@ -69,53 +137,53 @@ pub fn write_bonds<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
         .as_deref()
         .ok_or_else(|| invalid("the snapshot carries no bonds".to_string()))?;
     let n = bonds.len();
-    let cells = [
-        Block::Lines(bonds),
-        Block::Offsets { cells: n, width: 2 },
-        Block::Types {
+    let topology = Topology {
+        points: s.reference.len(),
+        cells: n,
+        section: "PointData",
+        places: Block::Positions,
+        connectivity: Block::Lines(bonds),
+        offsets: Block::Offsets { cells: n, width: 2 },
+        types: Block::Types {
             cells: n,
             kind: LINE,
         },
-    ];
-    write_grid(w, s, n, cells)
+    };
+    write_grid(w, s, topology)
 }
 
-fn write_grid<W: Write>(
-    w: &mut W,
-    s: &Snapshot,
-    cells: usize,
-    topology: [Block; 3],
-) -> io::Result<()> {
+fn write_grid<W: Write>(w: &mut W, s: &Snapshot, topology: Topology) -> io::Result<()> {
     let n = s.reference.len();
     let mut arrays = Vec::new();
     for column in fields(s)? {
         arrays.push(Array {
-            section: "PointData",
+            section: topology.section,
             name: column.name(),
             block: Block::Field(&column.values),
         });
     }
     arrays.push(Array {
-        section: "PointData",
+        section: topology.section,
         name: "id",
         block: Block::Ids(n),
     });
     arrays.push(Array {
         section: "Points",
         name: "position",
-        block: Block::Positions,
+        block: topology.places,
     });
-    for (name, block) in ["connectivity", "offsets", "types"]
-        .into_iter()
-        .zip(topology)
-    {
+    for (name, block) in [
+        ("connectivity", topology.connectivity),
+        ("offsets", topology.offsets),
+        ("types", topology.types),
+    ] {
         arrays.push(Array {
             section: "Cells",
             name,
             block,
         });
     }
-    write_header(w, s, cells, &arrays)?;
+    write_header(w, s, (topology.points, topology.cells), &arrays)?;
     for array in &arrays {
         array.block.write(w, s)?;
     }
@@ -125,7 +193,7 @@ fn write_grid<W: Write>(
 fn write_header<W: Write>(
     w: &mut W,
     s: &Snapshot,
-    cells: usize,
+    (points, cells): (usize, usize),
     arrays: &[Array],
 ) -> io::Result<()> {
     let n = s.reference.len();
@@ -149,7 +217,7 @@ fn write_header<W: Write>(
     )?;
     writeln!(
         w,
-        "</FieldData>\n<Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{cells}\">"
+        "</FieldData>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
     )?;
     let mut offset = 0;
     let mut section = "";
@@ -160,10 +228,10 @@ fn write_header<W: Write>(
             }
             section = a.section;
             let active = match section {
-                "PointData" if s.column("damage").is_some() => {
+                "PointData" | "CellData" if s.column("damage").is_some() => {
                     r#" Scalars="damage" Vectors="displacement""#
                 }
-                "PointData" => r#" Vectors="displacement""#,
+                "PointData" | "CellData" => r#" Vectors="displacement""#,
                 _ => "",
             };
             writeln!(w, "<{section}{active}>")?;
@@ -187,7 +255,7 @@ impl Block<'_> {
     /// VTK's name of the number type, and the number of components.
     fn kind(&self) -> (&'static str, usize) {
         match self {
-            Block::Positions => ("Float64", 3),
+            Block::Positions | Block::Corners(_) => ("Float64", 3),
             Block::Field(values) => match values {
                 Values::Scalars(_) => ("Float64", 1),
                 Values::Vectors(_) => ("Float64", 3),
@@ -196,10 +264,12 @@ impl Block<'_> {
                 Values::Integers(_) => ("Int32", 1),
                 Values::Counts(_) => ("UInt32", 1),
             },
-            Block::Ids(_) | Block::Vertices(_) | Block::Lines(_) | Block::Offsets { .. } => {
-                ("Int64", 1)
-            }
-            Block::Types { .. } => ("UInt8", 1),
+            Block::Ids(_)
+            | Block::Vertices(_)
+            | Block::Lines(_)
+            | Block::Offsets { .. }
+            | Block::Ends(_) => ("Int64", 1),
+            Block::Types { .. } | Block::Kinds(_) => ("UInt8", 1),
         }
     }
 
@@ -236,6 +306,9 @@ impl Block<'_> {
             Block::Lines(bonds) => 16 * bonds.len(),
             Block::Offsets { cells, .. } => 8 * cells,
             Block::Types { cells, .. } => *cells,
+            Block::Corners(shapes) => 24 * shapes.corners(),
+            Block::Ends(shapes) => 8 * shapes.of.len(),
+            Block::Kinds(shapes) => shapes.of.len(),
         };
         bytes as u64
     }
@@ -259,6 +332,28 @@ impl Block<'_> {
             }
             Block::Offsets { cells, width } => integers(w, (1..=cells).map(|c| (c * width) as i64)),
             Block::Types { cells, kind } => (0..cells).try_for_each(|_| w.write_all(&[kind])),
+            Block::Corners(shapes) => {
+                let (x, u) = (&s.reference, s.displacement());
+                let moved = shapes.each().flat_map(|(_, corners, i)| {
+                    let corners = corners.unwrap_or(std::slice::from_ref(&x[i]));
+                    let by = u[i];
+                    corners
+                        .iter()
+                        .map(move |c| std::array::from_fn(|a| c[a] + by[a]))
+                });
+                rows(w, moved)
+            }
+            Block::Ends(shapes) => {
+                let mut end = 0;
+                let ends = shapes.each().map(|(_, corners, _)| {
+                    end += corners.map_or(1, <[_]>::len) as i64;
+                    end
+                });
+                integers(w, ends)
+            }
+            Block::Kinds(shapes) => shapes
+                .each()
+                .try_for_each(|(kind, ..)| w.write_all(&[kind])),
         }
     }
 }
@@ -356,6 +451,37 @@ pub(super) mod tests {
         assert_eq!(integers(&file, "offsets"), [1, 2, 3]);
         assert_eq!(appended(&file, "types"), [1, 1, 1]);
         assert!(file.ends_with(b"\n</AppendedData>\n</VTKFile>\n"));
+    }
+
+    #[test]
+    fn cells_of_a_mesh_move_with_their_points() {
+        let s = small();
+        let mut cells = Cells::default();
+        let triangle = [[-0.1, 0.4, 0.25], [0.2, 0.4, 0.25], [-0.1, 0.7, 0.25]];
+        cells.push(5, triangle.into_iter(), s.reference[2]);
+        let square = [
+            [-0.2, -0.2, 0.0],
+            [0.2, -0.2, 0.0],
+            [0.2, 0.2, 0.0],
+            [-0.2, 0.2, 0.0],
+        ];
+        cells.push(9, square.into_iter(), [-0.0; 3]);
+        let mut file = Vec::new();
+        write_cells(&mut file, &s, &cells).unwrap();
+        let header = String::from_utf8_lossy(&file);
+        assert!(header.contains(r#"NumberOfPoints="8" NumberOfCells="3""#));
+        assert!(header.contains("<CellData ") && !header.contains("PointData"));
+        // the second point has no cell
+        assert_eq!(appended(&file, "types"), [9, 1, 5]);
+        assert_eq!(integers(&file, "offsets"), [4, 5, 8]);
+        assert_eq!(integers(&file, "connectivity"), (0..8).collect::<Vec<_>>());
+        let u = s.displacement();
+        let moved = |x: [f64; 3], i: usize| [x[0] + u[i][0], x[1] + u[i][1], x[2] + u[i][2]];
+        let all = square.map(|x| moved(x, 0)).into_iter();
+        let all = all.chain([moved(s.reference[1], 1)]);
+        let all: Vec<f64> = all.chain(triangle.map(|x| moved(x, 2))).flatten().collect();
+        assert_eq!(floats(&file, "position"), all);
+        assert_eq!(floats(&file, "damage"), s.scalars("damage").unwrap());
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::{points, section};
 use crate::deck::document::{Body, Document, LatticeName, SurfaceName};
 use crate::deck::units::{Dim, UnitSystem};
 use crate::deck::value::{At, Or};
-use crate::read::AtomsFile;
+use crate::read::{AtomsFile, Cells};
 use peridyne::run::Shelf;
 use peridyne::space::lattice::{Ends, Lattice, LatticeKind};
 use peridyne::space::region::Region;
@@ -43,6 +43,7 @@ pub(super) fn body(
         ("lattice", written.lattice.is_some()),
         ("file", written.file.is_some()),
     ];
+    let mut cells = Cells::default();
     let (spec, natural) = match context.one_of(&body.span, "the body", &given)? {
         0 => (
             None,
@@ -56,6 +57,7 @@ pub(super) fn body(
             context.atoms = points.atoms;
             context.micromoduli = points.micromoduli;
             context.ends = points.ends;
+            cells = points.cells;
             let notes = points.notes.into_iter();
             let name = written.file.as_ref().map_or("", |f| &f.value);
             context.notes.extend(notes.map(|n| format!("{name}: {n}")));
@@ -121,6 +123,7 @@ pub(super) fn body(
                 cloud.position.iter_mut().flatten().for_each(|c| *c *= unit);
                 let ends = context.ends.iter_mut().flatten().flatten();
                 ends.for_each(|c| *c *= unit);
+                cells.scale(unit);
                 cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
                 for (_, areas) in &mut cloud.faces {
                     *areas = areas.iter().map(|a| a * unit.powi(power - 1)).collect();
@@ -174,6 +177,7 @@ pub(super) fn body(
                     cloud.velocity.iter_mut().flatten().for_each(|v| *v *= unit);
                 }
             }
+            context.cells.append(cells);
             Ok(BodySpec::Cloud(cloud))
         }
         (None, None) => Err(context.error(&body.span, "the body needs one of lattice, file")),

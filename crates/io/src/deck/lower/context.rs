@@ -4,7 +4,7 @@ use crate::deck::error::{DeckError, nearest};
 use crate::deck::source::Source;
 use crate::deck::units::{self, Dim, Dimensions, Kind, UnitSystem};
 use crate::deck::value::{At, Number, Written};
-use crate::read::AtomsFile;
+use crate::read::{AtomsFile, Cells};
 use peridyne::expression::{Expression, ExpressionError};
 use peridyne::spec::AnyLinearBody;
 use std::cell::RefCell;
@@ -26,6 +26,8 @@ pub(in crate::deck) struct Context<'a> {
     pub micromoduli: Option<Arc<AnyLinearBody>>,
     /// Lowest and highest coordinates of the cells of a mesh; of several bodies those of the last.
     pub ends: Option<[[f64; 2]; 3]>,
+    /// Cells of all meshes.
+    pub cells: Cells,
     /// What was passed over in files.
     pub notes: Vec<String>,
     /// What looks wrong in files, with the line that names them.
@@ -53,6 +55,7 @@ impl<'a> Context<'a> {
             atoms: None,
             micromoduli: None,
             ends: None,
+            cells: Cells::default(),
             notes: Vec::new(),
             doubts: Vec::new(),
             unitless: RefCell::default(),

@@ -4,6 +4,7 @@ use super::context::{Context, Result};
 use crate::deck::document::Body;
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number};
+use crate::read::Cells;
 use crate::read::eam::{self, EamFile};
 use crate::read::entries::Entry;
 use crate::read::{Frame, Points};
@@ -26,6 +27,7 @@ impl Files<'_> {
                 cloud: Cloud::default(),
                 dimension: None,
                 ends: None,
+                cells: Cells::default(),
                 atoms: None,
                 micromoduli: None,
                 notes: Vec::new(),

@@ -40,6 +40,7 @@ use super::source::Source;
 use super::units::{Constants, Dim, UnitSystem, short};
 use super::value::{At, Or, Written};
 use crate::continuum::plan::FieldsSpec;
+use crate::read::Cells;
 use context::{Context, Result};
 use peridyne::run::Shelf;
 use peridyne::spec::{
@@ -62,6 +63,7 @@ pub(super) struct Lowered {
     pub modes: usize,
     pub warnings: Vec<String>,
     pub notes: Vec<String>,
+    pub cells: Cells,
     pub entries: Entries,
 }
 
@@ -263,6 +265,7 @@ pub(super) fn lower(
         modes: run.modes,
         warnings: warnings::warnings(&context, document),
         notes: context.notes,
+        cells: context.cells,
         entries: Entries {
             conditions: conditions.entries,
             indenters: indenters.entries,
