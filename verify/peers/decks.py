@@ -5,7 +5,7 @@ Usage: python decks.py PERIDYNE [--peridigm CHECKOUT] [--perilab CHECKOUT] [--on
 CHECKOUT is a clone of github.com/peridigm/peridigm or github.com/PeriHub/PeriLab.jl, bare or with files. A line of the table is a deck:
 what became of it, the largest difference of each field from the gold over all points and common times, as part of the field's largest
 value, and entries that were not mapped. It agrees where all fields are within TOLERANCE, or within its own in KNOWN with the reason
-for it. Exit code 1 if a deck that agreed in KNOWN, or is not in it, does not: what differs must have its reason here.
+for it. Exit code 1 if one that is not in KNOWN, or has a tolerance there, does not agree: what differs must have its reason.
 
 What is compared, and what is not:
 - Displacements and velocities of components that are free: those that are prescribed agree by themselves, and Peridigm adds half of a
@@ -15,8 +15,11 @@ What is compared, and what is not:
 - A run in time without `Fixed dt` takes the step of the gold: it is an estimate there, and another here.
 - PeriLab's first record is empty; that of the start is written after the first evaluation, with prescribed displacements, and is not
   compared where t is a load or what has broken is asked for.
+- PeriLab's statics and Newmark write forces that are not 0 where nothing is held and 0 where something is: they are not compared. Its
+  Newmark gives the state after a step the time before it.
 - PeriLab's Verlet (Verlet_solver.jl, update_velocity_and_position!) adds Δt/2 a once a step: from the second step on its points move
-  as if twice as heavy. Of its decks with points in motion the states at 0 and Δt are compared, which are those of Verlet.
+  as if twice as heavy. Its decks in which nothing acts at the start run with twice the density, which makes the same states; of others
+  the states at 0 and Δt are compared, which are those of Verlet.
 Needs: pip install numpy scipy
 """
 
@@ -156,12 +159,11 @@ def common(gold, times, kept):
 
 
 def step_of(gold):
-    """The step of a gold file of PeriLab: records are one every k steps, the first after the k-th."""
-    times = gold.times[1:] if len(gold.times) > 1 and gold.times[1] == gold.times[0] else gold.times
-    if len(times) < 3:
+    """The step of a gold file of PeriLab: after an empty record there is one every k states, the first that of the k-th."""
+    times = gold.times[1:]
+    if len(times) < 2:
         return None
-    between = times[2] - times[1]
-    return float(between - times[0] if times[0] > 0 else between)
+    return float(times[1] - times[0] - times[0])
 
 
 class Conditions:
@@ -200,23 +202,28 @@ class Conditions:
         return found[at]
 
 
-def compare(ours, gold, times, deck, program):
-    """Largest difference of each field as part of its largest value, or why there is none."""
+def points_of(ours, gold):
+    """Our point at each of the gold's, or why there is none."""
     distance, nearest = cKDTree(ours.at).query(gold.at)
     size = np.ptp(gold.at, axis=0).max()
     if len(ours.at) != len(gold.at) or distance.max() > 1e-6 * size:
         return f"its points are others: {len(gold.at)} there, {len(ours.at)} here, {distance.max():.1e} apart"
+    return nearest
+
+
+def compare(ours, gold, times, deck, program, last):
+    """Largest difference of each field as part of its largest value, or why there is none; up to the step `last`, if that is there."""
+    nearest = points_of(ours, gold)
+    if isinstance(nearest, str):
+        return nearest
     conditions = Conditions(deck)
-    written = deck.read_text()
-    statics, peri_lab = "[statics]" in written, program == "perilab"
-    free = np.ones((len(gold.at), 3), bool)
+    statics, peri_lab = "[statics]" in deck.read_text(), program == "perilab"
+    matrices = peri_lab and (statics or "newmark" in deck.read_text())
     of = None
+    free = np.ones((len(gold.at), 3), bool)
     if conditions.at is not None:
         of = cKDTree(conditions.at).query(gold.at)[1]
         free = conditions.free[of]
-    moving = peri_lab and not statics and "newmark" not in written and free.any()
-    # Verlet there is that of the books up to the second state
-    last = step_of(gold) if moving else None
     start = times[0]
     kept = lambda t: not (statics and peri_lab and t == start) and (last is None or t <= start + 1.001 * last)
     pairs = common(gold, times, kept)
@@ -226,11 +233,11 @@ def compare(ours, gold, times, deck, program):
     order = np.concatenate([ours.data.variables[k.replace("attrib", "connect")].data[:, 0] for k in attributes(ours)]) - 1
     volumes = np.empty(len(ours.at))
     volumes[order] = volume
-    worst = {}
+    worst, something = {}, False
     for label, (here, there) in FIELDS.items():
         largest, off = 0.0, 0.0
         in_motion = label in ("displacement", "velocity")
-        if (statics and label == "velocity") or (in_motion and not free.any()):
+        if (statics and label == "velocity") or (in_motion and not free.any()) or (matrices and label.startswith("force")):
             continue
         for g, a, b, weight in pairs:
             if label == "damage" and peri_lab and gold.times[g] == start:
@@ -249,14 +256,17 @@ def compare(ours, gold, times, deck, program):
                 found = found + np.eye(3).ravel()
             if label == "force":
                 found = found * volumes[nearest][:, None]
-            known = ~np.isnan(wanted)
+            asked = ~np.isnan(wanted)
             if in_motion:
-                known &= free[:, : wanted.shape[1]]
+                asked &= free[:, : wanted.shape[1]]
             largest = max(largest, np.abs(wanted).max(initial=0.0, where=~np.isnan(wanted)))
-            off = max(off, np.abs(found - wanted)[known].max(initial=0.0))
+            off = max(off, np.abs(found - wanted)[asked].max(initial=0.0))
+            something |= bool(wanted[asked].any() or found[asked].any())
         else:
             worst[label] = float(off if largest == 0.0 else off / largest)
-    return worst or "no field of the gold is in the run, or every component of it is prescribed"
+    if not something:
+        return "no field of the gold is in the run with a component that is free and not 0"
+    return worst
 
 
 def attributes(file):
@@ -268,6 +278,16 @@ def shorter(message):
     lines = [l.strip(" ×│╭╰─·▶|") for l in message.splitlines() if "not mapped:" not in l and ": note:" not in l]
     text = re.sub(r"\s+", " ", " ".join(l for l in lines if l)).strip()
     return re.sub(r"/\S*/(\S+)", r"\1", text.removeprefix("Error:").strip())[:160] or "nothing was said"
+
+
+def twice_as_heavy(new, damping):
+    """Doubles densities and dampings of a deck; adds a damping, as part of the velocity in a unit of time, where the deck has none."""
+    text = re.sub(r"(?m)^(density|damping) = (\S+)", lambda m: f"{m[1]} = {2.0 * float(m[2])!r}", new.read_text())
+    if damping and "\ndamping = " not in text:
+        material = tomllib.loads(text)["material"]
+        for m in [material] if "law" in material else material.values():
+            text += f"\n[[condition]]\nset = \"{m.get('set', 'all')}\"\ndamping = {m['density'] * damping!r}\n"
+    new.write_text(text)
 
 
 def case(peridyne, deck, name, program, seconds):
@@ -287,39 +307,63 @@ def case(peridyne, deck, name, program, seconds):
             gold = gold and Exodus(gold)
         except (TypeError, ValueError) as error:
             return Line(name, "no gold", f"its gold is not read: {error}", {}, left)
+        step = None
         if not statics and "newmark" not in new.read_text():
             estimated = program == "perilab" and "time_step = {" in new.read_text()
             step = step_of(gold) if gold and estimated else None
             if step:
-                sets.append(f"run.time_step={step!r}")
+                # every state is written: between those of frames nothing is known
+                sets += [f"run.time_step={step!r}", "output.every=1"]
             # there a step that is too long is taken as it is
             if step or "time_step = {" not in new.read_text():
                 sets.append("run.force_unstable=true")
-        run = [peridyne, "run", str(new), "--out", str(folder / "out"), *(w for s in sets for w in ("--set", s))]
-        try:
-            done = subprocess.run(run, capture_output=True, text=True, timeout=seconds)
-        except subprocess.TimeoutExpired:
-            return Line(name, "too long", f"more than {seconds} s", {}, left)
-        if done.returncode != 0:
-            return Line(name, "does not run", shorter(done.stderr), {}, left)
+        if step:
+            new.write_text(re.sub(r"(?m)^frames = \d+\n", "", new.read_text()))
+        def run(*more):
+            """The results, or why there are none."""
+            command = [peridyne, "run", str(new), "--out", str(folder / "out")]
+            command += [word for s in [*sets, *more] for word in ("--set", s)]
+            try:
+                done = subprocess.run(command, capture_output=True, text=True, timeout=seconds)
+            except subprocess.TimeoutExpired:
+                return Line(name, "too long", f"more than {seconds} s", {}, left)
+            if done.returncode != 0:
+                return Line(name, "does not run", shorter(done.stderr), {}, left)
+            return Exodus(next((folder / "out").glob("*.e")))
+
+        moving = program == "perilab" and not statics and "newmark" not in new.read_text() and Conditions(new).free.any()
+        last = step_of(gold) if gold and moving else None
+        if last is None:
+            ours = run()
+        else:
+            ours = run("run.steps=1" if "\nsteps = " in new.read_text() else f"run.duration={last!r}")
+            fields = [] if isinstance(ours, Line) else [ours.field([f], 0) for f in ("force_density", "velocity")]
+            if any(f is not None for f in fields) and not any(f is not None and f.any() for f in fields):
+                last = None
+                damping = float((entries(text, "Numerical Damping") or ["0"])[0])
+                twice_as_heavy(new, damping / step if step and damping else 0.0)
+                ours = run()
+        if isinstance(ours, Line):
+            return ours
         if gold is None:
             return Line(name, "no gold", "", {}, left)
-        ours = Exodus(next((folder / "out").glob("*.e")))
         start = float((entries(text, "Initial Time") or ["0"])[0])
         times = ours.times + start
+        if program == "perilab" and "newmark" in new.read_text():
+            times = times - ours.times[1]
         if statics:
             end = entries(text, "Final Time")
             steps = entries(text, "Time Steps")
             end = float(end[0]) if end else float(steps[0].split()[-1])
             times = start + (end - start) * ours.times
-        found = compare(ours, gold, times, new, program)
+        found = compare(ours, gold, times, new, program, last)
     if isinstance(found, str):
-        return Line(name, "differs", found, {}, left)
-    tolerance, why = KNOWN.get(name, (TOLERANCE, ""))
+        return Line(name, "not compared", found, {}, left)
+    tolerance, why = known(name)
     most = max(found.values())
     if tolerance is None:
-        return Line(name, "differs", why, found, left)
-    return Line(name, "agrees" if most <= tolerance else "DIFFERS", why, found, left)
+        return Line(name, "differs", "", found, left)
+    return Line(name, "agrees" if most <= tolerance else "DIFFERS", "", found, left)
 
 
 def table(lines):
@@ -328,15 +372,58 @@ def table(lines):
         worst = ", ".join(f"{field} {value:.0e}" for field, value in l.worst.items())
         left = collections.Counter(e.split(" / ")[0] for e in l.left)
         rest = ", ".join(f"{k} ({n})" for k, n in left.items())
-        rows.append(f"| {l.case} | {l.kind} | {worst} | {'; '.join(x for x in (l.text.replace('|', '/'), rest) if x)} |")
+        why = known(l.case)[1] if l.kind != "refused" else ""
+        said = [x for x in (why, l.text.replace("|", "/"), rest and "not mapped: " + rest) if x]
+        rows.append(f"| {l.case} | {l.kind} | {worst} | {'; '.join(said)} |")
     counts = collections.Counter(l.kind for l in lines)
     rows.append("")
     rows.append(f"{len(lines)} decks: " + ", ".join(f"{n} {kind}" for kind, n in counts.most_common()))
     return "\n".join(rows)
 
 
-# tolerance, or None where it differs; and why
-KNOWN = {}
+# names of decks, tolerance (None: it differs), and why; the first that fits
+KNOWN = [
+    # Peridigm
+    ("Body_Force/Body_Force_Implicit", None, "its first acceleration of implicit motion is 0; here a load acts from the start"),
+    ("Bar_TwoDisconnectedPieces_QS/", None, "Omit Bonds Between Blocks is not mapped: blocks become bodies of their own"),
+    ("Contact_", None, "contact is not mapped: search and stiffness are its own"),
+    ("ElementVariableOutput/", None, "its node set has a point 0, which Peridigm itself refuses now; the gold took it as the first"),
+    ("Interfaces/", None, "a block is of a material that is not mapped, and holds the others"),
+    ("Notched_Plate_Data_Loader/", None, "values of a file of data are not mapped"),
+    ("PrecrackedPlateTwoCracks/", None, "bonds meet the edge of a crack: round-off decides there (of 41,640 neighbours 48 are on one side alone)"),
+    ("WaveInCube/", None, "its mesh is not in the repository"),
+    ("(Multiphysics|Pals)_", None, "no law here"),
+    # PeriLab
+    ("test_Bond_Based_Elastic/test_bond_based_elastic_2D", 1e-3, "displacements of 1e-13 of a length of 1: round-off of stretches"),
+    ("test_Bond_Based_Elastic/test_static_bond_based_elastic_2D", None, "its solver stops at residuals of 1e-8 of forces of 1e-9"),
+    ("test_Gmsh/", 1e-5, "its damping takes a part of the velocity once a step, here it is a force"),
+    ("test_FEM", None, "finite elements are not mapped"),
+    ("test_Penalty_Contact/", None, "contact is not mapped"),
+    ("test_DCB/DCBmodel_(PD_solid|unified_bb)", None, "ENERGY"),
+    ("test_DCB/DCBmodel_UMAT", None, "no law of the user"),
+    ("test_DCB/", None, "CORRESPONDENCE; ENERGY"),
+    ("test_Newmark/Newmark_thermal|thermal|temperature|matrix_based_additive|Hetval|heat_transfer", None, "temperatures are not mapped"),
+    ("test_Newmark/Newmark_solver_DCBmodel", None, "CORRESPONDENCE; ENERGY"),
+    ("test_(Correspondence|correspondence)|_correspondence|test_Newmark/|test_linear_static_matrix_based_solver/", None, "CORRESPONDENCE"),
+    ("test_aniso_damage/", None, "damage of directions is not mapped; ENERGY"),
+    ("test_body_force/", None, "its points of distorted hexahedra are means of the corners, here the centroids"),
+    ("test_critical_energy/critical_energy_pressure", None, "bonds break in compression there (Only Tension: false); here in tension alone"),
+    ("test_point_wise_material/", None, "moduli of each point (a column of the mesh) are not mapped"),
+    ("test_Surface_Correction/", None, "its correction of surfaces is not mapped"),
+    ("test_(BCs|dry_run|reload)", None, "Material Models: False: nothing acts there"),
+]
+REASONS = {
+    "CORRESPONDENCE": "its first Piola stress is (C:E)F^-1, here F(C:E), the slope of an energy; its control of zero-energy modes is a tensor, C:K^-1",
+    "ENERGY": "Critical Energy is the energy of a bond by the forces of now, here the stretch that the fracture energy says",
+}
+
+
+def known(name):
+    """Tolerance of a deck and the reason for it."""
+    tolerance, why = next(((t, w) for pattern, t, w in KNOWN if re.search(pattern, name)), (TOLERANCE, ""))
+    for short, text in REASONS.items():
+        why = why.replace(short, text)
+    return tolerance, why
 
 
 def main():
@@ -366,8 +453,9 @@ def main():
     print(table(lines))
     if a.table:
         pathlib.Path(a.table).write_text(table(lines) + "\n")
-    if any(l.kind == "DIFFERS" for l in lines):
-        sys.exit("decks differ that have no reason in KNOWN")
+    unknown = [l.case for l in lines if l.kind not in ("agrees", "refused", "no gold") and not known(l.case)[1]]
+    if unknown or any(l.kind == "DIFFERS" for l in lines):
+        sys.exit(f"decks without a reason in KNOWN: {unknown}")
 
 
 if __name__ == "__main__":

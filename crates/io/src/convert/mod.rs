@@ -181,6 +181,8 @@ struct Materials {
     height: Option<f64>,
     /// Can any break?
     breaks: bool,
+    /// Sets and densities of the blocks.
+    densities: Vec<(String, f64)>,
     /// Are there several of bonds that act directly?
     bonds: bool,
 }
@@ -241,6 +243,7 @@ impl<'a> Converter<'a> {
             height,
             breaks,
             bonds,
+            densities,
         } = self.materials(&blocks, given_horizon, solver.damage);
         if materials.is_empty() {
             let mut whys: Vec<String> = root.unmapped().into_iter().map(|u| u.why).collect();
@@ -304,6 +307,13 @@ impl<'a> Converter<'a> {
                 dimension,
             };
             out += &conditions::conditions(given, &stage, &mut self.remarks);
+        }
+        for (set, density) in densities.iter().filter(|_| solver.damping > 0.0) {
+            out += &format!(
+                "\n[[condition]]\nset = {}\ndamping = {:?}\n",
+                quoted(if densities.len() == 1 { "all" } else { set }),
+                density * solver.damping
+            );
         }
         let mut labels = vec![];
         if let Some(all) = root.list("Compute Class Parameters") {
@@ -473,6 +483,7 @@ impl<'a> Converter<'a> {
                 material.refuse("it has no Density");
                 continue;
             };
+            made.densities.push((block.name.clone(), density));
             made.bonds |= blocks.len() > 1 && law.text.starts_with("{ pmb");
             made.text += &match blocks.len() {
                 1 => "\n[material]\n".to_string(),

@@ -17,6 +17,8 @@ pub struct Solver {
     pub damage: bool,
     /// Steps or increments, where they are known.
     pub steps: Option<u64>,
+    /// Part of a velocity that is lost in a unit of time, where it is known; 0: none.
+    pub damping: f64,
 }
 
 /// Lists of the top whose name begins so, in order.
@@ -83,10 +85,21 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
     };
     if let Some(list) = solver.list("Verlet") {
         let (time, steps) = step(list, to - from, program);
-        list.refuse_entry(
-            "Numerical Damping",
-            "write damping in a [[condition]], force density / velocity",
-        );
+        // a part of the velocity is taken in each step
+        let damping = match (list.number("Numerical Damping"), steps) {
+            (Some(part), Some(steps)) => part * steps as f64 / (to - from),
+            (Some(part), None) if part != 0.0 => {
+                list.refuse_entry(
+                    "Numerical Damping",
+                    "it is a part of the velocity in each step, and there is no Fixed dt: write damping in a [[condition]], density times that part / step",
+                );
+                0.0
+            }
+            _ => 0.0,
+        };
+        if program == Program::PeriLab {
+            remarks.push("Verlet of PeriLab (as of August 2026) adds half of the acceleration in each step: its points move as if twice as heavy, from the second step on".into());
+        }
         return Ok(Solver {
             text: format!("\n[run]\n{time}"),
             clock: moving,
@@ -94,6 +107,7 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
             to,
             damage,
             steps,
+            damping,
         });
     }
     for name in ["Implicit", "Newmark"] {
@@ -132,6 +146,7 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
             to,
             damage,
             steps,
+            damping: 0.0,
         });
     }
     for name in [
@@ -150,6 +165,12 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
             "newton"
         };
         residuals(list);
+        // as many whole steps as are nearest to the time that is asked for
+        let fixed = list.number("Fixed dt").filter(|dt| *dt > 0.0);
+        let to = match (program, fixed) {
+            (Program::PeriLab, Some(dt)) if same(name, "Static") => from + dt * increments as f64,
+            _ => to,
+        };
         remarks.push(format!(
             "t goes from 0 to 1 in statics: conditions have ({from:?} + {:?} t) in place of t",
             to - from
@@ -164,6 +185,7 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
             to,
             damage,
             steps: Some(increments),
+            damping: 0.0,
         });
     }
     Err("the solver is none of Verlet, Implicit, Newmark, QuasiStatic, NOXQuasiStatic, Static, Linear Static Matrix Based".into())

@@ -337,9 +337,7 @@ impl Block<'_> {
                 let moved = shapes.each().flat_map(|(_, corners, i)| {
                     let corners = corners.unwrap_or(std::slice::from_ref(&x[i]));
                     let by = u[i];
-                    corners
-                        .iter()
-                        .map(move |c| std::array::from_fn(|a| c[a] + by[a]))
+                    corners.iter().map(move |c| [0, 1, 2].map(|a| c[a] + by[a]))
                 });
                 rows(w, moved)
             }

@@ -1,6 +1,7 @@
 //! What the other programs do, by hand, against what the new deck says.
 
 use super::*;
+use peridyne::spec::{LawSpec, MaterialSpec};
 
 /// A cube of five points to an edge, one apart, from 0.
 pub fn cube() -> String {
@@ -552,15 +553,43 @@ fn what_is_elastic_beside_what_yields_is_a_law_that_never_yields() {
     let plastic =
         "      Material Model: Elastic Plastic\n      Shear Modulus: 1.0\n      Yield Stress: 0.1";
     let (found, deck) = two_blocks(lps, plastic);
-    let laws = deck.spec.materials.iter().map(|m| m.law.name());
-    assert_eq!(
-        laws.collect::<Vec<_>>(),
-        ["elastic_plastic"; 2],
+    let named = |m: &MaterialSpec| match &m.law {
+        LawSpec::Named(law) => law.name.clone(),
+        _ => String::new(),
+    };
+    let laws: Vec<String> = deck.spec.materials.iter().map(named).collect();
+    assert_eq!(laws, ["elastic_plastic"; 2], "{}", found.text);
+    assert!(
+        found.text.contains("yield_stress = 1e100"),
         "{}",
         found.text
     );
+}
+
+#[test]
+fn numerical_damping_is_a_part_of_the_velocity_in_each_step() {
+    let material = "        Material Model: PD Solid Elastic\n        Bulk Modulus: 2.0\n        Shear Modulus: 1.0";
+    let deck = |solver: &str| perilab(material, "", solver);
+    let fixed = deck(
+        "    Final Time: 1.0\n    Verlet:\n      Fixed dt: 0.25\n      Numerical Damping: 1.0e-3\n",
+    );
+    let (found, _) = read(&cube(), &fixed);
+    // 1e-3 in a step of 0.25 of a density of 1
+    let text = found
+        .text
+        .split_once("damping = ")
+        .map(|(_, t)| t.lines().next());
+    let damping: f64 = text.flatten().unwrap().parse().unwrap();
+    near(damping, 4e-3);
+    let free = deck(
+        "    Final Time: 1.0\n    Verlet:\n      Safety Factor: 0.5\n      Numerical Damping: 1.0e-3\n",
+    );
+    let (found, _) = read(&cube(), &free);
     assert!(
-        found.text.contains("yield_stress = 1e100"),
+        found
+            .unmapped
+            .iter()
+            .any(|u| u.entry.contains("Numerical Damping")),
         "{}",
         found.text
     );

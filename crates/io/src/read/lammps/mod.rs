@@ -89,6 +89,7 @@ pub(super) fn parse(text: &str, name: &str) -> std::result::Result<Sourced, Read
         },
         dimension: None,
         ends: None,
+        cells: crate::read::Cells::default(),
         // the file is in no order; the engine names points in one place by their number
         lines: vec![],
         notes: { [GUESSED].into_iter().filter(|_| !named) }
