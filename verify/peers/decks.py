@@ -261,7 +261,8 @@ def compare(ours, gold, times, deck, program, last):
                 asked &= free[:, : wanted.shape[1]]
             largest = max(largest, np.abs(wanted).max(initial=0.0, where=~np.isnan(wanted)))
             off = max(off, np.abs(found - wanted)[asked].max(initial=0.0))
-            something |= bool(wanted[asked].any() or found[asked].any())
+            # that nothing breaks is a result
+            something |= label == "damage" or bool(wanted[asked].any() or found[asked].any())
         else:
             worst[label] = float(off if largest == 0.0 else off / largest)
     if not something:
@@ -333,6 +334,9 @@ def case(peridyne, deck, name, program, seconds):
 
         moving = program == "perilab" and not statics and "newmark" not in new.read_text() and Conditions(new).free.any()
         last = step_of(gold) if gold and moving else None
+        if last is not None and '"force_density"' not in new.read_text():
+            # what acts at the start decides
+            new.write_text(new.read_text().replace("fields = [", 'fields = ["force_density", '))
         if last is None:
             ours = run()
         else:
@@ -395,7 +399,7 @@ KNOWN = [
     ("(Multiphysics|Pals)_", None, "no law here"),
     # PeriLab
     ("test_Bond_Based_Elastic/test_bond_based_elastic_2D", 1e-3, "displacements of 1e-13 of a length of 1: round-off of stretches"),
-    ("test_Bond_Based_Elastic/test_static_bond_based_elastic_2D", None, "its solver stops at residuals of 1e-8 of forces of 1e-9"),
+    ("test_Bond_Based_Elastic/test_static_bond_based_elastic_2D", None, "its solver stops at a residual of 1e-8, and the forces are below"),
     ("test_Gmsh/", 1e-5, "its damping takes a part of the velocity once a step, here it is a force"),
     ("test_FEM", None, "finite elements are not mapped"),
     ("test_Penalty_Contact/", None, "contact is not mapped"),
@@ -404,6 +408,11 @@ KNOWN = [
     ("test_DCB/", None, "CORRESPONDENCE; ENERGY"),
     ("test_Newmark/Newmark_thermal|thermal|temperature|matrix_based_additive|Hetval|heat_transfer", None, "temperatures are not mapped"),
     ("test_Newmark/Newmark_solver_DCBmodel", None, "CORRESPONDENCE; ENERGY"),
+    (
+        "test_correspondence_elastic_3D/strain_(xx|xy|yy)",
+        None,
+        "its stress agrees to 1e-14; its forces are not those of its source, which NumPy gives (ours to 1e-14 with P = F(C:E))",
+    ),
     ("test_(Correspondence|correspondence)|_correspondence|test_Newmark/|test_linear_static_matrix_based_solver/", None, "CORRESPONDENCE"),
     ("test_aniso_damage/", None, "damage of directions is not mapped; ENERGY"),
     ("test_body_force/", None, "its points of distorted hexahedra are means of the corners, here the centroids"),
