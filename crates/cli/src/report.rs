@@ -25,6 +25,17 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Where the report of a run is, or how to make it.
+pub fn told(dir: &Path) -> String {
+    match dir.join(NAME).is_file() {
+        true => line(dir),
+        false => format!(
+            "report: left out, for the run was ended and its files are large; `peridyne report {}` makes it",
+            dir.display()
+        ),
+    }
+}
+
 /// Where the report of a folder is.
 pub fn line(dir: &Path) -> String {
     format!("report: {}", dir.join(NAME).display())

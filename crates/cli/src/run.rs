@@ -157,7 +157,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
                 say(&format!("picture: {}", plan.dir.join(picture).display()));
             }
             if plan.report {
-                say(&report::line(&plan.dir));
+                say(&report::told(&plan.dir));
             }
             match signals::received() {
                 Some(signal) if done.status == Status::Ended => Err(Failure::Ended(signal)),

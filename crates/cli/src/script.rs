@@ -296,7 +296,8 @@ impl Told<'_> {
         spent.all = seconds + begun.elapsed().as_secs_f64();
         report.seconds = spent;
         report.write(&dir.join("run.json")).map_err(failed)?;
-        let made = report::write(dir).map_err(|e| Failure::Run(format!("report.html: {e}")))?;
+        report::of_run(dir, report.ended_by.is_some())
+            .map_err(|e| Failure::Run(format!("report.html: {e}")))?;
         let all = seconds + begun.elapsed().as_secs_f64();
         spent.report = all - spent.all;
         spent.all = all;
@@ -316,7 +317,7 @@ impl Told<'_> {
         for path in pictures {
             say(&format!("picture: {}", path.display()));
         }
-        say(&format!("report: {}", made.path.display()));
+        say(&crate::report::told(dir));
         Ok(())
     }
 

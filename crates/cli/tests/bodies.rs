@@ -29,11 +29,11 @@ fn check_tells_the_gaps_between_bodies() {
     let gap = &found["gaps"][0];
     assert_eq!(gap["bodies"][0], "ball");
     assert_eq!(gap["bodies"][1], "plate");
-    // the lowest point of the ball is 1.5 mm above the plate, between four of its points
-    let distance = (1.5e-3f64.powi(2) + 2.0 * 0.5e-3f64.powi(2)).sqrt();
+    // the lowest point of the ball is 1 mm above the plate, between four of its points
+    let distance = (1e-3f64.powi(2) + 2.0 * 0.25e-3f64.powi(2)).sqrt();
     assert!((gap["distance"].as_f64().unwrap() / distance - 1.0).abs() < 1e-9);
-    assert!((gap["contact"].as_f64().unwrap() / 1.35e-3 - 1.0).abs() < 1e-9);
-    assert_eq!(found["bodies"][1]["points"], 400);
+    assert!((gap["contact"].as_f64().unwrap() / 0.675e-3 - 1.0).abs() < 1e-9);
+    assert_eq!(found["bodies"][1]["points"], 3200);
 
     let path = deck("powder.toml");
     let output = peridyne(&["check", path.to_str().unwrap()]);

@@ -580,3 +580,26 @@ fn a_hangup_that_is_passed_over_ends_nothing() {
     let done = case.shell(before, &["run", "d.toml", "--out", "o"]);
     assert_eq!(done.status.code(), Some(0), "{}", plain(&done.stderr));
 }
+
+#[test]
+fn a_cloud_in_another_order_of_lines_has_the_same_step() {
+    let mut points: Vec<String> = (0..120)
+        .map(|n| {
+            let [x, y, z] = [n % 6, n / 6 % 5, n / 30].map(|k| 0.01 * f64::from(k));
+            // no lattice: each has its place
+            let off = 0.002 * (f64::from(n) * 0.754_877_666).fract();
+            format!("{} {} {} 1e-6\n", x + off, y - 0.5 * off, z + 0.7 * off)
+        })
+        .collect();
+    let body = "horizon = 0.031\nbody = { file = \"cloud.txt\", spacing = 0.01 }\nmaterial = { density = 1000, law = { lps = { young = 1e9, poisson = 0.3 } } }\nrun.steps = 1\n";
+    let mut step = || {
+        let case = Case::new(&[("a.toml", body), ("cloud.txt", &points.concat())]);
+        points.reverse();
+        points.rotate_left(37);
+        let done = case.shell("", &["check", "--json", "a.toml"]);
+        let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+        json["stable_step"].as_f64().unwrap()
+    };
+    let (one, other) = (step(), step());
+    assert!((one - other).abs() <= 1e-13 * one, "{one} is not {other}");
+}

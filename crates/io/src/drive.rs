@@ -430,7 +430,7 @@ pub fn drive(
     report.write(&plan.dir.join("run.json"))?;
     if plan.report {
         progress.phase("report");
-        report::write(&plan.dir)?;
+        report::of_run(&plan.dir, report.ended_by.is_some())?;
     }
     report.seconds.all = begin.elapsed().as_secs_f64();
     report.seconds.report = report.seconds.all - spent.all;

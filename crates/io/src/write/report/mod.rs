@@ -71,6 +71,32 @@ pub fn write(dir: &Path) -> Result<Made, ReportError> {
     Report::gather(dir, run, setting)?.write(dir)
 }
 
+/// What a folder may hold whose run was ended from outside and still gets a report: about a second of reading.
+const SOON: u64 = 200_000_000;
+
+/// The report of a run that has just ended. Who ended it from outside does not wait long: with more than [`SOON`] of results there is none,
+/// nor one of an earlier run.
+///
+/// # Errors
+/// As [`write`].
+pub fn of_run(dir: &Path, ended: bool) -> Result<Option<Made>, ReportError> {
+    if ended && held(dir) > SOON {
+        let old = dir.join(NAME);
+        if old.is_file() {
+            std::fs::remove_file(&old).map_err(WriteError::at("remove", &old))?;
+        }
+        return Ok(None);
+    }
+    write(dir).map(Some)
+}
+
+/// Bytes of the files of a folder.
+fn held(dir: &Path) -> u64 {
+    let entries = std::fs::read_dir(dir).into_iter().flatten();
+    let sizes = entries.filter_map(|e| Some(e.ok()?.metadata().ok()?.len()));
+    sizes.sum()
+}
+
 /// What a folder of an older version may have.
 fn usual(dir: &Path) -> Vec<String> {
     let names = ["history.csv", "points.pvd", "frames.npz", "damage.png"];
