@@ -14,8 +14,11 @@ const LINES: usize = 8;
 /// Characters of a quotation in a message, and those kept of its end.
 const QUOTED: usize = 100;
 const TAIL: usize = 20;
-/// Characters of a line of a message.
+/// Characters of a line of a message, and lines of a message.
 const MESSAGE: usize = 1500;
+const MANY: usize = 50;
+/// Characters of the name of a text.
+const NAME: usize = 300;
 
 /// Does a character steer a terminal, or turn the order in which letters are shown?
 pub fn steers(c: char) -> bool {
@@ -54,8 +57,12 @@ pub fn one_line(text: &str) -> Cow<'_, str> {
 
 /// A message, plain; what it quotes at length is cut.
 pub fn brief(message: &str) -> String {
-    let lines: Vec<Cow<str>> = message.split('\n').map(short).collect();
-    plain(&lines.join("\n")).into_owned()
+    let plain = plain(message);
+    let mut lines: Vec<Cow<str>> = plain.split('\n').take(MANY + 1).map(short).collect();
+    if lines.len() > MANY {
+        lines[MANY] = "…".into();
+    }
+    lines.join("\n")
 }
 
 fn short(line: &str) -> Cow<'_, str> {
@@ -68,13 +75,7 @@ fn short(line: &str) -> Cow<'_, str> {
     let each = parts.iter().enumerate().map(|(n, part)| {
         let quoted = n % 2 == 1 && n < last;
         match quoted && part.chars().count() > QUOTED {
-            true => {
-                let tail = part.chars().rev().take(TAIL).collect::<Vec<_>>();
-                let head = part.chars().take(QUOTED - TAIL);
-                head.chain(['…'])
-                    .chain(tail.into_iter().rev())
-                    .collect::<String>()
-            }
+            true => cut(part, QUOTED),
             false => part.to_string(),
         }
     });
@@ -84,6 +85,16 @@ fn short(line: &str) -> Cow<'_, str> {
         line.push('…');
     }
     Cow::Owned(line)
+}
+
+/// Beginning and end of a text of more characters.
+fn cut(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_string();
+    }
+    let tail: Vec<char> = text.chars().rev().take(TAIL).collect();
+    let head = text.chars().take(most - TAIL);
+    head.chain(['…']).chain(tail.into_iter().rev()).collect()
 }
 
 /// A place of a text and the lines about it, for `miette`.
@@ -111,7 +122,7 @@ impl Excerpt {
             false => text[start..].find('\n').map_or(end, |n| start + n),
         };
         let mut out = Excerpt {
-            name: plain(name).into_owned(),
+            name: cut(&one_line(name), NAME),
             text: String::new(),
             before: text[..first].matches('\n').count(),
             column: text[first..start].chars().count(),
@@ -319,5 +330,11 @@ mod tests {
         let sentence = "no quotation ".repeat(80);
         assert_eq!(brief(&sentence), sentence);
         assert_eq!(brief(&"x".repeat(5000)).chars().count(), MESSAGE + 1);
+        // what stands for a character that steers is longer than it
+        assert_eq!(brief(&"\u{0}".repeat(5000)).chars().count(), MESSAGE + 1);
+        assert_eq!(brief(&"a\n".repeat(5000)).lines().count(), MANY + 1);
+        assert_eq!(brief("one\ntwo"), "one\ntwo");
+        let named = Excerpt::new(&"n".repeat(70_000), "text", 0..4);
+        assert_eq!(named.name.chars().count(), NAME + 1);
     }
 }

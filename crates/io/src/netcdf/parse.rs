@@ -10,6 +10,8 @@ pub struct Reader<'a> {
     bytes: &'a [u8],
 }
 
+/// Bytes of a name (NC_MAX_NAME of netCDF).
+const NAME: u64 = 256;
 /// How netCDF-4 files begin.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
@@ -166,7 +168,18 @@ impl<'a> Head<'a> {
 
     fn name(&mut self) -> Result<String, String> {
         let length = self.count()?;
-        Ok(String::from_utf8_lossy(self.padded(length)?).into_owned())
+        if length > NAME {
+            return Err(format!(
+                "the header is damaged: a name of {length} bytes, of which there are at most {NAME}"
+            ));
+        }
+        let name = String::from_utf8_lossy(self.padded(length)?).into_owned();
+        match name.contains(char::is_control) {
+            true => Err(format!(
+                "the header is damaged: the name {name:?} has control characters"
+            )),
+            false => Ok(name),
+        }
     }
 
     /// How many things a list has; an absent one has no mark.

@@ -72,8 +72,7 @@ impl<const D: usize> Cells<D> {
             inverse: [1.0; D],
             count: [1; D],
         };
-        // at most four cells per atom: atoms that flew away must not cost memory
-        let most = ((4 * atoms + 1000) as f64).powf(1.0 / D as f64);
+        let mut lengths = [0.0; D];
         for a in 0..D {
             let (mut low, mut high) = match period[a] {
                 Some(p) => (-reach, p + reach),
@@ -82,14 +81,18 @@ impl<const D: usize> Cells<D> {
             if !(low.is_finite() && high.is_finite()) {
                 (low, high) = (0.0, reach);
             }
-            let length = (high - low).max(reach);
-            let count = (length / reach * PER as f64)
-                .floor()
-                .clamp(1.0, most.max(1.0));
             cells.low[a] = low;
-            cells.inverse[a] = count / length;
-            cells.count[a] = count as usize;
+            lengths[a] = (high - low).max(reach);
+            let count = (lengths[a] / reach * PER as f64).floor();
+            cells.count[a] = count.clamp(1.0, 1e9) as usize;
         }
+        // at most four cells per atom: atoms that flew away must not cost memory, and a wire needs cells along its axis
+        let most = 4 * atoms + 1000;
+        while cells.count.iter().fold(1usize, |n, c| n.saturating_mul(*c)) > most {
+            let widest = cells.count.iter_mut().max();
+            widest.into_iter().for_each(|c| *c = c.div_ceil(2));
+        }
+        cells.inverse = std::array::from_fn(|a| cells.count[a] as f64 / lengths[a]);
         cells
     }
 
@@ -182,5 +185,28 @@ impl<const D: usize> Cells<D> {
             start[row + low[0]] as usize,
             start[row + high[0] + 1] as usize,
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wire_has_cells_along_its_axis() {
+        let of = |length: f64| {
+            let extent = Extent {
+                low: [0.0; 3],
+                high: [length, 2.0, 2.0],
+                finite: true,
+            };
+            Cells::<3>::new(8000, &extent, 1.0, &[None; 3]).count
+        };
+        // 4000 × 4 × 4 are too many for so few atoms, half of them are not
+        assert_eq!(of(2000.0), [2000, 4, 4]);
+        assert_eq!(of(500.0), [1000, 4, 4]);
+        // one atom that flew away
+        let far: usize = of(1e12).iter().product();
+        assert!((1000..=33_000).contains(&far), "{far}");
     }
 }
