@@ -266,7 +266,8 @@ fn faces_of_a_crack_rub() {
             let exact = (angle - lean.atan()).tan();
             assert!(press > 0.1 && lean > 0.0, "{all:?}");
             assert!((drag / press - exact).abs() < 1e-4, "{exact} {all:?}");
-            assert_eq!(dissipated > 0.0, rubs, "{all:?}");
+            // without friction relaxation leaves 1e-10 of either sign
+            assert_eq!(dissipated > 1e-6, rubs, "{all:?}");
             if rubs {
                 // it sticks before it slips
                 let [drag, press, lean, ..] = all[11];

@@ -229,8 +229,20 @@ fn lengths_beyond_all_numbers_are_cut_short_not_asked_for() {
         name.extend(DIMENSIONS.to_be_bytes());
         name.extend(1u64.to_be_bytes());
         name.extend(promise.to_be_bytes());
-        assert!(Reader::new(&name).err().unwrap().contains("cut short"));
+        let why = Reader::new(&name).err().unwrap();
+        assert!(why.contains("at most 256"), "{why}");
     }
+}
+
+#[test]
+fn names_have_no_control_characters() {
+    let mut header = Header::new(Version::Classic);
+    header.dimension("two\nlines", 2);
+    let mut bytes = vec![];
+    lay_out(&mut header).unwrap();
+    header.write(&mut bytes).unwrap();
+    let why = Reader::new(&bytes).err().unwrap();
+    assert!(why.contains(r#""two\nlines" has control characters"#), "{why}");
 }
 
 #[test]
