@@ -242,7 +242,10 @@ fn names_have_no_control_characters() {
     lay_out(&mut header).unwrap();
     header.write(&mut bytes).unwrap();
     let why = Reader::new(&bytes).err().unwrap();
-    assert!(why.contains(r#""two\nlines" has control characters"#), "{why}");
+    assert!(
+        why.contains(r#""two\nlines" has control characters"#),
+        "{why}"
+    );
 }
 
 #[test]

@@ -74,7 +74,7 @@ pub fn write(dir: &Path) -> Result<Made, ReportError> {
 /// What a folder may hold whose run was ended from outside and still gets a report: about a second of reading.
 const SOON: u64 = 200_000_000;
 
-/// The report of a run that has just ended. Who ended it from outside does not wait long: with more than [`SOON`] of results there is none,
+/// The report of a run that has just ended. Who ended it from outside does not wait long: with more than 200 MB of results there is none,
 /// nor one of an earlier run.
 ///
 /// # Errors
