@@ -78,7 +78,7 @@ const SOON: u64 = 200_000_000;
 /// nor one of an earlier run.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn of_run(dir: &Path, ended: bool) -> Result<Option<Made>, ReportError> {
     if ended && held(dir) > SOON {
         let old = dir.join(NAME);
