@@ -49,7 +49,7 @@ const NEEDLEMAN: &[(&str, &str)] = &[
     ("Reference Strain Rate", "reference_rate"),
 ];
 
-const NAMED: [Named; 12] = [
+static NAMED: [Named; 12] = [
     named("Elastic", "lps", &[], ""),
     named("Elastic Bond Based", "pmb", &[], ""),
     named(
@@ -121,8 +121,8 @@ const MODULI: [(&str, &str); 4] = [
 
 /// The law of a material; `None`: there is none, and its entries say so.
 pub fn law(material: &Entry, setting: &Setting) -> Option<Law> {
-    let model = material.text("Material Model").unwrap_or("");
-    let Some(named) = NAMED.iter().find(|n| n.there.eq_ignore_ascii_case(model)) else {
+    let Some(named) = named_of(material) else {
+        let model = material.text("Material Model").unwrap_or("");
         material.refuse(&format!("no law here is the material model \"{model}\""));
         return None;
     };
@@ -163,9 +163,13 @@ const NEVER: f64 = 1e100;
 
 /// Does a material of the ordinary kind yield?
 pub fn yields(material: &Entry) -> bool {
+    named_of(material).is_some_and(|n| n.here == "elastic_plastic")
+}
+
+/// What its model is called here.
+fn named_of(material: &Entry) -> Option<&'static Named> {
     let model = material.text("Material Model").unwrap_or("");
-    let named = NAMED.iter().find(|n| n.there.eq_ignore_ascii_case(model));
-    named.is_some_and(|n| n.here == "elastic_plastic")
+    NAMED.iter().find(|n| n.there.eq_ignore_ascii_case(model))
 }
 
 /// The plane that a material is in.

@@ -85,13 +85,17 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
     };
     if let Some(list) = solver.list("Verlet") {
         let (time, steps) = step(list, to - from, program);
-        // a part of the velocity is taken in each step
-        let damping = match (list.number("Numerical Damping"), steps) {
-            (Some(part), Some(steps)) => part * steps as f64 / (to - from),
-            (Some(part), None) if part != 0.0 => {
+        // a part of the velocity is taken in each step; Peridigm has no such entry
+        let part = match program {
+            Program::PeriLab => list.number("Numerical Damping"),
+            Program::Peridigm => None,
+        };
+        let damping = match (part, steps) {
+            (Some(part), Some(steps)) if part >= 0.0 => part * steps as f64 / (to - from),
+            (Some(part), _) if part != 0.0 => {
                 list.refuse_entry(
                     "Numerical Damping",
-                    "it is a part of the velocity in each step, and there is no Fixed dt: write damping in a [[condition]], density times that part / step",
+                    "it is a part of the velocity in each step, and there is no Fixed dt, or it is negative: write damping in a [[condition]], density times that part / step",
                 );
                 0.0
             }

@@ -103,10 +103,13 @@ impl Mesh {
         for cell in &body {
             let (centroid, volume) = measure(lines, &self.nodes, cell)?;
             cloud.position.push(centroid);
-            let corners = cell.nodes.iter().filter_map(|n| self.nodes.get(n)).copied();
-            // a plane body is one of z = 0
-            let flat = |x: [f64; 3]| [x[0], x[1], if dimension == 2 { 0.0 } else { x[2] }];
-            shapes.push(cell.kind.vtk(), corners.map(flat), flat(centroid));
+            // a sphere has no shape beside its point
+            if cell.kind != Kind::Sphere {
+                let corners = cell.nodes.iter().filter_map(|n| self.nodes.get(n)).copied();
+                // a plane body is one of z = 0
+                let flat = |x: [f64; 3]| [x[0], x[1], if dimension == 2 { 0.0 } else { x[2] }];
+                shapes.push(cell.kind.vtk(), corners.map(flat), flat(centroid));
+            }
             cloud.volume.push(volume);
             let mark = cell.groups.iter().map(|g| self.groups[*g].number).next();
             cloud.mark.push(mark.unwrap_or(0));
