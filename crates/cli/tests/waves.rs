@@ -42,6 +42,8 @@ fn a_chain_of_neighbours_is_the_textbook_chain() {
     let set = ["--set", "horizon.m_ratio=1", "--set", "run.time_step=0.25"];
     let found = report("good/spring_chain.toml", &set, dir.path());
     assert!((number(&found, "/stability/sharp_limit") - 0.25).abs() < 1e-14);
+    // (4.12) of seleson2009 is sharp where there is one spring
+    assert!((number(&found, "/stability/bound") - 0.25).abs() < 1e-14);
     assert!((number(&found, "/stability/time_step_over_sharp_limit") - 1.0).abs() < 1e-13);
     assert!((number(&found, "/special_points/1/omega/0") - 8.0).abs() < 1e-12);
     assert!((number(&found, "/elastic/lattice/C/0/0") - 1.0).abs() < 1e-13);

@@ -80,11 +80,10 @@ impl Faces {
         let named = { spec.sets.iter() }
             .filter_map(|set| Some((set.name.clone(), of_mesh(&spec.body, &set.members)?)))
             .collect();
-        let whole = |f: &crate::spec::SurfaceFactors| f.part.iter().all(|p| *p == 1.0);
         Ok(Faces {
             origins,
             named,
-            ends_at_points: spec.surface.as_ref().is_some_and(|f| !whole(f)),
+            ends_at_points: spec.surface.as_ref().is_some_and(|f| f.ends_at_points()),
             section: spec.section,
         })
     }

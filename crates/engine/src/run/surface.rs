@@ -4,8 +4,50 @@ use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
 use crate::interaction::Interaction;
 use crate::law::BondFactors;
-use crate::spec::SurfaceFactors;
+use crate::spec::{SurfaceFactor, SurfaceFactors};
 use std::collections::HashMap;
+
+/// Factors of the bonds of a body by its slots.
+pub(super) struct Factors<'a, const D: usize> {
+    surface: &'a SurfaceFactors,
+    /// Which of the rows a slot has.
+    row: Vec<u32>,
+    table: Vec<HashMap<[i32; D], SurfaceFactor>>,
+}
+
+impl<'a, const D: usize> Factors<'a, D> {
+    pub fn new(surface: &'a SurfaceFactors, body: &Body<D>) -> Factors<'a, D> {
+        let mut row = vec![0u32; body.len];
+        for (slot, r) in body.slots.iter().zip(&surface.row) {
+            row[*slot as usize] = *r;
+        }
+        for &(copy, original) in &body.images {
+            row[copy as usize] = row[original as usize];
+        }
+        let of_row = |bonds: &Vec<([i32; 3], SurfaceFactor)>| {
+            let bonds = bonds.iter();
+            bonds
+                .map(|(o, x)| (std::array::from_fn(|a| o[a]), *x))
+                .collect()
+        };
+        Factors {
+            surface,
+            row,
+            table: surface.rows.iter().map(of_row).collect(),
+        }
+    }
+
+    /// Of the bond of a slot that leads so many cells away.
+    pub fn of(&self, slot: usize, to: [i32; D]) -> SurfaceFactor {
+        let row = &self.table[self.row[slot] as usize];
+        row.get(&to).copied().unwrap_or(SurfaceFactor::ONE)
+    }
+
+    /// Part of its cell that the point of a slot holds.
+    pub fn part(&self, slot: usize) -> f64 {
+        self.surface.part[self.row[slot] as usize]
+    }
+}
 
 /// Scale the bonds of `interaction`, made for whole cells, and give the points of `body` the part of their cells that
 /// they hold. Call before [`Interaction::prepare`] and any sweep.
@@ -29,43 +71,22 @@ pub(super) fn scale<const D: usize>(
             ),
         ));
     };
-    let mut row = vec![0u32; body.len];
-    for (slot, r) in body.slots.iter().zip(&surface.row) {
-        row[*slot as usize] = *r;
-    }
-    for &(copy, original) in &body.images {
-        row[copy as usize] = row[original as usize];
-    }
-    let table: Vec<HashMap<[i32; D], [f64; 2]>> = surface
-        .rows
-        .iter()
-        .map(|bonds| {
-            bonds
-                .iter()
-                .map(|(o, x)| (std::array::from_fn(|a| o[a]), *x))
-                .collect()
-        })
-        .collect();
-    let of = |slot: usize, to: [i32; D]| {
-        let r = row[slot] as usize;
-        let [pair, share] = table[r].get(&to).copied().unwrap_or([1.0; 2]);
-        (pair, share, surface.part[r])
-    };
+    let factors = Factors::new(surface, body);
     interaction
         .scale_bonds(body, &|i, j, to| {
-            let (pair, own, part) = of(i, to);
-            let (_, other, beyond) = of(j, to.map(|c| -c));
+            let own = factors.of(i, to);
+            let part = factors.part(i);
             BondFactors {
-                pair: pair / part,
-                own,
-                other: beyond * other / part,
+                pair: own.pair / part,
+                own: own.share,
+                other: factors.part(j) * factors.of(j, to.map(|c| -c)).share / part,
             }
         })
         .map_err(|e| e.at("surface"))?;
-    if surface.part.iter().any(|p| *p != 1.0) {
+    if surface.ends_at_points() {
         let mut volume = vec![0.0; body.len];
-        for (slot, r) in body.slots.iter().zip(&surface.row) {
-            volume[*slot as usize] = cell * surface.part[*r as usize];
+        for slot in &body.slots {
+            volume[*slot as usize] = cell * factors.part(*slot as usize);
         }
         body.fill_images(&mut volume);
         body.volume = Values::PerSlot(volume);

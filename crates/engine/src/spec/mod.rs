@@ -47,7 +47,7 @@ pub use schedule::{
     Control, Cycles, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep,
 };
 use std::sync::Arc;
-pub use surface::{SurfaceFactors, SurfaceMethod};
+pub use surface::{SurfaceFactor, SurfaceFactors, SurfaceMethod};
 pub use transfer::{
     Area, Exchange, Quantity, TransferCondition, TransferKind, TransferMaterial, TransferMethod,
     TransferSpec,

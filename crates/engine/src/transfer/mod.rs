@@ -15,7 +15,7 @@ mod touching;
 
 pub use account::TransferAccount;
 pub use condition::Condition;
-pub use rows::{Conduction, Rows};
+pub use rows::{Conduction, Rows, Surface};
 pub use touching::Touching;
 
 use crate::error::SolveError;

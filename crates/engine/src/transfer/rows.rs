@@ -22,25 +22,36 @@ pub struct Rows {
 }
 
 /// What a conductance is made of.
-pub struct Conduction<'a> {
+pub struct Conduction<'a, const D: usize> {
     /// Conductivity of the material of a slot.
     pub conductivity: &'a dyn Fn(usize) -> f64,
     /// `ω ν` of a bond between two slots of a length.
     pub weight: &'a dyn Fn(usize, usize, f64) -> f64,
     /// Place of the point in a slot.
     pub place: &'a [u32],
+    /// Of a body that is exact at its surface; `None`: each end has the weighted volume of the bonds that it has.
+    pub surface: Option<Surface<'a, D>>,
+}
+
+/// What makes a constant gradient steady at every point of a body that ends at its outer points.
+pub struct Surface<'a, const D: usize> {
+    /// Factor of the conductance of the bond from a slot to another, that way.
+    pub factor: &'a dyn Fn(usize, usize, &[f64; D]) -> f64,
+    /// `Σ ω ν |ξ|² V` of a full family, by the slot of a point.
+    pub moment: &'a dyn Fn(usize) -> f64,
 }
 
 impl Rows {
     /// `g_ij = D k ω ν (1/m_i + 1/m_j) V_i V_j` of every whole bond, `m_i = Σ_j ω ν |ξ|² V_j` over these, and k the harmonic mean of
-    /// both ends' conductivities; 0 of bonds that are broken from the start.
+    /// both ends' conductivities; 0 of bonds that are broken from the start. Of a body that is exact at its surface each is multiplied with its
+    /// factor and `m_i` is that of a full family, less the part that broken bonds had in the sum.
     ///
     /// # Errors
     /// They do not fit into memory.
     pub fn new<const D: usize>(
         body: &Body<D>,
         interaction: &dyn Interaction<D>,
-        of: &Conduction,
+        of: &Conduction<D>,
         path: &str,
     ) -> Result<Rows, BuildError> {
         let points = body.points();
@@ -74,6 +85,7 @@ impl Rows {
         };
         let mut next = rows.start.clone();
         interaction.each_bond(body, &mut |i, j, xi, _| {
+            let xi = &xi;
             let square: f64 = xi.iter().map(|x| x * x).sum();
             let [a, b] = [(of.conductivity)(i), (of.conductivity)(j)];
             let k = match a == b {
@@ -81,6 +93,8 @@ impl Rows {
                 false => 2.0 * a * b / (a + b),
             };
             let weight = (of.weight)(i, j, square.sqrt());
+            let factor = of.surface.as_ref().map_or(1.0, |s| (s.factor)(i, j, xi));
+            let weight = weight * factor;
             let reach = k * (D as f64 * weight) * volume(i) * volume(j);
             for (a, b) in [(i, j), (j, i)] {
                 let at = next[place(a)];
@@ -90,6 +104,14 @@ impl Rows {
                 next[place(a)] += 1;
             }
         });
+        if let Some(surface) = &of.surface {
+            for slot in &body.slots {
+                let row = place(*slot as usize);
+                let part = &mut rows.part[rows.start[row]..rows.start[row + 1]];
+                let full = (surface.moment)(*slot as usize) / part.iter().sum::<f64>();
+                part.iter_mut().for_each(|p| *p *= full);
+            }
+        }
         rows.conduct(body, interaction, of.place);
         Ok(rows)
     }

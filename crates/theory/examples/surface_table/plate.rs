@@ -98,7 +98,7 @@ impl Plate {
                 .iter()
                 .flatten()
                 .fold((1.0f64, 1.0f64), |(a, b), (_, x)| {
-                    (a.min(x[0]).min(x[1]), b.max(x[0]).max(x[1]))
+                    (a.min(x.pair).min(x.share), b.max(x.pair).max(x.share))
                 }),
         };
         let mut sim = build(&spec, Options::default()).expect("the plate is sound");

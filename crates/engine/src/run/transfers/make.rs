@@ -2,16 +2,18 @@
 
 use super::state::TransferInfo;
 use crate::error::BuildError;
+use crate::family::stencil::Stencil;
 use crate::message;
 use crate::quantity::Dimension;
 use crate::run::LoadInfo;
 use crate::run::model::Model;
+use crate::run::surface::Factors;
 use crate::space::Point;
 use crate::spec::{
-    Exchange, Quantity, Spec, TimeStep, TransferCondition, TransferKind, TransferMethod,
-    TransferSpec,
+    BodySpec, Exchange, Quantity, Spec, SurfaceFactors, TimeStep, TransferCondition, TransferKind,
+    TransferMethod, TransferSpec,
 };
-use crate::transfer::{Condition, Conduction, Rows, Transfer};
+use crate::transfer::{Condition, Conduction, Rows, Surface, Transfer};
 
 impl<const D: usize> Model<D> {
     /// All that spreads, from a spec.
@@ -113,16 +115,34 @@ impl<const D: usize> Model<D> {
             .help("take a law of solids (pmb, lps, …)"));
         }
         let of = |slot: usize| &t.materials[body.material_of(slot)];
+        let weight = |slot: usize, r: f64| self.constitutive.at(slot).0.weight(r);
+        let ends_at_points = |f: &&SurfaceFactors| f.ends_at_points();
+        let exact = spec.surface.as_ref().filter(ends_at_points);
+        let exact = exact.map(|f| (Factors::new(f, body), family(spec, body.spacing)));
+        let factor = |i: usize, j: usize, xi: &[f64; D]| {
+            exact.as_ref().map_or(1.0, |(factors, _)| {
+                let to = xi.map(|x| (x / body.spacing).round() as i32);
+                factors.of(i, to).conductance / (factors.part(i) * factors.part(j))
+            })
+        };
+        let moment = |slot: usize| {
+            exact.as_ref().map_or(0.0, |(factors, lengths)| {
+                let cell = body.volume.at(slot) / factors.part(slot);
+                let terms = lengths.iter().map(|r| weight(slot, *r) * r * r * cell);
+                terms.sum()
+            })
+        };
         let rows = Rows::new(
             body,
             interaction,
             &Conduction {
                 conductivity: &|slot| of(slot).conductivity,
-                weight: &|i, j, r| {
-                    let weight = |slot| self.constitutive.at(slot).0.weight(r);
-                    0.5 * (weight(i) + weight(j))
-                },
+                weight: &|i, j, r| 0.5 * (weight(i, r) + weight(j, r)),
                 place: &self.transfers.place,
+                surface: exact.as_ref().map(|_| Surface {
+                    factor: &factor,
+                    moment: &moment,
+                }),
             },
             name,
         )?;
@@ -304,5 +324,19 @@ fn steady(made: &Transfer) -> Result<(), BuildError> {
             ),
         )
         .help("hold it, or exchange with the surroundings, somewhere on every connected part; or take an implicit step in time")),
+    }
+}
+
+/// Lengths of the bonds of a point inside a lattice body.
+fn family(spec: &Spec, spacing: f64) -> Vec<f64> {
+    match &spec.body {
+        BodySpec::Lattice { kind, .. } | BodySpec::Sites { kind, .. } => {
+            let stencil = Stencil::new(*kind, spacing, spec.horizon);
+            let first = stencil.offsets()[0].iter();
+            first
+                .map(|o| spacing * (o.squared as f64).sqrt() / 4.0)
+                .collect()
+        }
+        BodySpec::Cloud(_) | BodySpec::Several(_) => vec![],
     }
 }

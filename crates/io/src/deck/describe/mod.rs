@@ -10,8 +10,8 @@ use peridyne::run::Shelf;
 use peridyne::spec::{
     BodySpec, BondFactorSpec, Calibration, Control, Criterion, FamilyChoice, Fold, Horizon,
     IndenterMotion, LawSpec, Measure, Method, Part, PieceSpec, Plane, PotentialSpec, ProbeSpec,
-    Release, RigidQuantity, Spec, Statics, Stepper, TimeStep, ToughnessFactor, TransferMethod,
-    TransferSpec,
+    Release, RigidQuantity, Spec, Statics, Stepper, SurfaceFactor, TimeStep, ToughnessFactor,
+    TransferMethod, TransferSpec,
 };
 use shape::{body, rigid};
 
@@ -157,17 +157,21 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         }
     }
     if let Some(surface) = &spec.surface {
-        let range = |which: usize| {
-            let all = surface.rows.iter().flatten().map(|(_, x)| x[which]);
+        let range = |of: fn(&SurfaceFactor) -> f64| {
+            let all = surface.rows.iter().flatten().map(|(_, x)| of(x));
             all.fold((1.0f64, 1.0f64), |(a, b), x| (a.min(x), b.max(x)))
         };
-        let ((low, high), (least, most)) = (range(0), range(1));
-        let shares = match least < most {
-            true => format!(", of the dilatation {least:.2} to {most:.2}"),
+        let beside = |what: &str, (least, most): (f64, f64)| match least < most {
+            true => format!(", of {what} {least:.2} to {most:.2}"),
             false => String::new(),
         };
+        let (low, high) = range(|x| x.pair);
+        let mut others = beside("the dilatation", range(|x| x.share));
+        if !spec.transfers.is_empty() {
+            others += &beside("conductances", range(|x| x.conductance));
+        }
         lines.push(format!(
-            "surface    {}: {} kinds of points, factors of bonds {low:.2} to {high:.2}{shares}",
+            "surface    {}: {} kinds of points, factors of bonds {low:.2} to {high:.2}{others}",
             words(&surface.method),
             surface.rows.len() - 1
         ));

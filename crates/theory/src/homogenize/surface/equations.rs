@@ -10,6 +10,10 @@
 //! is asked that it is the trace of any uniform strain, and that its forces `κ θ (D/m) ω ν r (v_i η_ij + v_j η_ji) n` (v:
 //! parts of cells) sum to those of the pressure κθ on the area: `Σ_j η_ij ω ν r² n⊗n = (m/D) 1` and
 //! `Σ_j (v_i η_ij + v_j η_ji) ω ν r n = −(m/D) a`.
+//!
+//! Conduction has a factor ζ of the conductance `2 D k ω ν/m` of a bond between whole cells: a constant gradient along any axis brings in
+//! what leaves through the area if `Σ_j ζ_ij ω ν r n = −(m/2D) a`, m that of a full family. There are such ζ ≥ 0 wherever there are λ ≥ 0: the trace
+//! of their equations is this one for `ζ ∝ λ/r`, of state-based solids for ζ = λ.
 
 use super::neighbourhoods::{Bonds, Kinds, Neighbourhoods};
 use super::sites::Sites;
@@ -131,6 +135,44 @@ pub fn equations(
                 match class {
                     Some(class) => *left[e].entry(class).or_default() += pull,
                     None => right[e] -= pull,
+                }
+            }
+        }
+        made.add(place, left, right);
+    }
+    made.finish(around.classes(Bonds::Mutual))
+}
+
+/// The equations of the factors ζ of conductances.
+pub fn conductances(
+    sites: &Sites,
+    bonds: &[StencilBond],
+    around: &mut Neighbourhoods,
+    kinds: &Kinds,
+    layers: i32,
+) -> Equations {
+    let d = sites.dimension;
+    let half: f64 = bonds.iter().map(|b| b.share * b.direction().0).sum();
+    let half = half / (2 * d) as f64;
+    let mut made = Collected::new(1e-12 * half);
+    for place in kinds.examples() {
+        let own = around.of(place);
+        let own_near = around.near(own, layers);
+        let (_, area) = sites.cell_share(place);
+        let mut left = vec![BTreeMap::<usize, f64>::new(); d];
+        let mut right: Vec<f64> = area[..d].iter().map(|a| -half * a).collect();
+        for bond in bonds {
+            let Some(to) = sites.step(place, bond.offset) else {
+                continue;
+            };
+            let other = around.of(to);
+            let unknown = own_near || around.near(other, layers);
+            let class = unknown.then(|| around.class(Bonds::Mutual, own, other, bond.offset));
+            let (_, n) = bond.direction();
+            for a in 0..d {
+                match class {
+                    Some(class) => *left[a].entry(class).or_default() += bond.share * n[a],
+                    None => right[a] -= bond.share * n[a],
                 }
             }
         }

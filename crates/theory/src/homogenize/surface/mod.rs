@@ -7,7 +7,8 @@
 //! outside. The equations (`equations`) are solved for the factors nearest to 1 that are not negative ([`solve`]), one
 //! unknown per kind of bond ([`neighbourhoods`]): the size of the body does not count, only how many different places
 //! its surface has. State-based solids have a second factor per directed bond, of what it adds to the dilatation; these
-//! may be negative, because the energy `½κθ²` is not. [`published`] has what users know already, for bond-based laws.
+//! may be negative, because the energy `½κθ²` is not. Conductances have a factor of their own, so that every constant gradient of a
+//! temperature is steady. [`published`] has what users know already, for bond-based laws.
 
 mod equations;
 mod neighbourhoods;
@@ -15,7 +16,7 @@ mod published;
 mod sites;
 mod solve;
 
-use equations::{Equations, StencilBond, equations, shares};
+use equations::{Equations, StencilBond, conductances, equations, shares};
 use neighbourhoods::{Bonds, Kinds, Neighbourhoods};
 use peridyne::family::stencil::Stencil;
 use peridyne::family::volume_fraction;
@@ -26,7 +27,8 @@ use peridyne::quantity::{Message, place, rounded};
 use peridyne::space::fill::fill;
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::{
-    BodySpec, FamilyChoice, LawSpec, MaterialSpec, Spec, SurfaceFactors, SurfaceMethod,
+    BodySpec, FamilyChoice, LawSpec, MaterialSpec, Spec, SurfaceFactor, SurfaceFactors,
+    SurfaceMethod,
 };
 use sites::Sites;
 
@@ -250,6 +252,8 @@ struct Attempt {
     system: Equations,
     /// Of the factors of the dilatation, and these.
     shares: Option<(Equations, Vec<f64>)>,
+    /// Factors of conductances.
+    conductances: Vec<f64>,
     layers: i32,
 }
 
@@ -263,6 +267,7 @@ impl Attempt {
             kinds,
             system,
             shares: None,
+            conductances: vec![],
             layers,
         }
     }
@@ -279,22 +284,39 @@ impl Attempt {
         exact
     }
 
+    /// Finds the factors of conductances: are they exact?
+    fn conduct(&mut self, body: &LatticeBody) -> Result<bool, SurfaceError> {
+        let around = &mut self.around;
+        let system = conductances(&body.sites, &body.bonds, around, &self.kinds, self.layers);
+        let found = solve::exact(&system).map_err(SurfaceError::Solver)?;
+        let exact = found.is_some();
+        self.conductances = match found {
+            Some(found) => found.factors,
+            None => solve::nearest(&system).map_err(SurfaceError::Solver)?,
+        };
+        Ok(exact)
+    }
+
     /// Factors of the bonds of the point at `place`.
-    fn row(&mut self, body: &LatticeBody, x: &[f64], place: usize) -> Vec<[f64; 2]> {
+    fn row(&mut self, body: &LatticeBody, x: &[f64], place: usize) -> Vec<SurfaceFactor> {
         let own = self.around.of(place);
         let own_near = self.around.near(own, self.layers);
         let mut row = Vec::with_capacity(body.bonds.len());
         for bond in &body.bonds {
-            let factors = body.sites.step(place, bond.offset).map_or([1.0; 2], |to| {
+            let mut factor = SurfaceFactor::ONE;
+            if let Some(to) = body.sites.step(place, bond.offset) {
                 let other = self.around.of(to);
-                if !own_near && !self.around.near(other, self.layers) {
-                    return [1.0; 2];
+                if own_near || self.around.near(other, self.layers) {
+                    let mut class = |bonds| self.around.class(bonds, own, other, bond.offset);
+                    let mutual = class(Bonds::Mutual);
+                    factor.pair = x[mutual];
+                    factor.conductance = self.conductances[mutual];
+                    if let Some((_, y)) = &self.shares {
+                        factor.share = y[class(Bonds::Directed)];
+                    }
                 }
-                let mut class = |bonds| self.around.class(bonds, own, other, bond.offset);
-                let share = self.shares.as_ref().map(|(_, y)| y[class(Bonds::Directed)]);
-                [x[class(Bonds::Mutual)], share.unwrap_or(1.0)]
-            });
-            row.push(factors);
+            }
+            row.push(factor);
         }
         row
     }
@@ -317,7 +339,11 @@ pub fn correct(
         let kinds = Kinds::new(&body.sites, &around, &body.offsets());
         let row = |place: usize| {
             let row = published::row(&body.sites, &body.bonds, method, place);
-            row.into_iter().map(|x| [x, 1.0]).collect()
+            let factor = |pair| SurfaceFactor {
+                pair,
+                ..SurfaceFactor::ONE
+            };
+            row.into_iter().map(factor).collect()
         };
         return Ok((table(&body, method, &kinds, row, |_| 1.0, None), None));
     }
@@ -340,7 +366,9 @@ pub fn correct(
         if !attempt.share(&body) {
             continue;
         }
-        if let Some(found) = solve::exact(&attempt.system).map_err(SurfaceError::Solver)? {
+        if let Some(found) = solve::exact(&attempt.system).map_err(SurfaceError::Solver)?
+            && attempt.conduct(&body)?
+        {
             let report = report(&body, &attempt, &found.factors, Some(found.floor));
             return Ok((
                 finish(&body, &mut attempt, &found.factors, None),
@@ -353,6 +381,7 @@ pub fn correct(
     }
     let mut attempt = Attempt::new(&body, 1, longest);
     attempt.share(&body);
+    attempt.conduct(&body)?;
     let x = solve::nearest(&attempt.system).map_err(SurfaceError::Solver)?;
     let report = report(&body, &attempt, &x, None);
     let warning = message![
@@ -430,7 +459,7 @@ fn table(
     body: &LatticeBody,
     method: SurfaceMethod,
     kinds: &Kinds,
-    mut row: impl FnMut(usize) -> Vec<[f64; 2]>,
+    mut row: impl FnMut(usize) -> Vec<SurfaceFactor>,
     part: impl Fn(usize) -> f64,
     warning: Option<Message>,
 ) -> SurfaceFactors {
@@ -441,7 +470,10 @@ fn table(
         let changed = body.bonds.iter().zip(factors);
         rows.push(
             changed
-                .filter(|(_, x)| x.iter().any(|x| (x - 1.0).abs() > ONE))
+                .filter(|(_, x)| {
+                    let all = [x.pair, x.share, x.conductance];
+                    all.iter().any(|x| (x - 1.0).abs() > ONE)
+                })
                 .map(|(b, x)| (b.offset, x))
                 .collect(),
         );
