@@ -66,7 +66,7 @@ fn horizon_two_in_the_plane_is_the_closed_form_along_an_edge() {
         assert_eq!(factors.part[row], 0.5);
         let of = |o: [i32; 3]| {
             let found = factors.rows[row].iter().find(|(offset, _)| *offset == o);
-            found.map_or(1.0, |(_, x)| x[0])
+            found.map_or(1.0, |(_, x)| x.pair)
         };
         let near = |x: f64, y: f64| assert!((x - y).abs() < 1e-9, "{x} is not {y}");
         // ½ on average over the bonds in the edge; the solver shares it out among one and two spacings
