@@ -24,6 +24,27 @@ impl Failure {
     }
 }
 
+/// How long a full variant runs on two cores.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Takes {
+    /// Less than a minute.
+    Seconds,
+    /// Less than an hour.
+    Minutes,
+    /// It runs only when it is asked for by its whole name.
+    Hours,
+}
+
+impl std::fmt::Display for Takes {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.pad(match self {
+            Takes::Seconds => "seconds",
+            Takes::Minutes => "minutes",
+            Takes::Hours => "hours",
+        })
+    }
+}
+
 /// A figure, table or set of equations of a paper.
 pub trait Experiment: Sync {
     /// The paper: `seleson2009`.
@@ -37,9 +58,8 @@ pub trait Experiment: Sync {
     fn readme(&self) -> &'static str;
     /// Texts that the result depends on: `include_str!("mod.rs")`, decks. A finished figure is run again when one changes.
     fn sources(&self) -> &'static [&'static str];
-    /// Takes hours: the full variant runs only when it is asked for by its whole name.
-    fn long(&self) -> bool {
-        false
+    fn takes(&self) -> Takes {
+        Takes::Seconds
     }
     /// Computes, and writes data and pictures into [`Context::out`].
     ///
@@ -50,9 +70,9 @@ pub trait Experiment: Sync {
 
 /// A folder as an [`Experiment`] of the paper in whose module it is: `experiment!(Figure4, "figure-4", "Title",
 /// ["../shared.rs", "deck.toml"])` beside a `fn run(context: &Context) -> Result<Findings, Failure>`. The list has the files
-/// that the result depends on beside `mod.rs`. A last `, long` is for runs of hours.
+/// that the result depends on beside `mod.rs`. A last `, Minutes` or `, Hours` is what the full variant takes.
 macro_rules! experiment {
-    ($name:ident, $figure:literal, $title:literal, [$($source:literal),* $(,)?] $(, $long:ident)? $(,)?) => {
+    ($name:ident, $figure:literal, $title:literal, [$($source:literal),* $(,)?] $(, $takes:ident)? $(,)?) => {
         pub struct $name;
 
         impl $crate::Experiment for $name {
@@ -74,8 +94,8 @@ macro_rules! experiment {
             fn sources(&self) -> &'static [&'static str] {
                 &[include_str!("mod.rs") $(, include_str!($source))*]
             }
-            $(fn $long(&self) -> bool {
-                true
+            $(fn takes(&self) -> $crate::Takes {
+                $crate::Takes::$takes
             })?
             fn run(&self, context: &$crate::Context) -> Result<$crate::Findings, $crate::Failure> {
                 run(context)

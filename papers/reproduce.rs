@@ -9,7 +9,7 @@ use peridyne_io::write::run_json::deck_hash;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::{self, Claim, Value};
-use crate::experiment::{Context, Experiment, Failure, Measurement};
+use crate::experiment::{Context, Experiment, Failure, Measurement, Takes};
 use crate::page;
 
 /// How to run.
@@ -44,6 +44,9 @@ pub struct Report {
     pub files: Vec<String>,
 }
 
+/// The selection of all papers.
+pub const EVERYTHING: &str = "all";
+
 /// What became of a figure.
 #[derive(Debug)]
 pub enum Outcome {
@@ -67,7 +70,7 @@ impl Outcome {
     }
 }
 
-/// Experiments of a selection: all, `seleson2009`, or `seleson2009/figure-4-3`.
+/// Experiments of a selection: `all` (or none), `seleson2009`, or `seleson2009/figure-4-3`.
 ///
 /// # Errors
 /// There is none of this name: names the closest, and all.
@@ -79,6 +82,9 @@ pub fn select<'e>(
         return Ok(all.to_vec());
     };
     let wanted = wanted.trim_matches('/');
+    if wanted == EVERYTHING {
+        return Ok(all.to_vec());
+    }
     let chosen: Vec<&dyn Experiment> = all
         .iter()
         .filter(|e| e.key() == wanted || name(**e) == wanted)
@@ -112,6 +118,36 @@ pub fn select<'e>(
     )))
 }
 
+/// The papers, a line each.
+pub fn papers() -> String {
+    let mut text = String::new();
+    for paper in crate::papers() {
+        let figures = paper.figures.len();
+        text += &format!("{:<13}{figures:>3} figures  {}\n", paper.key, paper.title);
+    }
+    text
+}
+
+/// The experiments of a selection: what each is, how many claims it has and what its full variant takes.
+///
+/// # Errors
+/// As [`select`]; those of the claims.
+pub fn list(selection: Option<&str>) -> Result<String, Failure> {
+    let chosen = select(&crate::all(), selection)?;
+    let names: Vec<String> = chosen.iter().map(|e| name(*e)).collect();
+    let wide = names.iter().map(String::len).max().unwrap_or(0);
+    let mut text = String::new();
+    for (e, name) in chosen.iter().zip(names) {
+        let claims = claim::parse(e.claims())?.len();
+        text += &format!(
+            "{name:<wide$}  {claims:>3} claims  {:<8} {}\n",
+            e.takes(),
+            e.title()
+        );
+    }
+    Ok(text)
+}
+
 fn name(e: &dyn Experiment) -> String {
     format!("{}/{}", e.key(), e.figure())
 }
@@ -135,7 +171,8 @@ pub fn reproduce_of(
 ) -> Result<Vec<Outcome>, Failure> {
     let mut chosen = select(all, selection)?;
     let whole_name = selection.map(|s| s.trim_matches('/'));
-    chosen.retain(|e| options.small || !e.long() || whole_name == Some(&name(*e)));
+    let hours = |e: &dyn Experiment| e.takes() == Takes::Hours;
+    chosen.retain(|e| options.small || !hours(*e) || whole_name == Some(&name(*e)));
     let mut outcomes = Vec::new();
     for e in chosen {
         (options.progress)(&format!("{}: {}", name(e), e.title()));

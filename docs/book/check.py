@@ -68,6 +68,7 @@ class Page:
         shutil.copytree(ROOT / "decks/good", self.folder / "decks/good")
         shutil.copy(ROOT / "decks/in.impact_disk", self.folder / "decks")
         shutil.copytree(ROOT / "docs/fields", self.folder / "docs/fields")
+        shutil.copytree(ROOT / "papers/seleson2009/figure-5-1", self.folder / "papers/seleson2009/figure-5-1")
         # what the page offers for download
         for file in self.path.parent.glob("*.*"):
             if file.suffix in (".msh", ".geo", ".data"):

@@ -1,6 +1,6 @@
 //! The field's classics: closed forms, handbooks, experiments.
 
-mod bench;
+pub mod bench;
 
 #[path = "bar-interface/mod.rs"]
 mod bar_interface;
@@ -33,7 +33,7 @@ mod shear_band;
 mod shock_tube;
 mod spall;
 #[path = "sphere-on-plate/mod.rs"]
-mod sphere_on_plate;
+pub mod sphere_on_plate;
 #[path = "taylor-bar/mod.rs"]
 mod taylor_bar;
 #[path = "thin-film/mod.rs"]

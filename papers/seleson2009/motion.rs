@@ -3,7 +3,9 @@
 use peridyne::error::RunError;
 use peridyne::run::Simulation;
 use peridyne::spec::Horizon;
+use peridyne_io::deck::SpaceTimeSpec;
 use peridyne_io::write::plot::Map;
+use peridyne_io::write::space_time::{DENSITY, Line, SpaceTime};
 use serde::{Deserialize, Serialize};
 
 use super::chain::Chain;
@@ -14,10 +16,8 @@ use crate::{Context, Failure};
 /// What to keep of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Wanted {
-    /// Columns of the space–time image; 0: no image.
-    pub columns: usize,
-    /// Rows of the image, at most.
-    pub rows: u64,
+    /// The pictures over space and time that the deck asks for.
+    pub images: bool,
     /// Steps whose displacements are kept, rising.
     pub profiles: Vec<u64>,
     /// Numbers of energies kept over the run, at most; 0: none.
@@ -63,60 +63,24 @@ pub struct Motion {
     pub steps: u64,
     pub profiles: Vec<Profile>,
     pub energies: Vec<Energies>,
-    pub image: Image,
+    /// Those of the deck's `output.space_time`, in order.
+    pub images: Vec<Density>,
 }
 
-/// Densities `(x_{j+1} − x_{j−1})/(y_{j+1} − y_{j−1})` over points and time; the two end points have none and are left out.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Image {
-    pub columns: usize,
-    /// Outer edges in x.
-    pub x: [f64; 2],
-    /// Time of every row.
-    pub times: Vec<f64>,
-    /// Rows one after another, each value the mean of the points in its column.
-    pub values: Vec<f32>,
+/// Ends of the colours where a deck gives none.
+const REST: [f64; 2] = [0.0, 2.0];
+
+/// The density over space and time, and the ends of its colours.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Density {
+    image: SpaceTime,
+    range: [f64; 2],
 }
 
-impl Image {
-    fn record(&mut self, time: f64, u: &[f64], spacing: f64) {
-        let n = u.len() - 2;
-        self.times.push(time);
-        for c in 0..self.columns {
-            let points = c * n / self.columns..(c + 1) * n / self.columns;
-            let count = points.len() as f64;
-            let sum: f64 = points
-                .map(|j| 2.0 * spacing / (2.0 * spacing + u[j + 2] - u[j]))
-                .sum();
-            self.values.push((sum / count) as f32);
-        }
-    }
-
+impl Density {
     /// The picture, time downwards, white where the chain is as at rest.
-    pub fn map(&self, title: &str, contrast: f64) -> Map {
-        self.zoom(title, contrast, self.x, 0.0)
-    }
-
-    /// The part between two x, from a time on.
-    pub fn zoom(&self, title: &str, contrast: f64, x: [f64; 2], from: f64) -> Map {
-        let width = (self.x[1] - self.x[0]) / self.columns as f64;
-        let column = |x: f64| ((x - self.x[0]) / width).round().max(0.0) as usize;
-        let (low, high) = (column(x[0]), column(x[1]).min(self.columns));
-        let first = self.times.iter().position(|t| *t >= from).unwrap_or(0);
-        let values: Vec<f64> = (first..self.times.len())
-            .flat_map(|r| &self.values[r * self.columns + low..r * self.columns + high])
-            .map(|v| f64::from(*v))
-            .collect();
-        let last = self.times.last().copied().unwrap_or(1.0);
-        let edge = |c: usize| self.x[0] + c as f64 * width;
-        Map::new(title)
-            .x("x (reference)", "", [edge(low), edge(high)])
-            .y("t", "", [self.times[first], last])
-            .y_down()
-            .value("density", "")
-            .colors(peridyne_io::write::plot::ColorMap::Diverging)
-            .between(1.0 - contrast, 1.0 + contrast)
-            .grid(high - low, &values)
+    pub fn map(&self, title: &str) -> Map {
+        self.image.map(title, DENSITY, [""; 3], self.range)
     }
 }
 
@@ -142,7 +106,11 @@ pub fn run(
             )));
         };
         let wanted = wanted(steps, sim.info().time_step);
-        let motion = record(neighbours, sim, steps, &wanted)
+        let asked: &[SpaceTimeSpec] = match wanted.images {
+            true => &deck.output.space_time,
+            false => &[],
+        };
+        let motion = record(neighbours, sim, steps, &wanted, asked)
             .map_err(|e| Failure::new(format!("{name}: {e}")))?;
         context.say(&format!("{part}: {}", motion.described()));
         Ok(motion)
@@ -158,6 +126,7 @@ pub fn record(
     mut sim: Box<dyn Simulation>,
     steps: u64,
     wanted: &Wanted,
+    asked: &[SpaceTimeSpec],
 ) -> Result<Motion, RunError> {
     let info = sim.info().clone();
     let (points, spacing, dt) = (info.points as usize, info.spacing, info.time_step);
@@ -170,22 +139,27 @@ pub fn record(
         steps,
         profiles: vec![],
         energies: vec![],
-        image: Image {
-            columns: wanted.columns.min(points - 2),
-            // a cell around every point but the ends
-            x: [0.5 * spacing, (points as f64 - 1.5) * spacing],
-            ..Image::default()
-        },
+        images: vec![],
     };
+    let line = Line::new(&sim.vectors("reference"), None, None);
+    for one in asked {
+        let found = SpaceTime::new(&line, &one.window, false);
+        motion.images.extend(found.map(|image| Density {
+            range: one.range.unwrap_or(REST),
+            image,
+        }));
+    }
     let every = |number: u64| steps.div_ceil(number.max(1)).max(1);
     for step in 0..=steps {
         let time = step as f64 * dt;
-        let picture = wanted.columns > 0 && (step % every(wanted.rows) == 0 || step == steps);
+        let due = |one: &SpaceTimeSpec| one.window.is_row(step, steps, dt);
         let profile = wanted.profiles.contains(&step);
-        if picture || profile {
+        if profile || asked.iter().any(due) {
             let u: Vec<f64> = sim.displacements().iter().map(|u| u[0]).collect();
-            if picture {
-                motion.image.record(time, &u, spacing);
+            let both = motion.images.iter_mut().zip(asked);
+            for (density, _) in both.filter(|(_, one)| due(one)) {
+                let density_now = line.density(&line.along(&u));
+                density.image.record(time, &density_now);
             }
             if profile {
                 motion.profiles.push(Profile { step, time, u });
@@ -311,20 +285,6 @@ impl RightPulse {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_density_of_a_stretched_chain() {
-        let u: Vec<f64> = (0..6).map(|j| 0.25 * f64::from(j)).collect();
-        let mut image = Image {
-            columns: 2,
-            x: [0.25, 2.25],
-            ..Image::default()
-        };
-        image.record(0.0, &u, 0.5);
-        // spacing 0.5 becomes 0.75
-        assert_eq!(image.values, [2.0 / 3.0; 2].map(|v: f64| v as f32));
-        assert_eq!(image.times, [0.0]);
-    }
 
     #[test]
     fn a_pulse_is_measured() {

@@ -23,8 +23,6 @@ pub const COARSE: usize = 3;
 pub const SAFETY: f64 = 0.85;
 /// When the two pulses have separated.
 pub const APART: f64 = 50.0;
-/// Colours of densities run from 1 − this to 1 + this.
-pub const CONTRAST: f64 = 0.25;
 /// Distance of the points that all four models have.
 pub const SHARED_SPACING: f64 = 0.5;
 
@@ -59,7 +57,7 @@ pub fn fewer_points(name: &str) -> Option<Chain> {
     fewer(name, ccm, fine)
 }
 
-/// Pictures `density-NAME` of the whole of space and time.
+/// Pictures `density-NAME`, the first that the deck asks for.
 ///
 /// # Errors
 /// They cannot be written.
@@ -67,12 +65,13 @@ pub fn densities(
     context: &Context,
     runs: &[Motion],
     names: &[Name],
-    contrast: f64,
     found: &mut Findings,
 ) -> Result<(), Failure> {
     for (motion, (name, label)) in runs.iter().zip(names) {
-        let map = motion.image.map(&motion.titled(label), contrast);
-        found.picture(map.save(&context.out, &format!("density-{name}"))?);
+        if let Some(density) = motion.images.first() {
+            let map = density.map(&motion.titled(label));
+            found.picture(map.save(&context.out, &format!("density-{name}"))?);
+        }
     }
     Ok(())
 }

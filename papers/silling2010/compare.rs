@@ -2,11 +2,39 @@
 
 use std::time::Instant;
 
-use peridyne::spec::LinearBody;
+use peridyne::spec::{AnyLinearBody, LinearBody};
 use peridyne::statics::{Direct, Support};
 use peridyne_theory::coarsen::{Options, Report, Selection, coarsen};
 
-use crate::Failure;
+use crate::gallery::bench::Bench;
+use crate::measure::apart;
+use crate::{Failure, Findings};
+
+/// The claims `deck` and `deck-moves`: how far a deck's level 0 is from that of a formula in micromoduli over v, and in equilibrium.
+pub fn off_deck(
+    text: &str,
+    body: &LinearBody<1>,
+    u: &[f64],
+    found: &mut Findings,
+) -> Result<(), Failure> {
+    let mut bench = Bench::finished(text, &[])?;
+    let AnyLinearBody::One(own) = bench.sim.linear_body() else {
+        return Err(Failure::new("the deck is not a bar"));
+    };
+    let all = |of: &LinearBody<1>| -> Vec<f64> {
+        let n = of.points();
+        let pairs = (0..n * n).filter(|k| k / n != k % n);
+        let c = |k: usize| of.micromodulus(k / n, k % n).map_or(0.0, |c| c[0][0]);
+        pairs.map(c).collect()
+    };
+    if own.points() != body.points() {
+        return Err(Failure::new("the deck has other nodes"));
+    }
+    let moved = bench.values("displacement", 0)?;
+    found.number("deck", apart(&all(&own), &all(body)) / body.volume[0]);
+    found.number("deck-moves", apart(&moved, u));
+    Ok(())
+}
 
 pub fn failed(e: impl std::fmt::Display) -> Failure {
     Failure::new(e.to_string())

@@ -8,6 +8,8 @@ mod crystal;
 mod beyond_atoms;
 #[path = "beyond-block/mod.rs"]
 mod beyond_block;
+#[path = "beyond-motion/mod.rs"]
+mod beyond_motion;
 #[path = "beyond-plates/mod.rs"]
 mod beyond_plates;
 #[path = "equations/mod.rs"]
@@ -36,5 +38,6 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &beyond_plates::BeyondPlates,
         &beyond_block::BeyondBlock,
         &beyond_atoms::BeyondAtoms,
+        &beyond_motion::BeyondMotion,
     ]
 }

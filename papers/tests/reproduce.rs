@@ -1,7 +1,7 @@
 //! The framework with experiments of its own, and every experiment of the papers in its small variant.
 
-use peridyne_papers::reproduce::{Options, Outcome, reproduce, reproduce_of, select};
-use peridyne_papers::{Context, Experiment, Failure, Findings, all};
+use peridyne_papers::reproduce::{Options, Outcome, list, reproduce, reproduce_of, select};
+use peridyne_papers::{Context, Experiment, Failure, Findings, Takes, all, papers};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -24,7 +24,7 @@ struct Counted {
     failures: AtomicUsize,
     value: f64,
     time: f64,
-    long: bool,
+    takes: Takes,
 }
 
 impl Counted {
@@ -36,7 +36,7 @@ impl Counted {
             failures: AtomicUsize::new(failures),
             value,
             time: 1.5,
-            long: false,
+            takes: Takes::Minutes,
         }
     }
 
@@ -67,8 +67,8 @@ impl Experiment for Counted {
     fn sources(&self) -> &'static [&'static str] {
         &["v1"]
     }
-    fn long(&self) -> bool {
-        self.long
+    fn takes(&self) -> Takes {
+        self.takes
     }
     fn run(&self, context: &Context) -> Result<Findings, Failure> {
         self.runs.fetch_add(1, Ordering::Relaxed);
@@ -191,7 +191,7 @@ fn a_measurement_without_a_value_is_told() {
 fn what_takes_hours_is_asked_for_by_its_whole_name() {
     let dir = tempfile::tempdir().unwrap();
     let long = Counted {
-        long: true,
+        takes: Takes::Hours,
         ..Counted::new("figure-2", 42.0, 0)
     };
     let all: [&dyn Experiment; 2] = [&Counted::new("figure-1", 42.0, 0), &long];
@@ -201,6 +201,7 @@ fn what_takes_hours_is_asked_for_by_its_whole_name() {
     };
     let run = |name, options| reproduce_of(&all, name, options).unwrap().len();
     assert_eq!(run(None, &full), 1);
+    assert_eq!(run(Some("all"), &full), 1);
     assert_eq!(run(Some("author2001"), &full), 1);
     assert_eq!(long.counts(), (0, 0));
     assert_eq!(run(Some("author2001/figure-2"), &full), 1);
@@ -225,6 +226,36 @@ fn an_unknown_name_tells_the_closest_and_all() {
         "{text}"
     );
     assert!(!select(&all(), Some("seleson2009/")).unwrap().is_empty());
+}
+
+#[test]
+fn the_list_has_every_figure_and_what_it_takes() {
+    let text = list(None).unwrap();
+    assert_eq!(text.lines().count(), all().len());
+    let line = |name: &str| {
+        let found = text.lines().find(|l| l.starts_with(&format!("{name} ")));
+        found.unwrap_or_else(|| panic!("{name}: {text}"))
+    };
+    for paper in papers() {
+        for e in paper.figures {
+            assert_eq!(e.key(), paper.key);
+            let claims = e.claims().matches("[[claim]]").count();
+            let line = line(&format!("{}/{}", e.key(), e.figure()));
+            assert!(
+                line.contains(&format!(" {claims} claims  {} ", e.takes())),
+                "{line}"
+            );
+            assert!(line.ends_with(e.title()), "{line}");
+        }
+    }
+    assert!(line("seleson2014/figure-6-paper-step").contains(" hours "));
+    let one = list(Some("seleson2009/table-4-1")).unwrap();
+    assert_eq!(one.lines().count(), 1, "{one}");
+    let told = list(Some("seleson2009/tabel-4-1")).unwrap_err().to_string();
+    assert!(
+        told.contains("did you mean seleson2009/table-4-1"),
+        "{told}"
+    );
 }
 
 #[test]
@@ -267,5 +298,25 @@ fn names_are_unique_and_folders_are_complete() {
             assert_eq!(there, text, "{}", folder.display());
         }
         assert!(!e.sources().is_empty() && !e.title().is_empty());
+        decked(&folder, e.readme());
     }
+}
+
+/// A figure has a deck, or names that of another (`../figure-1/chain.toml`), or is arithmetic and says so.
+fn decked(folder: &Path, readme: &str) {
+    let own = std::fs::read_dir(folder).unwrap();
+    let own = own.map(|f| f.unwrap().file_name());
+    let is_deck = |name: &str| name.ends_with(".toml") && name != "claims.toml";
+    let has = own.into_iter().any(|f| f.to_str().is_some_and(is_deck));
+    let named: Vec<&str> = { readme.split('`') }
+        .filter(|word| word.starts_with("../") && is_deck(word))
+        .collect();
+    for deck in &named {
+        assert!(folder.join(deck).is_file(), "{}: {deck}", folder.display());
+    }
+    assert!(
+        has || !named.is_empty() || readme.contains("arithmetic"),
+        "{}: write a deck, name one in the README, or say there why it is arithmetic",
+        folder.display()
+    );
 }

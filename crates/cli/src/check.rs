@@ -13,7 +13,7 @@ use crate::deck;
 use crate::enough::enough;
 use crate::failure::{Failure, note, printed, say};
 use crate::law;
-use crate::run::{pictures, until, with_threads};
+use crate::run::{pictures, space_time, until, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Info, Simulation};
@@ -25,6 +25,7 @@ use peridyne_io::drive::default_dir;
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
 use peridyne_theory::nominal::nominal_moduli;
 use peridyne_theory::patch_test::{PatchTest, patch_test};
+use peridyne_theory::upscale::lattice;
 use peridyne_theory::voigt::{Stiffness, components};
 use std::time::{Duration, Instant};
 
@@ -176,6 +177,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     with_threads(threads, |threads| {
         let mut sim = deck::model(&deck, input)?;
         pictures(&deck, sim.as_mut())?;
+        space_time(&deck, sim.as_mut())?;
         let warnings = deck::warnings(&deck, sim.info());
         let remarks = deck::remarks(&deck.notes, &warnings);
         if !remarks.is_empty() {
@@ -248,7 +250,7 @@ fn report(
         found.patch = Some(within(
             LONGEST_PATCH,
             || ends(&found, late),
-            || patch_test(sim),
+            || patch_test(sim, lattice(&subject.spec).ok()),
         ));
         found.materials = materials(
             &subject.spec,

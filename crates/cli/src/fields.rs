@@ -90,7 +90,7 @@ fn all(request: &Request) -> Result<(), Failure> {
 /// Does the disk have room for the fields of so many frames?
 fn enough_disk(request: &Request, frames: usize) -> Result<(), Failure> {
     let frames = if request.each { frames as u64 } else { 0 };
-    let most = bytes(request.targets.len() as u64, frames);
+    let most = bytes(request.targets.len() as u64, frames, request.coordinate);
     match free(&request.out) {
         Some(free) if most > free => Err(Failure::input(format!(
             "fields at {} points would take up to {} on the disk; it has {} left: take fewer points, leave --each out, or give --out on another disk",

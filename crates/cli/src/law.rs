@@ -103,6 +103,14 @@ pub fn run(
             show(error)
         ));
     }
+    if let Some(compared) = done.compared {
+        let [mean, square, most] = compared.errors().map(|e| rounded(e, 3));
+        say(&format!(
+            "compared  with the local law ({}) at t = {}: u is off by {mean} of it in the mean (L1), {square} in the mean square (L2), {most} at most",
+            compared.with,
+            deck.units.show(compared.time, Dim::TIME)
+        ));
+    }
     for warning in &done.warnings[deck.warnings.len()..] {
         note(&format!("warning: {warning}"));
     }
@@ -174,6 +182,12 @@ fn headline(deck: &LawDeck) -> String {
             time(t)
         );
     }
+    if let Some(reference) = &deck.reference {
+        text += &format!(
+            "\ncompares  with the solution of the local law ({})",
+            reference.solution().name()
+        );
+    }
     text
 }
 
@@ -181,10 +195,12 @@ fn headline(deck: &LawDeck) -> String {
 fn shock_time(deck: &LawDeck) -> Option<f64> {
     let e = &deck.evolution;
     let law = e.operator.law();
-    let flux = &law.advection.as_ref()?.flux;
-    let line = deck.grid().dimension == 1;
-    line.then(|| exact::shock_time(flux, &e.u, deck.grid().spacing, law.periodic()))
-        .flatten()
+    exact::shock_time(
+        &law.local_flux()?,
+        &e.u,
+        deck.grid().spacing,
+        law.periodic(),
+    )
 }
 
 pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure> {

@@ -147,7 +147,8 @@ fn explain(key: &Key) -> String {
         }
         Value::Name => "a name".into(),
         Value::Formula(variables, dimension) => {
-            format!("an expression of {}, {dimension}", variables.join(", "))
+            let measures = dimension.map(|d| format!(", {d}")).unwrap_or_default();
+            format!("an expression of {}{measures}", variables.join(", "))
         }
         Value::Table | Value::Entries(_) => "a file".into(),
     };

@@ -49,7 +49,8 @@ enum Verb {
     Check(check::CheckArguments),
     /// From atoms (or fine points) to coarse peridynamic points: decks of both, and an error card.
     Upscale(upscale::UpscaleArguments),
-    /// From a linear body (a deck about its reference) to coarser ones, level by level, that move alike.
+    /// From a linear body (a deck about its reference) to coarser ones, level by level, in equilibrium alike, and moving alike
+    /// in waves of some ten coarse spacings and more: `--mass`.
     Coarsen(coarsen::CoarsenArguments),
     /// Waves of a lattice deck: dispersion, stability, elastic constants, gradient coefficients.
     Waves(waves::WavesArguments),

@@ -15,9 +15,10 @@ use peridyne::run::Simulation;
 use peridyne::spec::{BodySpec, Schedule, Spec, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
-use peridyne_io::deck::{Deck, Dim, UnitSystem, counted};
+use peridyne_io::deck::{Deck, Dim, SpaceTimeSpec, UnitSystem, counted};
 use peridyne_io::drive::{
-    AtomsPlan, ExodusPlan, Plan, RigidBodies, default_dir, drive, refused_threads, too_many_threads,
+    AtomsPlan, ExodusPlan, Plan, RigidBodies, SpaceTimeOptions, default_dir, drive,
+    refused_threads, too_many_threads,
 };
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
@@ -25,6 +26,7 @@ use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::marks::Marks;
 use peridyne_io::write::picture::shown::{About, component_of};
 use peridyne_io::write::run_json::{MarkNotes, Status};
+use peridyne_io::write::space_time::DENSITY;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -97,6 +99,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         .unwrap_or_else(|| default_dir(&arguments.input.file));
     enough(deck, sim.as_mut(), &dir)?;
     let pictures = pictures(deck, sim.as_mut())?;
+    let space_time = space_time(deck, sim.as_mut())?;
     say(&deck.describe());
     let warnings = deck::warnings(deck, sim.info());
     let remarks = deck::remarks(&deck.notes, &warnings);
@@ -104,6 +107,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
+    plan.space_time = space_time;
     plan.replaces_nothing()
         .map_err(|e| Failure::input(e.to_string()))?;
     if let Some(asked) = &mut plan.continuum {
@@ -255,6 +259,48 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
     Ok(all)
 }
 
+/// The fields over place and time that a deck asks for.
+///
+/// # Errors
+/// There is no such field, or it has no such component.
+pub fn space_time(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<SpaceTimeOptions>, Failure> {
+    let columns = sim.columns();
+    let wrong = |why: String, help: String| {
+        let error = BuildError::invalid("output.space_time", why).help(help);
+        Failure::Input(deck.explain(&error).into())
+    };
+    let one = |asked: &SpaceTimeSpec| {
+        let column = columns.iter().find(|c| c.name == asked.field);
+        let factor = match column {
+            // a ratio of lengths
+            _ if asked.field == DENSITY => 1.0,
+            Some(column) => {
+                if let Err(why) = component_of(column.shape, asked.component.as_deref()) {
+                    let help = format!("leave it out, or see `peridyne doc {}`", asked.field);
+                    return Err(wrong(format!("{}: {why}", asked.field), help));
+                }
+                deck.units.plain_factor(column.dimension)
+            }
+            None => {
+                let names: Vec<&str> = columns.iter().map(|c| &*c.name).collect();
+                let help = format!(
+                    "write {DENSITY:?}, or a field of this model: {}",
+                    names.join(", ")
+                );
+                return Err(wrong(format!("there is no field `{}`", asked.field), help));
+            }
+        };
+        Ok(SpaceTimeOptions {
+            field: asked.field.clone(),
+            component: asked.component.clone(),
+            range: asked.range.map(|r| r.map(|x| x * factor)),
+            window: asked.window,
+            period: deck.spec.periodic[0],
+        })
+    };
+    deck.output.space_time.iter().map(one).collect()
+}
+
 /// Units of length, time and energy.
 fn units(deck: &Deck) -> [&'static str; 3] {
     match deck.units {
@@ -335,6 +381,7 @@ fn plan(
             }),
             pictures,
         },
+        space_time: vec![],
         exodus: exodus(deck),
         fields: deck::fields(deck),
         continuum: continuum(deck),

@@ -12,7 +12,8 @@ use peridyne::run::{Options, build};
 use peridyne::spec::TimeStep;
 use peridyne_io::deck::upscaled::{copied, upscaled};
 use peridyne_io::deck::{Deck, Dim};
-use peridyne_io::write::card;
+use peridyne_io::write::card::{self, energies_told, kernel_rows};
+use peridyne_theory::upscale::kernels::kernels;
 use peridyne_theory::upscale::{self, Keep, UpscaleError, card::card};
 use std::path::{Path, PathBuf};
 
@@ -31,9 +32,12 @@ pub struct UpscaleArguments {
     /// (every law). By the law if not given: the reach where it can be kept.
     #[arg(long, value_enum)]
     pub keep: Option<KeepName>,
-    /// Run the deck and its coarse models, and measure error and speed-up.
+    /// Run the deck and its coarse models, and measure errors of displacement and energies and speed-up.
     #[arg(long)]
     pub run: bool,
+    /// Compare influence functions and horizons for the coarse model, each fitted to the same moduli: which is nearest to the fine one?
+    #[arg(long)]
+    pub kernels: bool,
     /// Folder for the results; `out/<name of the deck or law>-upscaled` if not given.
     #[arg(long)]
     pub out: Option<PathBuf>,
@@ -109,6 +113,9 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
         let (spec, rule) =
             upscale::upscale_keeping(&fine.spec, factor, keep).map_err(|e| refused(&e))?;
         let mut card = card(&fine.spec, &spec, factor, rule).map_err(|e| refused(&e))?;
+        if arguments.kernels {
+            card.kernels = kernels(&fine.spec, &spec).map_err(|e| refused(&e))?;
+        }
         let text = upscaled(fine, &spec, factor, end).map_err(wrong)?;
         card.notes.extend(text.notes.iter().map(Message::from));
         made.push((factor, text, card));
@@ -132,6 +139,7 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
             dir.join("coarse.toml").display(),
             dir.join("card.md").display()
         ));
+        say(&format!("  gradient equations {}", card.verdict));
         for d in &card.dispersion {
             let words: Vec<String> = d
                 .wavelengths
@@ -151,18 +159,51 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
             ));
         }
         say(&format!("  predicted cost 1 : {:.1}", card.cost));
+        if !card.kernels.is_empty() {
+            say(&table(&kernel_rows(&card.kernels, fine.units)));
+        }
         if let Some(m) = measured {
             say(&format!(
                 "  measured: {:.1} times as fast, displacement error {:.3} %",
                 m.seconds[0] / m.seconds[1],
                 100.0 * m.error
             ));
+            say(&format!("  {}", energies_told(&m.energies)));
         }
         for note in &card.notes {
             say(&format!("  note: {}", fine.units.tell(note)));
         }
     }
     Ok(())
+}
+
+/// Headings of the table of kernels.
+const KERNELS: [&str; 7] = [
+    "influence",
+    "horizon",
+    "bonds",
+    "gradient equations",
+    "c₄",
+    "√|c₄/c₂|",
+    "1 % below",
+];
+
+/// The table of kernels in columns.
+fn table(rows: &[[String; 7]]) -> String {
+    let headings = KERNELS.map(String::from);
+    let lines: Vec<&[String; 7]> = std::iter::once(&headings).chain(rows).collect();
+    let width = |c: usize| { lines.iter() }.map(|l| l[c].chars().count()).max();
+    let widths: [usize; 7] = std::array::from_fn(|c| width(c).unwrap_or(0));
+    let line = |cells: &&[String; 7]| {
+        let each = cells.iter().zip(widths);
+        let each: Vec<String> = each.map(|(cell, w)| format!("{cell:<w$}")).collect();
+        format!("    {}", each.join("  ").trim_end())
+    };
+    let text: Vec<String> = lines.iter().map(line).collect();
+    format!(
+        "  kernels of the coarse model, the best first\n{}",
+        text.join("\n")
+    )
 }
 
 /// When a deck ends that counts steps which the program finds: those of the coarse model are others, and it is to end then, too.

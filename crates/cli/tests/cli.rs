@@ -264,7 +264,7 @@ fn every_good_deck_runs() {
                 "statics.increments=8"
             }
             _ if text.contains("[statics]") => "statics.increments=1",
-            true if units("none") => "run.duration=0.01",
+            true if units("none") || units("lj") => "run.duration=0.01",
             true if units("metal") => "run.duration=0.01 ps",
             true => "run.duration=0.7 us",
             false => "run.steps=5",

@@ -173,3 +173,72 @@ fn what_is_wrong_is_named_and_nothing_is_written() {
         assert!(!out.exists(), "{arguments:?}");
     }
 }
+
+/// Displacement error (%) and all that was told of a chain in motion.
+fn moved(arguments: &[&str]) -> (f64, String, tempfile::TempDir) {
+    let dir = tempfile::tempdir().unwrap();
+    let all = [&["--every", "4", "--run"], arguments].concat();
+    let done = coarsen("good/pulse_on_a_chain.toml", dir.path(), &all);
+    let told = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert_eq!(
+        done.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    let (_, after) = told.split_once("displacement error ").unwrap();
+    let error = after.split(' ').next().unwrap().parse().unwrap();
+    (error, told, dir)
+}
+
+#[test]
+fn a_chain_in_motion_runs_with_masses_that_couple_and_is_warned_of_where_it_is_off() {
+    let (blend, told, dir) = moved(&[]);
+    assert!(blend < 5.0 && !told.contains("warning: level1"), "{told}");
+    let json = std::fs::read_to_string(dir.path().join("level1.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(report["masses"], "blend");
+    let error = |spacings: f64| {
+        let waves = report["frequencies"]["waves"].as_array().unwrap();
+        let wave = waves.iter().find(|w| w["coarse_spacings"] == spacings);
+        100.0 * wave.unwrap()["error"].as_f64().unwrap()
+    };
+    assert!(error(25.0).abs() < 0.3 && error(10.0).abs() < 5.5, "{told}");
+    let steps = ["stable_step", "stable_step_of_level_0"].map(|k| report[k].as_f64().unwrap());
+    assert!(steps[0] > steps[1], "{steps:?}");
+    let table = std::fs::read_to_string(dir.path().join("level1-waves.csv")).unwrap();
+    assert!(
+        table.starts_with("along,moves,coarse spacings per wave"),
+        "{table}"
+    );
+    // two and a half coarse spacings: no mass repairs it
+    let (narrow, told, _) = moved(&["--set", "constants.w=0.05"]);
+    assert!(narrow > 5.0 && told.contains("warning: level1"), "{told}");
+    let (lumped, told, _) = moved(&["--mass", "lumped"]);
+    assert!(lumped > 15.0 && told.contains("warning: level1"), "{told}");
+    let (wide, told, _) = moved(&["--set", "constants.w=0.2"]);
+    assert!(wide < 0.3, "{told}");
+}
+
+#[test]
+fn a_level_in_motion_is_coarsened_further() {
+    let (_, _, first) = moved(&["--mass", "consistent"]);
+    let out = tempfile::tempdir().unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .arg("coarsen")
+        .arg(first.path().join("level1.toml"))
+        .args(["--every", "2", "--out"])
+        .arg(out.path())
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert_eq!(done.status.code(), Some(0), "{told}");
+    let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .arg("run")
+        .arg(out.path().join("level1.toml"))
+        .arg("--out")
+        .arg(out.path().join("run"))
+        .output()
+        .unwrap();
+    assert_eq!(done.status.code(), Some(0));
+}

@@ -418,3 +418,54 @@ fn a_long_step_hears_that_it_is_to_end() {
     assert_eq!(report["steps"], 0);
     assert!(out.join("frames.npz").metadata().unwrap().len() > 1000);
 }
+
+/// Beside the characteristics: errors in the history, the report and the last line; they fall as δ².
+#[test]
+fn a_run_compares_itself_with_the_local_law() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = deck("good/conservation/compare.toml");
+    let mut last = vec![];
+    for (name, horizon) in [("wide", "horizon=0.02"), ("near", "horizon=0.01")] {
+        let out = dir.path().join(name);
+        let done = peridyne(&[
+            "run",
+            file.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+            "--set",
+            horizon,
+            "--set",
+            "points=512",
+        ]);
+        let said = String::from_utf8_lossy(&done.stdout);
+        assert!(
+            done.status.success(),
+            "{}",
+            String::from_utf8_lossy(&done.stderr)
+        );
+        assert!(
+            said.contains("compares  with the solution of the local law (characteristics)"),
+            "{said}"
+        );
+        let report = std::fs::read_to_string(out.join("run.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        assert_eq!(report["compared"]["with"], "characteristics");
+        let errors = ["error_l1", "error_l2", "error_max"].map(|key| {
+            let all = column(&out.join("history.csv"), key);
+            assert_eq!((all.len(), all[0]), (21, 0.0));
+            assert!(all.windows(2).all(|w| w[0] < w[1]), "{all:?}");
+            assert_eq!(report["compared"][key].as_f64().unwrap(), all[20]);
+            all[20]
+        });
+        let told = format!(
+            "u is off by {} of it",
+            peridyne_io::deck::rounded(errors[0], 3)
+        );
+        assert!(said.contains(&told), "{said}");
+        last.push(errors);
+    }
+    for (wide, near) in last[0].iter().zip(&last[1]) {
+        let order = (wide / near).log2();
+        assert!((order - 2.0).abs() < 0.2, "{last:?}");
+    }
+}

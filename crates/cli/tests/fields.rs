@@ -545,3 +545,42 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     assert_eq!(code, Some(2));
     assert!(error.contains("cut-off"), "{error}");
 }
+
+/// `--coordinate` adds y, its flux and the angular momentum; without it they are not there, and residuals of all laws are.
+#[test]
+fn the_material_coordinate_is_written_where_it_is_asked_for() {
+    let dir = TempDir::new().unwrap();
+    let dir = dir.path();
+    std::fs::write(dir.join("a.dump"), dump(1, false, true)).unwrap();
+    std::fs::write(dir.join("points.txt"), "1 1 1\n2.5 0.5 3\n").unwrap();
+    let mut heads = vec![];
+    for (out, more) in [("with", &["--coordinate"][..]), ("without", &[])] {
+        let own = ["--frames", "a.dump", "--points", "points.txt", "--out", out];
+        let (code, _, error) = fields(dir, &with(&[&own, more].concat()));
+        assert_eq!(code, Some(0), "{error}");
+        heads.push(rows(&dir.join(out).join("points.csv")));
+        let text = std::fs::read_to_string(dir.join(out).join("fields.json")).unwrap();
+        let about: serde_json::Value = serde_json::from_str(&text).unwrap();
+        for law in ["internal_energy", "coordinate", "angular_momentum"] {
+            let of = &about["each_frame"][0]["residuals"][law];
+            let [value, expected] = ["value", "expected"].map(|k| of[k].as_f64().unwrap());
+            assert!((value / expected - 1.0).abs() < 0.5, "{law}: {of}");
+        }
+    }
+    let [with, without] = [&heads[0], &heads[1]];
+    let more = "yx,yy,yz,ud_xx,ud_xy,ud_xz,ud_yx,ud_yy,ud_yz,ud_zx,ud_zy,ud_zz,lx,ly,lz";
+    assert_eq!(
+        with[0].join(","),
+        format!("{},{more}", without[0].join(","))
+    );
+    for row in &with[1..] {
+        let of = |name: &str| -> f64 {
+            let place = with[0].iter().position(|c| c == name).unwrap();
+            row[place].parse().unwrap()
+        };
+        let l = of("rho") * (of("yx") * of("vy") - of("yy") * of("vx"));
+        assert!((of("lz") - l).abs() < 1e-12 * (1.0 + l.abs()));
+        // the mass at a point is centred near it
+        assert!((of("yx") - of("x")).abs() < 1.0 && of("yx") != of("x"));
+    }
+}

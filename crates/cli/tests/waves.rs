@@ -93,6 +93,12 @@ fn coefficients_of_chains_are_fractions_to_the_order_asked() {
             "{p}"
         );
     }
+    // √(35/2) a
+    let length = number(&found, "/directions/0/length_scale");
+    assert!(
+        (length / (17.5f64.sqrt() * 0.25) - 1.0).abs() < 1e-12,
+        "{length}"
+    );
     let done = waves(
         &deck("good/spring_chain.toml"),
         &["--order", "12"],

@@ -93,6 +93,7 @@ fn main() {
         )],
         transfers: vec![],
         family: FamilyChoice::Auto,
+        smooth: None,
         preload: None,
         own_horizon: None,
         schedule: Schedule {

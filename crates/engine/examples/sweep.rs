@@ -153,7 +153,7 @@ impl Case {
             body: &body,
             stencil: &stencil,
             law,
-            weight: &|r0| peridyne::family::volume_fraction(r0, 3.0 * H, H),
+            weight: &|_, r0| peridyne::family::volume_fraction(r0, 3.0 * H, H),
             point_constants,
             toughness: self.toughness(),
             repulsion: self.repulsion(),

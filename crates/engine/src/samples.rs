@@ -44,7 +44,7 @@ pub fn lattice<const D: usize>(
         body: &body,
         stencil: &stencil,
         law: BondBased { c: 1.0 },
-        weight: &|_| 1.0,
+        weight: &|_, _| 1.0,
         point_constants: PointConstants::None,
         toughness: vec![Toughness {
             s00: f64::INFINITY,

@@ -60,7 +60,7 @@ fn stencil_of<W: Law>(
         body,
         stencil: &Stencil::new(LatticeKind::Square, 1.0, Horizon::Ratio(ratio)),
         law,
-        weight: &|_| 1.0,
+        weight: &|_, _| 1.0,
         point_constants: constants,
         toughness: vec![TOUGH],
         repulsion: None,
@@ -200,6 +200,7 @@ proptest! {
             partner,
             block: vec![[[1.0]]; blocks],
             carriers: None,
+            mass: None,
         };
         let cloud = Cloud {
             position: body.position.iter().map(|x| [x[0], 0.0, 0.0]).collect(),
@@ -338,7 +339,7 @@ fn nothing_need_be_prepared() {
         body: &body,
         stencil: &Stencil::new(LatticeKind::Square, 1.0, Horizon::Ratio(2)),
         law,
-        weight: &|_| 1.0,
+        weight: &|_, _| 1.0,
         point_constants,
         toughness: vec![TOUGH],
         repulsion: None,

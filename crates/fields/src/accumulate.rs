@@ -199,7 +199,8 @@ fn add<const W: usize>(own: &mut [Lanes], terms: &[f64], list: &[u32], beta: &[L
     }
 }
 
-/// What particles of a block add: `width` numbers each times φ, and where `slopes` is given numbers for each component of ∇φ.
+/// What particles of a block add: `width` numbers each times φ, and where they are given numbers for each component of ∇φ and of d φ, d from the particle to the point, and
+/// vectors c of `(c·∇φ) d`.
 pub(crate) struct Particles<'a> {
     pub position: &'a [[f64; 3]],
     pub width: usize,
@@ -207,14 +208,28 @@ pub(crate) struct Particles<'a> {
     /// What is multiplied with the components of ∇φ.
     pub slopes: Option<&'a [f64]>,
     pub slope_width: usize,
+    /// What is multiplied with the components of d φ.
+    pub moments: &'a [f64],
+    pub moment_width: usize,
+    /// Three for each particle, or none.
+    pub carried: &'a [f64],
+}
+
+impl Particles<'_> {
+    /// Numbers that are more than φ times something.
+    fn rest(&self) -> usize {
+        let slopes = self.slopes.map_or(0, |_| self.slope_width);
+        let carried = usize::from(!self.carried.is_empty());
+        3 * (slopes + self.moment_width + carried)
+    }
 }
 
 /// Sums over particles at the points of a patch, of each brick those of eight points: `width` numbers and what fills up the last six of
-/// them, then three for each of `slope_width`.
+/// them, then three for each of `slope_width` and of `moment_width`, and three of what is carried.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct ParticleSums {
     width: usize,
-    slopes: usize,
+    rest: usize,
     values: Vec<Lanes>,
 }
 
@@ -227,20 +242,20 @@ const GROUP: usize = 16;
 
 impl ParticleSums {
     fn stride(&self) -> usize {
-        self.width.next_multiple_of(SIX) + self.slopes
+        self.width.next_multiple_of(SIX) + self.rest
     }
 
     /// Adds them to all sums.
     pub fn add_to(&self, sums: &mut [f64], index: &[u32]) {
-        let (stride, width) = (self.stride().max(1), self.width + self.slopes);
+        let (stride, width) = (self.stride().max(1), self.width + self.rest);
         for (points, own) in { index.chunks_exact(EIGHT) }.zip(self.values.chunks_exact(stride)) {
             for (k, p) in points.iter().enumerate().filter(|(_, p)| **p != NONE) {
                 let sums = &mut sums[*p as usize * width..][..width];
-                let (times_phi, slopes) = sums.split_at_mut(self.width);
+                let (times_phi, rest) = sums.split_at_mut(self.width);
                 for (sum, own) in times_phi.iter_mut().zip(own) {
                     *sum += own[k];
                 }
-                for (sum, own) in slopes.iter_mut().zip(&own[stride - self.slopes..]) {
+                for (sum, own) in rest.iter_mut().zip(&own[stride - self.rest..]) {
                     *sum += own[k];
                 }
             }
@@ -253,14 +268,11 @@ impl ParticleSums {
 fn all_particles(kernel: &Kernel, patch: &Patch, of: &Particles) -> ParticleSums {
     let mut out = ParticleSums {
         width: of.width,
-        slopes: match of.slopes {
-            Some(_) => 3 * of.slope_width,
-            None => 0,
-        },
+        rest: of.rest(),
         values: vec![],
     };
     let stride = out.stride();
-    let padded = stride - out.slopes;
+    let padded = stride - out.rest;
     out.values = vec![Lanes::ZERO; patch.bricks.len() * stride];
     let radius = kernel.radius();
     let mut seen = vec![];
@@ -302,13 +314,42 @@ fn all_particles(kernel: &Kernel, patch: &Patch, of: &Particles) -> ParticleSums
                     }
                 }
                 kernel.values(&d, &mut phi[list.len()]);
+                let here = phi[list.len()];
                 list.push(n as u32);
-                let Some(all) = of.slopes else {
+                if out.rest == 0 {
                     continue;
-                };
-                let rest = &mut out.values[*brick as usize * stride + padded..][..out.slopes];
-                let own = &all[(first + n) * of.slope_width..][..of.slope_width];
-                slopes(kernel, &d, own, rest);
+                }
+                let rest = &mut out.values[*brick as usize * stride + padded..][..out.rest];
+                let width = of.slopes.map_or(0, |_| of.slope_width);
+                let (sloped, rest) = rest.split_at_mut(3 * width);
+                if let Some(all) = of.slopes {
+                    let own = &all[(first + n) * width..][..width];
+                    add_vectors(&gradients(kernel, &d), own, sloped);
+                }
+                let width = of.moment_width;
+                let (moments, carried) = rest.split_at_mut(3 * width);
+                if width > 0 {
+                    let own = &of.moments[(first + n) * width..][..width];
+                    let moment = [
+                        product(d[0], here),
+                        product(d[1], here),
+                        product(d[2], here),
+                    ];
+                    add_vectors(&moment, own, moments);
+                }
+                if !of.carried.is_empty() {
+                    let own = &of.carried[3 * (first + n)..][..3];
+                    let gradient = gradients(kernel, &d);
+                    for a in 0..3 {
+                        for k in 0..EIGHT {
+                            let mut along = 0.0;
+                            for b in 0..3 {
+                                along = own[b].mul_add(gradient[b][k], along);
+                            }
+                            carried[a][k] = along.mul_add(d[a][k], carried[a][k]);
+                        }
+                    }
+                }
             }
             let own = &mut out.values[*brick as usize * stride..][..padded];
             add::<SIX>(own, &terms, &list, &phi[..list.len()]);
@@ -318,9 +359,9 @@ fn all_particles(kernel: &Kernel, patch: &Patch, of: &Particles) -> ParticleSums
     out
 }
 
-/// Numbers times ∇φ at eight points.
+/// ∇φ at eight points.
 #[inline(always)]
-fn slopes(kernel: &Kernel, d: &[Lanes; 3], own: &[f64], rest: &mut [Lanes]) {
+fn gradients(kernel: &Kernel, d: &[Lanes; 3]) -> [Lanes; 3] {
     let mut gradient = [Lanes::ZERO; 3];
     for k in 0..EIGHT {
         let one = kernel.gradient([d[0][k], d[1][k], d[2][k]]);
@@ -328,10 +369,25 @@ fn slopes(kernel: &Kernel, d: &[Lanes; 3], own: &[f64], rest: &mut [Lanes]) {
             gradient[a][k] = one[a];
         }
     }
+    gradient
+}
+
+#[inline(always)]
+fn product(a: Lanes, b: Lanes) -> Lanes {
+    let mut out = Lanes::ZERO;
+    for k in 0..EIGHT {
+        out[k] = a[k] * b[k];
+    }
+    out
+}
+
+/// Numbers times a vector at eight points.
+#[inline(always)]
+fn add_vectors(vector: &[Lanes; 3], own: &[f64], rest: &mut [Lanes]) {
     for (rest, value) in rest.as_chunks_mut::<3>().0.iter_mut().zip(own) {
         for a in 0..3 {
             for k in 0..EIGHT {
-                rest[a][k] = value.mul_add(gradient[a][k], rest[a][k]);
+                rest[a][k] = value.mul_add(vector[a][k], rest[a][k]);
             }
         }
     }
@@ -414,6 +470,9 @@ mod tests {
                     value: &some[..40],
                     slopes: Some(&some[40..48]),
                     slope_width: 4,
+                    moments: &some[48..54],
+                    moment_width: 3,
+                    carried: &some[54..60],
                 };
                 let wide = particles(&kernel, &patch, &particles_of);
                 assert!(

@@ -61,11 +61,12 @@ impl Effort {
         let values = (bonds + count) * points * near * ball;
         let threads = rayon::current_num_threads() as f64;
         // sums of bonds and of particles, as whole as they may be
-        let sums = 8.0 * (21.0 * parts(method) + 20.0 + 40.0);
+        let moments = if method.coordinate { 15.0 } else { 0.0 };
+        let sums = 8.0 * (21.0 * parts(method) + 20.0 + 40.0 + moments);
         // a block of centres lists all its bonds at once
         let centres = (count / 64.0).clamp(32.0, 4096.0).min(count);
         let listed = threads * centres * 2.0 * bonds / count * LISTED;
-        let fields: usize = Quantity::ALL.iter().map(|q| q.components()).sum();
+        let fields = Quantity::numbers(method.coordinate);
         let kept = PLACE + sums + 8.0 * fields as f64;
         let bricks = points / 8.0 * piece;
         Effort {

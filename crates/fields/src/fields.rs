@@ -2,7 +2,7 @@
 
 use crate::accumulate::{BOND, SYMMETRIC};
 use crate::bonds::Block;
-use crate::frame::Frame;
+use crate::frame::{Frame, cross};
 use crate::kernel::dot;
 pub use crate::quantity::{Powers, Quantity};
 
@@ -20,6 +20,8 @@ pub struct Rates {
     pub density: f64,
     pub momentum: [f64; 3],
     pub energy: f64,
+    /// `∂(ρy)/∂t`; not a number where y was not asked for.
+    pub coordinate: [f64; 3],
 }
 
 /// Sums over the whole frame.
@@ -105,6 +107,10 @@ pub(crate) struct Layout {
     pub rates: bool,
     /// Is there anything that churns?
     pub churns: bool,
+    /// Are there y, its flux and the angular momentum?
+    pub places: bool,
+    /// Along these axes a mean has no place.
+    pub averaged: [bool; 3],
 }
 
 impl Layout {
@@ -122,8 +128,19 @@ impl Layout {
         }
     }
 
+    /// Numbers times d φ, d from the particle to the point: m, m v.
+    pub fn moments(&self) -> usize {
+        match (self.places, self.moving) {
+            (true, true) => 4,
+            (true, false) => 1,
+            (false, _) => 0,
+        }
+    }
+
+    /// Three numbers for each of the slopes and moments, and `Σ m (v·∇φ) d` for rates of y.
     pub fn stride(&self) -> usize {
-        self.width() + 3 * self.slopes()
+        let carried = usize::from(self.places && self.rates);
+        self.width() + 3 * (self.slopes() + self.moments() + carried)
     }
 }
 
@@ -204,7 +221,7 @@ impl Fields {
         for p in 0..fields.points.len() {
             let bonds = &sums.bonds[p * layout.parts * BOND..][..layout.parts * BOND];
             let own = &sums.particles[p * layout.stride()..][..layout.stride()];
-            fields.point(&layout, bonds, own, drift, boltzmann);
+            fields.point(p, &layout, bonds, own, drift, boltzmann);
         }
         fields
     }
@@ -217,6 +234,7 @@ impl Fields {
 
     fn point(
         &mut self,
+        p: usize,
         layout: &Layout,
         bonds: &[f64],
         own: &[f64],
@@ -252,6 +270,15 @@ impl Fields {
             if layout.moving {
                 part.heat.extend(heat(b, velocity));
             }
+        }
+        let (slopes, moments) = own[layout.width()..].split_at(3 * layout.slopes());
+        let place = layout.places.then(|| {
+            // y = x − Σ m d φ/ρ
+            let y = |a: usize| self.points[p][a] - moments[a] / density;
+            std::array::from_fn(|a| if layout.averaged[a] { f64::NAN } else { y(a) })
+        });
+        if let Some(y) = place {
+            self.put(Q::Coordinate, &y);
         }
         if !layout.moving {
             return;
@@ -295,7 +322,6 @@ impl Fields {
         let churned: [f64; 3] =
             std::array::from_fn(|a| (0..3).map(|b| churning[3 * a + b] * whole[b]).sum());
         self.put(Q::HeatChurning, &churned);
-        let slopes = &own[layout.width()..];
         // ∂v_b/∂x_a = (∂π_b/∂x_a − v_b ∂ρ/∂x_a)/ρ
         let source = |n: usize| {
             let (a, b) = (n / 3, n % 3);
@@ -307,8 +333,29 @@ impl Fields {
             false => (0..9).map(source).sum(),
         };
         self.put(Q::ChurningSource, &[source]);
+        if let Some(y) = place {
+            // Σ m u^a d^b φ with d = x_j − y: Σ m v^a (x_j − x)^b φ and what the mean of both has of it
+            let spread = |n: usize| {
+                let (a, b) = (n / 3, n % 3);
+                match layout.averaged[b] {
+                    true => f64::NAN,
+                    false => v[a] * moments[b] - moments[3 * (1 + a) + b],
+                }
+            };
+            self.put(Q::CoordinateFlux, &std::array::from_fn::<f64, 9, _>(spread));
+            self.put(Q::AngularMomentum, &cross(y, whole).map(|l| density * l));
+        }
         if layout.rates {
-            self.rates.push(rates(&rest[15..], slopes, drift));
+            let mut rates = rates(&rest[15..], slopes, drift);
+            let carried = moments.get(3 * layout.moments()..).unwrap_or_default();
+            // ∂(ρy)/∂t = Σ m (v − x_j v·∇)φ
+            rates.coordinate = std::array::from_fn(|a| match carried.get(a) {
+                Some(carried) if !layout.averaged[a] => {
+                    momentum[a] + self.points[p][a] * rates.density + carried
+                }
+                _ => f64::NAN,
+            });
+            self.rates.push(rates);
         }
     }
 }
@@ -338,5 +385,6 @@ fn rates(own: &[f64], slopes: &[f64], drift: [f64; 3]) -> Rates {
         density,
         momentum,
         energy: own[3] - carried,
+        coordinate: [f64::NAN; 3],
     }
 }

@@ -3,6 +3,7 @@
 use crate::FieldsError;
 use crate::kernel::Kernel;
 use crate::molecules::Molecules;
+use crate::neighbours::Families;
 use crate::partition::{PairForce, Partition};
 use std::sync::Arc;
 
@@ -16,8 +17,12 @@ pub struct Method {
     pub by_part: bool,
     /// What is bonded whatever moves.
     pub molecules: Option<Arc<Molecules>>,
+    /// Who can feel whom, of particles that keep the neighbours of a reference; `None`: those that are near now.
+    pub families: Option<Arc<Families>>,
     /// Also the exact rates of ρ, π and e, for residuals.
     pub rates: bool,
+    /// Also where what is at a point comes from: y, its flux and the angular momentum.
+    pub coordinate: bool,
     /// k_B (energy / temperature); 1 in reduced units.
     pub boltzmann: f64,
     /// Is told how much of a frame is done.
@@ -52,7 +57,9 @@ impl Method {
             pair_force: PairForce::Distances,
             by_part: false,
             molecules: None,
+            families: None,
             rates: false,
+            coordinate: false,
             boltzmann: 1.0,
             progress: None,
             stop: never,

@@ -31,6 +31,33 @@ pub struct Neighbours<'a> {
     sorted: Vec<[f64; 3]>,
     /// Bins to look through on each side.
     span: [i32; 3],
+    /// Who alone can be near, and the period that each particle is in.
+    held: Option<(&'a Families, Vec<[i32; 3]>)>,
+}
+
+/// Who was near to whom in a reference: partners, and how many periods each is off the particle's own positions as they are, unwrapped.
+#[derive(Debug, Clone)]
+pub struct Families(Vec<Vec<(u32, [i32; 3])>>);
+
+impl Families {
+    /// Of a frame that is the reference, all that are nearer than `horizon` (length).
+    ///
+    /// # Errors
+    /// A horizon that is not finite, or many times the cell.
+    pub fn new(reference: &Frame, horizon: f64) -> Result<Families, FieldsError> {
+        let near = Neighbours::new(reference, horizon)?;
+        let home = near.periods();
+        let mut all = vec![];
+        let family = |i: usize| {
+            near.near(i, &mut all);
+            let whole = |p: &Partner| {
+                let off = |a: usize| p.image[a] + home[i][a] - home[p.atom as usize][a];
+                (p.atom, std::array::from_fn(off))
+            };
+            all.iter().map(whole).collect()
+        };
+        Ok(Families((0..reference.len()).map(family).collect()))
+    }
 }
 
 /// Bins per reach.
@@ -92,6 +119,7 @@ impl<'a> Neighbours<'a> {
             order: vec![0; frame.len()],
             sorted: vec![],
             span,
+            held: None,
         };
         let place: Vec<u32> = all.wrapped.iter().map(|x| all.bin(*x)).collect();
         for p in &place {
@@ -109,6 +137,33 @@ impl<'a> Neighbours<'a> {
         let sorted = all.order.iter().map(|i| all.wrapped[*i as usize]);
         all.sorted = sorted.collect();
         Ok(all)
+    }
+
+    /// Of these families alone those that are near.
+    ///
+    /// # Errors
+    /// Families of another number of particles.
+    pub fn held(mut self, families: &'a Families) -> Result<Neighbours<'a>, FieldsError> {
+        if families.0.len() != self.frame.len() {
+            return Err(FieldsError(format!(
+                "families of {} particles, the frame has {}",
+                families.0.len(),
+                self.frame.len()
+            )));
+        }
+        self.held = Some((families, self.periods()));
+        Ok(self)
+    }
+
+    /// The period that each particle's position is in.
+    fn periods(&self) -> Vec<[i32; 3]> {
+        let cell = &self.frame.cell;
+        let both = self.frame.position.iter().zip(&self.wrapped);
+        both.map(|(x, wrapped)| {
+            let (s, t) = (cell.fraction(*x), cell.fraction(*wrapped));
+            std::array::from_fn(|a| (s[a] - t[a]).round() as i32)
+        })
+        .collect()
     }
 
     fn triple(&self, x: [f64; 3]) -> [i32; 3] {
@@ -142,12 +197,24 @@ impl<'a> Neighbours<'a> {
         })
     }
 
-    /// All that are nearer to a particle than the reach, in an order of their own.
+    /// All that are nearer to a particle than the reach, in an order of their own; of held families their members alone.
     pub fn near(&self, i: usize, out: &mut Vec<Partner>) {
         out.clear();
         let x = self.wrapped[i];
-        let home = self.triple(x);
         let limit = self.reach * self.reach;
+        if let Some((Families(of), period)) = &self.held {
+            for &(atom, off) in &of[i] {
+                let k = atom as usize;
+                let image = std::array::from_fn(|a| off[a] + period[k][a] - period[i][a]);
+                let shift = self.frame.cell.shift(image);
+                let y: [f64; 3] = std::array::from_fn(|a| self.wrapped[k][a] + shift[a] - x[a]);
+                if y.iter().map(|c| c * c).sum::<f64>() < limit {
+                    out.push(Partner { atom, image, y });
+                }
+            }
+            return;
+        }
+        let home = self.triple(x);
         for (b0, m0) in self.line(0, home[0]) {
             for (b1, m1) in self.line(1, home[1]) {
                 let row = (b0 * self.bins[1] + b1) * self.bins[2];

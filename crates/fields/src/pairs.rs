@@ -43,6 +43,7 @@ pub fn method(method: Method) -> Method {
         pair_force: PairForce::Differences,
         by_part: false,
         molecules: None,
+        families: None,
         ..method
     }
 }
@@ -85,6 +86,8 @@ pub fn evaluate(
         moving: !velocity.is_empty(),
         rates: method.rates && !velocity.is_empty(),
         churns: false,
+        places: method.coordinate,
+        averaged: method.kernel.averaged_axes().map(|a| a.is_some()),
     };
     let mut gather = Gather {
         frame,

@@ -19,6 +19,9 @@ pub enum Quantity {
     HeatChurning,
     ChurningSource,
     Pressure,
+    Coordinate,
+    CoordinateFlux,
+    AngularMomentum,
 }
 
 /// Powers of units; mass and energy are apart, as users write them.
@@ -32,7 +35,7 @@ pub struct Powers {
 }
 
 impl Quantity {
-    pub const ALL: [Quantity; 16] = [
+    pub const ALL: [Quantity; 19] = [
         Quantity::Density,
         Quantity::Momentum,
         Quantity::Velocity,
@@ -49,7 +52,25 @@ impl Quantity {
         Quantity::HeatChurning,
         Quantity::ChurningSource,
         Quantity::Pressure,
+        Quantity::Coordinate,
+        Quantity::CoordinateFlux,
+        Quantity::AngularMomentum,
     ];
+
+    /// Those of where what is at a point comes from, which are made where they are asked for.
+    pub const PLACES: [Quantity; 3] = [
+        Quantity::Coordinate,
+        Quantity::CoordinateFlux,
+        Quantity::AngularMomentum,
+    ];
+
+    /// Numbers of all fields at a point, with those of places or without.
+    pub fn numbers(places: bool) -> usize {
+        let made = Quantity::ALL.into_iter();
+        made.filter(|q| places || !Quantity::PLACES.contains(q))
+            .map(Quantity::components)
+            .sum()
+    }
 
     /// Short name, in columns of tables.
     pub fn symbol(self) -> &'static str {
@@ -70,6 +91,9 @@ impl Quantity {
             Quantity::HeatChurning => "qC",
             Quantity::ChurningSource => "zv",
             Quantity::Pressure => "pressure",
+            Quantity::Coordinate => "y",
+            Quantity::CoordinateFlux => "ud",
+            Quantity::AngularMomentum => "l",
         }
     }
 
@@ -91,6 +115,9 @@ impl Quantity {
             Quantity::HeatChurning => "churning heat flux",
             Quantity::ChurningSource => "churning heat source",
             Quantity::Pressure => "pressure",
+            Quantity::Coordinate => "material coordinate",
+            Quantity::CoordinateFlux => "flux of the material coordinate",
+            Quantity::AngularMomentum => "angular momentum density",
         }
     }
 
@@ -113,6 +140,9 @@ impl Quantity {
             Quantity::HeatChurning => "(4.0.115)",
             Quantity::ChurningSource => "(4.0.120), z^ab dv^b/dx^a",
             Quantity::Pressure => "-(s_xx + s_yy + s_zz)/3 of the Cauchy stress",
+            Quantity::Coordinate => "(4.0.70)",
+            Quantity::CoordinateFlux => "(4.0.72), sum m u^a d^b phi, d = x_j - y",
+            Quantity::AngularMomentum => "(4.0.91)",
         }
     }
 
@@ -130,11 +160,14 @@ impl Quantity {
             | Quantity::Velocity
             | Quantity::HeatKinetic
             | Quantity::HeatPotential
-            | Quantity::HeatChurning => 3,
+            | Quantity::HeatChurning
+            | Quantity::Coordinate
+            | Quantity::AngularMomentum => 3,
             Quantity::StressKinetic
             | Quantity::StressPotential
             | Quantity::Stress
-            | Quantity::Churning => 9,
+            | Quantity::Churning
+            | Quantity::CoordinateFlux => 9,
         }
     }
 
@@ -149,6 +182,8 @@ impl Quantity {
         match self {
             Quantity::Density => of(1, 0, -3, 0, 0),
             Quantity::Momentum => of(1, 0, -2, -1, 0),
+            Quantity::Coordinate => of(0, 0, 1, 0, 0),
+            Quantity::CoordinateFlux | Quantity::AngularMomentum => of(1, 0, -1, -1, 0),
             Quantity::Velocity => of(0, 0, 1, -1, 0),
             Quantity::Temperature => of(0, 0, 0, 0, 1),
             Quantity::Energy
@@ -184,7 +219,10 @@ impl Quantity {
             | Quantity::HeatKinetic
             | Quantity::HeatPotential
             | Quantity::HeatChurning
-            | Quantity::ChurningSource => false,
+            | Quantity::ChurningSource
+            | Quantity::Coordinate
+            | Quantity::CoordinateFlux
+            | Quantity::AngularMomentum => false,
         }
     }
 
@@ -194,7 +232,8 @@ impl Quantity {
             Quantity::Density
             | Quantity::PotentialEnergy
             | Quantity::StressPotential
-            | Quantity::Churning => false,
+            | Quantity::Churning
+            | Quantity::Coordinate => false,
             Quantity::Momentum
             | Quantity::Velocity
             | Quantity::Temperature
@@ -206,7 +245,9 @@ impl Quantity {
             | Quantity::HeatPotential
             | Quantity::HeatChurning
             | Quantity::ChurningSource
-            | Quantity::Pressure => true,
+            | Quantity::Pressure
+            | Quantity::CoordinateFlux
+            | Quantity::AngularMomentum => true,
         }
     }
 }

@@ -42,7 +42,17 @@ pub fn evaluate(
     method: &Method,
 ) -> Result<Fields, FieldsError> {
     frame.check()?;
-    let neighbours = Neighbours::new(frame, sites.reach())?;
+    // particles that are bonded alone feel nobody else
+    let alone = sites.reach() == 0.0 && method.molecules.is_some();
+    let reach = if alone {
+        method.kernel.width()
+    } else {
+        sites.reach()
+    };
+    let mut neighbours = Neighbours::new(frame, reach)?;
+    if let Some(families) = &method.families {
+        neighbours = neighbours.held(families)?;
+    }
     let bonds = bonds_within(frame, sites.reach());
     Effort::of(frame, bonds, sites.reach(), targets, method).check(targets, method)?;
     let mut bins = Bins::new(targets, &frame.cell, &method.kernel)?;
@@ -79,6 +89,8 @@ pub fn evaluate(
         moving: !velocity.is_empty(),
         rates: method.rates && !velocity.is_empty(),
         churns: false,
+        places: method.coordinate,
+        averaged: method.kernel.averaged_axes().map(|a| a.is_some()),
     };
     let mut bonds = vec![0.0; targets.len() * parts * BOND];
     let mut own = Own::new(frame.len(), parts);
@@ -208,6 +220,9 @@ impl Moving<'_> {
                         value: &columns.value,
                         slopes: (layout.slopes() > 0).then_some(&columns.slope[..]),
                         slope_width: layout.slopes(),
+                        moments: &columns.moment,
+                        moment_width: layout.moments(),
+                        carried: &columns.carried,
                     };
                     let sums = accumulate::particles(&method.kernel, &patch, &of);
                     (patch.index, sums)
@@ -262,6 +277,8 @@ struct Columns {
     position: Vec<[f64; 3]>,
     value: Vec<f64>,
     slope: Vec<f64>,
+    moment: Vec<f64>,
+    carried: Vec<f64>,
 }
 
 impl Columns {
@@ -271,10 +288,16 @@ impl Columns {
         let energy = &own.energy[i * layout.parts..][..layout.parts];
         self.value.extend([1.0, m]);
         self.value.extend(energy);
+        if layout.places {
+            self.moment.push(m);
+        }
         if !layout.moving {
             return;
         }
         let v = of.velocity[i];
+        if layout.places {
+            self.moment.extend(v.map(|c| m * c));
+        }
         let square = dot(v, v);
         let potential: f64 = energy.iter().sum();
         self.value.extend(v.map(|c| m * c));
@@ -290,6 +313,9 @@ impl Columns {
             return;
         }
         let v: [f64; 3] = std::array::from_fn(|a| v[a] + drift[a]);
+        if layout.places {
+            self.carried.extend(v.map(|c| m * c));
+        }
         let total = 0.5 * m * dot(v, v) + potential;
         self.value.extend(own.force[i]);
         self.value.push(dot(v, own.force[i]) + own.power[i]);

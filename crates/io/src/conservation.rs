@@ -3,7 +3,7 @@
 use crate::deck::Dim;
 use crate::deck::conservation::LawDeck;
 use crate::write::WriteError;
-use crate::write::conservation::{Frames, Report, write_pictures};
+use crate::write::conservation::{Compared, Frames, Report, write_pictures};
 use crate::write::folder::Folder;
 use crate::write::history::{Column, History};
 use crate::write::report::{self, ReportError};
@@ -76,12 +76,33 @@ fn columns(deck: &LawDeck) -> Vec<Column> {
         ("max", unit(u)),
         ("time_error", unit(u)),
     ]
+    .into_iter()
+    .chain(
+        errors_beside(deck)
+            .iter()
+            .map(|name| (*name, String::new())),
+    )
     .map(|(name, unit)| Column::new(name, &unit))
-    .to_vec()
+    .collect()
 }
 
-/// The row of now.
-fn row(deck: &mut LawDeck) -> Result<[f64; 9], RunError> {
+/// Columns of a run that compares itself with the local law.
+fn errors_beside(deck: &LawDeck) -> &'static [&'static str] {
+    match deck.reference {
+        Some(_) => &["error_l1", "error_l2", "error_max"],
+        None => &[],
+    }
+}
+
+/// The solution of the local law now, where the run compares itself with it.
+fn exact(deck: &LawDeck) -> Option<Vec<f64>> {
+    let reference = deck.reference.as_ref()?;
+    Some(reference.values(deck.evolution.time))
+}
+
+/// The row of now, with how far u is from `exact`.
+fn row(deck: &mut LawDeck, exact: Option<&[f64]>) -> Result<Vec<f64>, RunError> {
+    let beside = exact.and_then(|exact| Compared::new(deck, exact));
     let e = &mut deck.evolution;
     let dt = e.next_step(e.time + deck.duration / deck.rows as f64)?;
     let dt = match e.size() {
@@ -96,7 +117,7 @@ fn row(deck: &mut LawDeck) -> Result<[f64; 9], RunError> {
     let (law, u) = (e.operator.law(), &e.u);
     let grid = law.grid;
     let [low, high] = measure::extremes(u);
-    Ok([
+    let own = [
         e.time,
         measure::mass(u, grid.cell()),
         measure::energy(u, grid.cell()),
@@ -106,7 +127,9 @@ fn row(deck: &mut LawDeck) -> Result<[f64; 9], RunError> {
         low,
         high,
         e.error().map_or(f64::NAN, |[now, _]| now),
-    ])
+    ];
+    let beside = beside.into_iter().flat_map(|c| c.errors());
+    Ok(own.into_iter().chain(beside).collect())
 }
 
 /// What steps have added to u at most so far, and may add, both in u; infinite where it is not known.
@@ -215,12 +238,13 @@ pub fn run(
             Err(error) => stopped = Some(error),
         }
         let whole = ended.is_none() && stopped.is_none();
+        let solution = exact(deck);
         if next_frame <= due * (1.0 + 1e-12) || !whole {
-            frames.push(deck.evolution.time, &deck.evolution.u);
+            frames.push(deck, solution.as_deref());
             frame += 1;
         }
         if whole && next_row <= due * (1.0 + 1e-12) {
-            match row(deck) {
+            match row(deck, solution.as_deref()) {
                 Ok(values) => history.push(deck.evolution.steps, &values)?,
                 Err(RunError::Ended { .. }) => ended = Some(who(listener)),
                 Err(error) => stopped = Some(error),
@@ -232,7 +256,11 @@ pub fn run(
         }
     }
     history.finish()?;
-    frames.push_last(deck.evolution.time, &deck.evolution.u);
+    let solution = exact(deck);
+    if !frames.has(deck.evolution.time) {
+        frames.push(deck, solution.as_deref());
+    }
+    let compared = solution.and_then(|exact| Compared::new(deck, &exact));
     frames.write(&dir.join("frames.npz"))?;
     if deck.pictures {
         write_pictures(dir, deck, &frames)?;
@@ -271,6 +299,7 @@ pub fn run(
         peak_memory_bytes: peak_memory_bytes(),
         time_error,
         time_error_allowed: allowed,
+        compared,
         warnings,
         setting: setting(deck, told),
     };

@@ -7,12 +7,15 @@ mod names;
 mod rigid;
 mod row;
 mod setting;
+mod space_time;
 
 pub use atoms::AtomsPlan;
 pub use exodus::ExodusPlan;
 use modes::{sweep_modes, write_modes};
 use rigid::Paths;
 pub use rigid::RigidBodies;
+pub use space_time::SpaceTimeOptions;
+use space_time::SpaceTimes;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -73,6 +76,8 @@ pub struct Plan {
     /// Write `linear_body.npz` about the last state.
     pub linear_body: bool,
     pub series: SeriesOptions,
+    /// Fields of a body on a line over place and time.
+    pub space_time: Vec<SpaceTimeOptions>,
     /// Frames in an Exodus file.
     pub exodus: Option<ExodusPlan>,
     /// Columns of a frame.
@@ -195,6 +200,7 @@ pub fn drive(
         exodus::Frames::new(asked, place, sim, &columns)
     });
     sim.start(true);
+    let mut over_time = SpaceTimes::new(sim, plan);
     let broken = sim.broken();
     let mut stepping = Duration::ZERO;
     let mut stopped = None;
@@ -302,6 +308,9 @@ pub fn drive(
                 exodus.push(&snapshot, row)?;
             }
         }
+        if !loads {
+            over_time.look(sim, moved);
+        }
         if plan.modes > 0 && plan.increments > 0 && n == plan.increments {
             let loaded = plan.look(sim);
             write_modes(sim, plan, &loaded)?;
@@ -347,9 +356,10 @@ pub fn drive(
     }
     let drawing = Instant::now();
     let pictures = series.finish(&snapshot, &placed, about)?;
-    spent.pictures = drawing.elapsed().as_secs_f64();
     let pictures = pictures.iter().filter_map(|p| p.file_name());
-    let pictures: Vec<String> = pictures.map(|p| p.to_string_lossy().into_owned()).collect();
+    let mut pictures: Vec<String> = pictures.map(|p| p.to_string_lossy().into_owned()).collect();
+    pictures.extend(over_time.finish(plan)?);
+    spent.pictures = drawing.elapsed().as_secs_f64();
     history.finish()?;
     let collecting = Instant::now();
     let slices = match running {

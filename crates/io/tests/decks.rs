@@ -395,3 +395,56 @@ fn decks_of_conservation_laws() {
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
+
+/// Frames of a law have the solution of the local one and what flows through the faces beside u: between two faces u changes by that.
+#[test]
+fn frames_of_a_law_have_its_reference_and_its_flux() {
+    use ndarray::ArrayD;
+    use peridyne_io::conservation::{Listener, Told, run};
+    use peridyne_io::deck::conservation::LawDeck;
+
+    struct Silent;
+    impl Listener for Silent {
+        fn step(&mut self, _: f64, _: u64) {}
+        fn ended(&mut self) -> Option<String> {
+            None
+        }
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let all = decks("good/conservation");
+    let (path, text) = { all.iter() }
+        .find(|(path, _)| path.ends_with("compare.toml"))
+        .unwrap();
+    let mut deck = LawDeck::parse(text, path.to_str().unwrap(), &[]).unwrap();
+    let report = run(&mut deck, dir.path(), Told::default(), &mut Silent).unwrap();
+    let file = std::fs::File::open(dir.path().join("frames.npz")).unwrap();
+    let mut archive = ndarray_npy::NpzReader::new(file).unwrap();
+    let mut read = |name: &str| -> ArrayD<f64> { archive.by_name(name).unwrap() };
+    let [u, exact, flux, faces] = ["u", "exact", "flux", "faces"].map(&mut read);
+    assert_eq!((u.shape(), exact.shape()), (&[21, 256][..], &[21, 256][..]));
+    assert_eq!((flux.shape(), faces.shape()), (&[21, 257][..], &[257][..]));
+    let off: f64 = (0..256).map(|k| (u[[20, k]] - exact[[20, k]]).abs()).sum();
+    let size: f64 = (0..256).map(|k| exact[[20, k]].abs()).sum();
+    let stated = report.compared.unwrap().error_l1;
+    assert!((off / size / stated - 1.0).abs() < 1e-12);
+    // x = u t + foot of the exact one
+    for k in 0..256 {
+        let (x, v) = ((k as f64 + 0.5) / 256.0, exact[[20, k]]);
+        assert!((v - (std::f64::consts::TAU * (x - 0.1 * v)).sin()).abs() < 1e-12);
+    }
+    // Simpson's rule over 20 intervals of time
+    let (a, b) = (30, 90);
+    let out = |n: usize| flux[[n, b]] - flux[[n, a]];
+    let weight = |n: usize| match n {
+        0 | 20 => 1.0,
+        n if n % 2 == 1 => 4.0,
+        _ => 2.0,
+    };
+    let flown: f64 = (0..=20).map(|n| weight(n) * out(n) * 0.005 / 3.0).sum();
+    let mass = |n: usize| (a..b).map(|k| u[[n, k]]).sum::<f64>() / 256.0;
+    let change = mass(20) - mass(0);
+    assert!(
+        (change + flown).abs() < 1e-4 * change.abs(),
+        "{change} {flown}"
+    );
+}

@@ -87,6 +87,29 @@ fn missed(text: &str, n: &[usize], section: f64, sigma: &[[f64; 3]; 3]) -> [f64;
             }
         }
     }
+    // as few components as hold a rigid body, which need no force then: of the first point, and of those at the ends of its edges
+    let axes = &["x", "y", "z"][..d];
+    for (edge, held) in [
+        (None, axes),
+        (Some(0), &axes[1..]),
+        (Some(1), &axes[d.min(2)..]),
+    ] {
+        if held.is_empty() {
+            continue;
+        }
+        let at = |(a, axis): (usize, &&str)| match edge == Some(a) {
+            true => format!("{axis} > {}", (n[a] as f64 - 1.3) * H),
+            false => format!("{axis} < {}", 0.3 * H),
+        };
+        let at: Vec<String> = axes.iter().enumerate().map(at).collect();
+        let held: Vec<String> = held.iter().map(|axis| format!("{axis} = 0")).collect();
+        let name = edge.map_or("first".to_string(), |a| format!("end{a}"));
+        text += &format!(
+            "[sets.{name}]\nwhere = \"{}\"\n[[condition]]\nset = \"{name}\"\ndisplacement = {{ {} }}\n",
+            at.join(" && "),
+            held.join(", ")
+        );
+    }
     text += "[statics]\nmethod = \"linear\"\ntolerance = 1e-14\n";
     let mut sim = model(&text);
     sim.step().unwrap();

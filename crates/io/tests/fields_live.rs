@@ -379,7 +379,8 @@ fn embedded_atoms_are_a_peridynamic_body() {
     let mut current = copper("");
     assert!(fixed.asked.choice.is_none() && current.asked.choice.is_some());
     let (body, atoms) = (fixed.fields(&points), current.fields(&points));
-    for quantity in Quantity::ALL {
+    let places = |q: &Quantity| Quantity::PLACES.contains(q);
+    for quantity in Quantity::ALL.into_iter().filter(|q| !places(q)) {
         let (a, b) = (body.get(quantity).unwrap(), atoms.get(quantity).unwrap());
         let size = match quantity {
             // 0 but for round-off: beside stress

@@ -5,7 +5,10 @@
 
 use crate::crystal::Bond;
 use crate::voigt::{Stiffness, axes, components};
+use peridyne::family::stencil::Stencil;
 use peridyne::run::{Info, Simulation};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::Horizon;
 use std::f64::consts::PI;
 
 /// So small that laws are linear, so large that round-off of positions does not count.
@@ -73,7 +76,7 @@ pub struct Class {
 /// What a patch test finds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PatchTest {
-    /// Volume of a full family: the median of those that come near the ball's, or the ball's if none does.
+    /// Volume of a full family: the median of those that come near the ball's, else near the endless lattice's, or the ball's if none does.
     pub full: f64,
     /// Classes that have points, by material, then from bulk to interface.
     pub classes: Vec<Class>,
@@ -110,10 +113,12 @@ impl PatchTest {
 /// Atoms at rest have energy and may be under stress, so that the energy of a strain is no measure of stiffness; theirs is `B`
 /// of [`crate::elastic_constants`] about the displacements of now, stress against strain with all atoms carried along. Of atoms whose
 /// potential is no sum of bonds it is that about the reference.
-pub fn patch_test(sim: &mut dyn Simulation) -> PatchTest {
+///
+/// `lattice` and its spacing are those of the body, where its points lie on one: the few neighbours of a crystal like diamond fill no ball.
+pub fn patch_test(sim: &mut dyn Simulation, lattice: Option<(LatticeKind, f64)>) -> PatchTest {
     let info = sim.info().clone();
     let info = &info;
-    let mut found = classes(sim, info);
+    let mut found = classes(sim, info, lattice);
     let atoms = match info.dimension {
         1 => of_atoms::<1>(sim, &found),
         2 => of_atoms::<2>(sim, &found),
@@ -152,11 +157,11 @@ struct Sorted {
     weight: Vec<f64>,
 }
 
-fn classes(sim: &mut dyn Simulation, info: &Info) -> Sorted {
+fn classes(sim: &mut dyn Simulation, info: &Info, lattice: Option<(LatticeKind, f64)>) -> Sorted {
     let d = info.dimension;
     let families = sim.families();
     let volume = sim.scalars("volume");
-    let full = full_family(sim, &families.volume);
+    let full = full_family(info, &families.volume, lattice);
     let cell = info.volume / info.points.max(1) as f64 / info.section;
     let m = info.horizon / cell.powf(1.0 / d as f64);
     let part: Vec<f64> = families.volume.iter().map(|v| v / full).collect();
@@ -371,18 +376,25 @@ fn ball(d: usize, r: f64) -> f64 {
     }
 }
 
-/// Volume of a full family.
-fn full_family(sim: &dyn Simulation, families: &[f64]) -> f64 {
-    let info = sim.info();
+/// Volume of a full family: of a ball, or where none comes near that, as where few shells of a crystal with a basis lie within a cut-off, that of
+/// the endless lattice.
+fn full_family(info: &Info, families: &[f64], lattice: Option<(LatticeKind, f64)>) -> f64 {
     let cell = info.volume / info.points.max(1) as f64;
     let by_ball = ball(info.dimension, info.horizon) * info.section - cell;
-    let mut near: Vec<f64> = families
-        .iter()
-        .copied()
-        .filter(|v| *v >= FULL * by_ball)
-        .collect();
-    near.sort_by(f64::total_cmp);
-    near.get(near.len() / 2).copied().unwrap_or(by_ball)
+    let median_near = |full: f64| {
+        let mut near: Vec<f64> = { families.iter().copied() }
+            .filter(|v| *v >= FULL * full)
+            .collect();
+        near.sort_by(f64::total_cmp);
+        near.get(near.len() / 2).copied()
+    };
+    let of_lattice = |(kind, spacing): (LatticeKind, f64)| {
+        let family = Stencil::new(kind, spacing, Horizon::Length(info.horizon));
+        cell * family.bonds() as f64
+    };
+    median_near(by_ball)
+        .or_else(|| lattice.map(of_lattice).and_then(median_near))
+        .unwrap_or(by_ball)
 }
 
 /// A point on a flat face of a body with m spacings in a horizon keeps half of its family and half of the layer that
@@ -427,12 +439,64 @@ mod tests {
         assert_eq!(place(1, 3.0, 0.5), Place::Face);
     }
 
+    /// Atoms of a diamond crystal with four neighbours each: periodic all are bulk; of a slab those of the outer layers are not.
+    #[test]
+    fn crystals_with_a_basis_have_full_families() {
+        use peridyne::law::potential::lennard_jones::LennardJones;
+        use peridyne::run::{Options, build};
+        use peridyne::spec::*;
+        for kind in [LatticeKind::Diamond, LatticeKind::Bcc, LatticeKind::Fcc] {
+            let cells = 3;
+            let mut quarters = vec![];
+            for n in 0..cells * cells * cells {
+                let cell = [n % cells, n / cells % cells, n / cells / cells];
+                for b in kind.basis() {
+                    quarters.push(std::array::from_fn(|a| 4 * cell[a] + b[a]));
+                }
+            }
+            let body = BodySpec::Sites {
+                kind,
+                spacing: 1.0,
+                origin: [0.0; 3],
+                quarters,
+                volume: None,
+            };
+            let lj = LennardJones {
+                epsilon: 1.0,
+                sigma: kind.nearest(),
+            };
+            // nearest neighbours alone
+            let end = 1.05 * kind.nearest();
+            let law = LawSpec::Atoms(PotentialSpec::of(lj).ended(end, End::Truncated));
+            let mut spec = Spec::new(3, body, 1.0, law);
+            spec.schedule.time_step = TimeStep::Fixed(1e-3);
+            spec.schedule.force_unstable = true;
+            for periodic in [true, false] {
+                spec.periodic = [Some(f64::from(cells)), Some(f64::from(cells)), None];
+                spec.periodic[2] = periodic.then_some(f64::from(cells));
+                let mut sim = build(&spec, Options::default()).unwrap();
+                let found = patch_test(sim.as_mut(), Some((kind, 1.0)));
+                let bulk = found.classes.iter().filter(|c| c.place == Place::Bulk);
+                let (mut points, mut part) = (0, 0.0f64);
+                for c in bulk {
+                    points += c.points;
+                    part = part.max((c.part - 1.0).abs());
+                }
+                let total = sim.info().points as usize;
+                assert_eq!(points == total, periodic, "{kind:?}: {points} of {total}");
+                assert!(
+                    points > total / 2 && part < 1e-9,
+                    "{kind:?}: {points} {part}"
+                );
+            }
+        }
+    }
+
     /// Of a compressed crystal of pairs, both ways.
     #[test]
     fn differences_say_what_bonds_say() {
         use peridyne::law::potential::lennard_jones::LennardJones;
         use peridyne::run::{Options, build};
-        use peridyne::space::lattice::LatticeKind;
         use peridyne::spec::*;
         let (edge, cells) = (1.5, 4);
         let mut quarters = vec![];
@@ -460,7 +524,7 @@ mod tests {
         spec.schedule.force_unstable = true;
         let mut sim = build(&spec, Options::default()).unwrap();
         let info = sim.info().clone();
-        let mut found = classes(sim.as_mut(), &info);
+        let mut found = classes(sim.as_mut(), &info, None);
         let exact = of_atoms::<3>(sim.as_mut(), &found).unwrap();
         by_differences(sim.as_ref(), &mut found);
         for (class, exact) in found.classes.iter().zip(&exact) {

@@ -108,6 +108,7 @@ fn case(
         indenters: vec![],
         transfers: vec![],
         family: FamilyChoice::Auto,
+        smooth: None,
         preload: None,
         own_horizon: None,
         schedule: Schedule {
@@ -195,7 +196,7 @@ fn forces<const D: usize>(
 
 /// The patch test is the stiffness of rigidly carried sites, per section.
 fn energies<const D: usize>(sim: &mut dyn Simulation, crystal: &Crystal<D>, name: &str) {
-    let found = patch_test(sim);
+    let found = patch_test(sim, None);
     let section = sim.info().section;
     let c = crystal.rigid_elastic_constants().c;
     for i in 0..components(D) {

@@ -100,7 +100,8 @@ fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
         } else {
             1.0
         };
-        let weight = nu * influence(spec.influence, r, horizon) * H.powi(d as i32) * spec.section;
+        let weight =
+            nu * influence(spec.influence, &o, r, horizon) * H.powi(d as i32) * spec.section;
         bonds.push((r, o.map(|x| x / r), weight));
     }
     let tension: Box<dyn Fn(f64, f64) -> f64> =

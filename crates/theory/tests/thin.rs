@@ -89,7 +89,7 @@ fn thin_plates_are_as_stiff_in_their_plane_as_the_patch_test_says() {
     for (layers, poisson) in [(1, 0.25), (2, 0.25), (2, 0.35), (3, 0.25)] {
         let size = [29, 13, layers];
         let mut sim = block(size, poisson);
-        let patch = patch_test(sim.as_mut());
+        let patch = patch_test(sim.as_mut(), None);
         let whole = patch.whole(0).unwrap().directional().unwrap();
         let Some(body) = sim.linear_body().of::<3>() else {
             panic!("the body has three dimensions")

@@ -89,6 +89,38 @@ impl Flux {
         self.value(u, u)
     }
 
+    /// The same flux `factor` times.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Flux {
+        match self {
+            Flux::Polynomial(a) => {
+                let row = |row: &Vec<f64>| row.iter().map(|c| factor * c).collect();
+                Flux::Polynomial(a.iter().map(row).collect())
+            }
+            Flux::Function(psi) => {
+                let psi = psi.clone();
+                Flux::Function(Arc::new(move |u: f64| factor * psi.value(u)))
+            }
+        }
+    }
+
+    /// Coefficients of the local flux `Σ c_n uⁿ`, the last of which is not 0; none of a function.
+    pub fn coefficients(&self) -> Option<Vec<f64>> {
+        let Flux::Polynomial(a) = self else {
+            return None;
+        };
+        let mut sum = vec![0.0; 2 * a.len()];
+        for (p, row) in a.iter().enumerate() {
+            for (q, c) in row.iter().enumerate() {
+                sum[p + q] += c;
+            }
+        }
+        while sum.last() == Some(&0.0) {
+            sum.pop();
+        }
+        Some(sum)
+    }
+
     /// `f′(u)`; of a function by a central difference, by one to the side on which it has a value where the other has none.
     pub fn speed(&self, u: f64) -> f64 {
         match self {
@@ -165,8 +197,12 @@ mod tests {
         let psi = |u: f64| 1.0 - 2.0 * u + 0.5 * u * u + 4.0 * u * u * u;
         assert!((cubic.value(u, v) - psi(mean)).abs() < 1e-15);
         assert!((cubic.speed(u) - (-2.0 + u + 12.0 * u * u)).abs() < 1e-14);
+        assert_eq!(cubic.coefficients().unwrap(), [1.0, -2.0, 0.5, 4.0]);
+        assert!((e.times(-2.0).local(u) + u * u).abs() < 1e-15);
         let same = Flux::Function(Arc::new(psi));
         assert!((same.speed(u) - cubic.speed(u)).abs() < 1e-9);
+        assert!((same.times(3.0).local(u) - 3.0 * psi(u)).abs() < 1e-15);
+        assert!(same.coefficients().is_none());
     }
 
     #[test]

@@ -108,6 +108,17 @@ impl Law {
         matches!(self.boundary, Boundary::Periodic)
     }
 
+    /// The flux f of the local law `u_t + f(u)_x = ε u_xx` of a line; none in a plane, along a field of directions, and where nothing is carried.
+    pub fn local_flux(&self) -> Option<Flux> {
+        let advection = self.advection.as_ref()?;
+        match advection.direction {
+            Direction::Constant([d, _]) if self.grid.dimension == 1 => {
+                Some(advection.flux.times(d))
+            }
+            Direction::Constant(_) | Direction::Field(_) => None,
+        }
+    }
+
     /// Steps of the longest bond.
     pub fn reach(&self) -> usize {
         let of = |s: Option<&Stencil>| s.map_or(0, Stencil::reach);

@@ -143,6 +143,21 @@ pub fn mean_distance(a: &[f64], b: &[f64], cell: f64) -> f64 {
     cell * a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum::<f64>()
 }
 
+/// How far a is from b, over b, in the mean, in the mean square and where it is most: `‖a − b‖/‖b‖` of L1, L2 and L∞; 0 of what is 0 beside 0.
+pub fn relative_distances(a: &[f64], b: &[f64]) -> [f64; 3] {
+    let norms = |values: &dyn Fn(usize) -> f64| {
+        let all = || (0..b.len()).map(|n| values(n).abs());
+        let most = all().fold(0.0, f64::max);
+        [
+            all().sum::<f64>(),
+            all().map(|v| v * v).sum::<f64>().sqrt(),
+            most,
+        ]
+    };
+    let (off, size) = (norms(&|n| a[n] - b[n]), norms(&|n| b[n]));
+    std::array::from_fn(|k| if off[k] == 0.0 { 0.0 } else { off[k] / size[k] })
+}
+
 /// Order of convergence from one resolution to the next: slopes of log error over log size.
 pub fn orders(sizes: &[f64], errors: &[f64]) -> Vec<f64> {
     let pairs = sizes.windows(2).zip(errors.windows(2));
@@ -167,6 +182,15 @@ mod tests {
         assert!((f.width - 0.2).abs() < 1e-3, "{f:?}");
         assert_eq!((f.overshoot, f.undershoot), (0.0, 0.0));
         assert!(front(&x, &vec![1.0; 400], 1.0, 0.0).is_none());
+    }
+
+    #[test]
+    fn distances_are_those_of_three_norms() {
+        let found = relative_distances(&[1.0, 5.0, 2.0], &[1.0, 2.0, -2.0]);
+        let exact = [7.0 / 5.0, 5.0 / 3.0, 2.0];
+        assert!(found.iter().zip(exact).all(|(f, e)| (f - e).abs() < 1e-15));
+        assert_eq!(relative_distances(&[0.0], &[0.0]), [0.0; 3]);
+        assert_eq!(relative_distances(&[1.0], &[0.0]), [f64::INFINITY; 3]);
     }
 
     #[test]

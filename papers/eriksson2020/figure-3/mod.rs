@@ -27,6 +27,38 @@ fn error(u: &[f64]) -> f64 {
     u[u.len() - 1] / (0.5 * (u.len() - 1) as f64) - 1.0
 }
 
+/// f(N) − 1 of a bar that is not homogenized.
+fn elongated(m: usize, points: usize) -> Result<f64, Failure> {
+    Ok(bar(m, points, Ends::Full, false)?.f().value() - 1.0)
+}
+
+/// From how many points on the end is less than 1 % off: f falls with N.
+fn needed(found: &mut Findings) -> Result<(), Failure> {
+    let mut least = vec![];
+    for m in 2..=4 {
+        let (mut low, mut high) = (2 * m + 1, 1024_usize);
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            match elongated(m, middle)? < 0.01 {
+                true => high = middle,
+                false => low = middle,
+            }
+        }
+        least.push(high);
+    }
+    let order = |n: &usize| (*n as f64).log10().round();
+    found.holds(
+        "points",
+        format!(
+            "below 1 % from N = {}, {} and {} on for δ = 2Δ, 3Δ, 4Δ",
+            least[0], least[1], least[2]
+        ),
+        least.iter().all(|n| (2.0..=3.0).contains(&order(n))),
+    );
+    found.number("ends", 99.0 * elongated(2, 100)?);
+    Ok(())
+}
+
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     let mut table = Table::new();
@@ -66,6 +98,8 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         format!("f(7) = {:.4}, f(100) = {:.4}", ends[0], ends[1]),
         f.windows(2).all(step),
     );
+
+    needed(&mut found)?;
 
     let points: &[usize] = if context.small {
         &[10, 20, 40, 80]

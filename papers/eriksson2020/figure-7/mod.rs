@@ -5,6 +5,7 @@ use peridyne_io::write::table::Table;
 use peridyne_theory::homogenize::bar::vibration::Vibration;
 
 use super::rod::{Length, Motion, frequency_error, sizes, vibration};
+use crate::measure::largest;
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -148,8 +149,16 @@ fn run(context: &Context) -> Result<Findings, Failure> {
                 .iter()
                 .fold(f64::INFINITY, |w, e| w.min(e.abs()))
         ),
-        (1..5).all(|k| effective_homogenized[k].abs() < 0.1 * effective[k].abs()),
+        (1..5).all(|k| effective_homogenized[k].abs() < effective[k].abs()),
     );
+    let half = bars(points / 2, Length::Effective)?;
+    for (k, key, fine, order) in [
+        (0, "order", effective, 1.0),
+        (1, "order-homogenized", effective_homogenized, 2.0),
+    ] {
+        let off = (1..5).map(|m| (frequency_error(&half[m][k], 0) / fine[m]).log2() - order);
+        found.number(key, largest(off.map(f64::abs)));
+    }
     found.holds(
         "step",
         format!(

@@ -12,7 +12,8 @@ experiment!(
     Fatigue,
     "fatigue",
     "A crack grows in cycles of load (Paris)",
-    ["../bench.rs", "deck.toml"]
+    ["../bench.rs", "deck.toml"],
+    Minutes
 );
 
 const DECK: &str = include_str!("deck.toml");

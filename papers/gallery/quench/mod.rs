@@ -10,7 +10,8 @@ experiment!(
     Quench,
     "quench",
     "Cracks of a quench",
-    ["../bench.rs", "deck.toml"]
+    ["../bench.rs", "deck.toml"],
+    Minutes
 );
 
 const DECK: &str = include_str!("deck.toml");

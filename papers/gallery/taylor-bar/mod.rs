@@ -15,7 +15,8 @@ experiment!(
         "../bench.rs",
         "deck.toml",
         "../../../verify/classical/taylor.csv"
-    ]
+    ],
+    Minutes
 );
 
 const DECK: &str = include_str!("deck.toml");

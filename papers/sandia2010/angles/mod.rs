@@ -3,7 +3,7 @@
 use peridyne::law::terms::{Near, Sites, Term};
 use peridyne::spec::Form;
 use peridyne_fields::specimen::Random;
-use peridyne_fields::{Quantity, Shape, Targets, evaluate};
+use peridyne_fields::{Method, Quantity, Shape, Targets, evaluate};
 
 use super::particles::{
     DIAMOND, SILICON, Vector, cross, crystal, dot, failed, less, method, silicon, size, times,
@@ -25,6 +25,7 @@ fn run(_: &Context) -> Result<Findings, Failure> {
         .map(|_| std::array::from_fn(|_| random.vector()))
         .collect();
     products(&mut found, &states);
+    sizes(&mut found, &states);
     bond_angles(&mut found, &states);
     torsion(&mut found, &states);
     triplets(&mut found, &states)?;
@@ -48,6 +49,25 @@ fn products(found: &mut Findings, states: &[[Vector; 4]]) {
         four.abs().max(three.abs())
     });
     found.number("4.0.144", largest(off));
+}
+
+/// Heron's area of a triangle and Piero della Francesca's volume of a tetrahedron, both by ξ = d²/2 of their edges.
+fn sizes(found: &mut Findings, states: &[[Vector; 4]]) {
+    let (mut areas, mut volumes) = (vec![], vec![]);
+    for &[a, b, c, d] in states {
+        let [ab, ac, bc] = [xi(a, b), xi(a, c), xi(b, c)];
+        let heron = 0.25 * (4.0 * ab * ac - (ab + ac - bc).powi(2));
+        let normal = cross(less(b, a), less(c, a));
+        areas.push((heron - 0.25 * dot(normal, normal)).abs());
+        // Gram's determinant of the edges at a, whose products are ξ + ξ − ξ
+        let [ad, bd, cd] = [xi(a, d), xi(b, d), xi(c, d)];
+        let [x, y, z] = [ab + ac - bc, ab + ad - bd, ac + ad - cd];
+        let gram = 8.0 * ab * ac * ad + 2.0 * (x * y * z - ab * z * z - ac * y * y - ad * x * x);
+        let volume = dot(normal, less(d, a));
+        volumes.push((gram - volume * volume).abs() / 36.0);
+    }
+    found.number("heron", largest(areas));
+    found.number("piero", largest(volumes));
 }
 
 /// The angle at c, between a and b; its ξ in the order of the engine.
@@ -189,7 +209,10 @@ fn diamond(found: &mut Findings) -> Result<(), Failure> {
         format!("energy of a triplet at the ideal angle over λ: {ideal:.1e}; with −1/3 it would be 4/9 f²"),
         ideal < 1e-20,
     );
-    let method = method(Shape::Polynomial(3), 2.0)?;
+    let method = Method {
+        coordinate: true,
+        ..method(Shape::Polynomial(3), 2.0)?
+    };
     let mut finite = true;
     let mut uneven = vec![];
     for velocity in [[0.0; 3], [0.3, -0.2, 0.1]] {

@@ -1,4 +1,4 @@
-//! (4.0.6), (4.0.8), (4.0.9): the balance laws, and what is wrong in their terms as printed.
+//! (4.0.6), (4.0.8), (4.0.9), (4.0.10), (4.0.72), (4.0.93): the balance laws, and what is wrong in their terms as printed.
 
 use std::sync::Arc;
 
@@ -163,8 +163,10 @@ fn run(_: &Context) -> Result<Findings, Failure> {
         }
     }
     found.number("expected", largest(sizes));
+    internal(&mut found, &all)?;
     heat(&mut found, &all[2])?;
     sign(&mut found, &all[0])?;
+    place(&mut found, &all[0])?;
     apart(&mut found, &all[1])?;
     Ok(found)
 }
@@ -220,6 +222,61 @@ fn sign(found: &mut Findings, pairs: &Case) -> Result<(), Failure> {
         ),
         (seen[0].0 - 2.0).abs() < 0.1 && seen[1].2,
     );
+    Ok(())
+}
+
+/// Of all kinds of potential.
+fn internal(found: &mut Findings, all: &[Case]) -> Result<(), Failure> {
+    let mut off = vec![];
+    for case in all {
+        let of = |h| -> Result<Residual, Failure> {
+            Ok(case.residuals(h, &case.method, RIGHT)?.internal_energy)
+        };
+        let (far, near) = (of(0.04)?, of(0.02)?);
+        off.push((order(near, far) - 2.0).abs());
+        let what = format!("{}: internal energy, left over what cancels", case.name);
+        found.measured(&what, near.relative(), "");
+    }
+    found.number("4.0.10", largest(off));
+    Ok(())
+}
+
+/// The material coordinate y, and the angular momentum ρ y × v.
+fn place(found: &mut Findings, pairs: &Case) -> Result<(), Failure> {
+    let printed = Signs {
+        coordinate: -1.0,
+        ..RIGHT
+    };
+    let material = Signs {
+        torque: 0.0,
+        ..RIGHT
+    };
+    type Law = fn(&Residuals) -> Residual;
+    let laws: [(&str, &str, Signs, Law); 2] = [
+        ("4.0.72", "with the sign as printed", printed, |r| {
+            r.coordinate
+        }),
+        ("4.0.93", "with y taken for material", material, |r| {
+            r.angular_momentum
+        }),
+    ];
+    for (key, words, signs, law) in laws {
+        let of = |signs| -> Result<[Residual; 2], Failure> {
+            let [near, far] = [0.02, 0.04].map(|h| pairs.residuals(h, &pairs.method, signs));
+            Ok([law(&near?), law(&far?)])
+        };
+        let ([near, far], [short, shorter]) = (of(RIGHT)?, of(signs)?);
+        found.holds(
+            key,
+            format!(
+                "order {:.2}; {words} {:.1e} of what cancels stays, order {:.2}",
+                order(near, far),
+                short.relative(),
+                order(short, shorter)
+            ),
+            (order(near, far) - 2.0).abs() < 0.1 && stays(short, shorter),
+        );
+    }
     Ok(())
 }
 

@@ -24,6 +24,7 @@ fn run(_: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     nothing(&mut found)?;
     three(&mut found)?;
+    any(&mut found)?;
     many(&mut found)?;
     source(&mut found)?;
     Ok(found)
@@ -113,6 +114,62 @@ fn three(found: &mut Findings) -> Result<(), Failure> {
         }
     }
     found.number("4.0.133", largest(off));
+    Ok(())
+}
+
+/// What is printed in (4.0.132), K from 3 to 8.
+fn any(found: &mut Findings) -> Result<(), Failure> {
+    let method = Method {
+        partition: Partition::Equal,
+        ..method(Shape::Gaussian, 0.5)?
+    };
+    let mut off = vec![];
+    for count in 3..=8 {
+        let sites = Cluster {
+            count,
+            seed: 40 + count as u64,
+        };
+        let frame = cluster(count, 60 + count as u64);
+        let x = &frame.position;
+        let near: Vec<Near> = (1..count)
+            .map(|k| Near {
+                kind: k as u32,
+                y: less(x[k], x[0]),
+            })
+            .collect();
+        let mut pull = vec![vec![0.0; count]; count];
+        sites.terms(0, &near, &mut |term: &Term| {
+            for &(a, b, g) in &term.pulls {
+                pull[a as usize][b as usize] += g;
+                pull[b as usize][a as usize] += g;
+            }
+        });
+        let fields = at(&frame, &sites, &POINTS, &method)?;
+        let z = column(&fields, Quantity::Churning);
+        for (point, z) in POINTS.iter().zip(z.chunks_exact(9)) {
+            let mut printed = [0.0; 9];
+            for (j, k) in (0..count).flat_map(|j| (0..count).map(move |k| (j, k))) {
+                if j == k {
+                    continue;
+                }
+                let xjk = less(x[j], x[k]);
+                let beta = method.kernel.bond(less(*point, x[k]), xjk);
+                let mut sum = [0.0; 3];
+                for p in (0..count).filter(|p| *p != j && *p != k) {
+                    let ends = less(
+                        times(pull[k][p], less(x[k], x[p])),
+                        times(pull[j][p], less(x[j], x[p])),
+                    );
+                    sum = plus(sum, plus(times(pull[j][k], xjk), ends));
+                }
+                for (n, of) in printed.iter_mut().enumerate() {
+                    *of += beta * xjk[n / 3] * sum[n % 3] / (2.0 * count as f64);
+                }
+            }
+            off.push(crate::measure::apart(z, &printed) / size(&printed));
+        }
+    }
+    found.number("4.0.132", largest(off));
     Ok(())
 }
 

@@ -49,6 +49,18 @@ fn measured(name: &str, k: f64, points: usize) -> Result<[f64; 2], Failure> {
     ])
 }
 
+/// `∫ (u(y) − u(x)) φ_s dy` over u_xx of a wave cos kx, with (2.0.15) mollified: −b″, b = (315/256)(1 − s²)⁴ over a horizon of 1.
+fn viscosity(k: f64) -> f64 {
+    let kernel = |s: f64| {
+        let rest = 1.0 - s * s;
+        // b″ of the bump, by hand
+        -(315.0 / 256.0) * (48.0 * s * s * rest.powi(2) - 8.0 * rest.powi(3))
+    };
+    // cos ks − 1 without cancellation; u_xx is −k² at a crest
+    let bent = |s: f64| -2.0 * (0.5 * k * s).sin().powi(2) * kernel(s);
+    Gauss::new(4).integral(-1.0, 1.0, bent) / (-k * k)
+}
+
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     let points = if context.small { 256 } else { 1024 };
@@ -128,6 +140,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     );
     let scale = printed.map_err(failed)?.value(0.5 * DELTA) / (0.75 / (DELTA * DELTA));
     found.number("half", 1.0 / scale);
+    found.number("2.0.15", viscosity(1e-2));
     found.picture(plot.save(&context.out, "speed")?);
     found.picture(decays.save(&context.out, "decay")?);
     let path = context.out.join("waves.csv");

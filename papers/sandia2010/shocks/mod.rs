@@ -5,7 +5,7 @@ use peridyne_io::write::table::Table;
 use peridyne_transport::exact::{ColeHopf, riemann};
 use peridyne_transport::{Bump, Flux, Kernel, Parity, Profile, measure, wave};
 
-use super::laws::{failed, law, places, run_to};
+use super::laws::{digits, failed, law, places, run_to};
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -18,8 +18,6 @@ experiment!(
 const DECK: &str = include_str!("deck.toml");
 /// δ of the deck.
 const DELTA: f64 = 0.05;
-/// An overshoot that is one; above what is left of the start.
-const SEEN: f64 = 1e-6;
 
 /// A profile when it has settled.
 struct Wave {
@@ -40,7 +38,7 @@ fn settled(ratio: f64, time: f64) -> Result<Wave, Failure> {
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     speed(&mut found)?;
-    threshold(context, &mut found)?;
+    threshold(&mut found)?;
     waves(context, &mut found)?;
     rise(context, &mut found)?;
     Ok(found)
@@ -71,8 +69,39 @@ fn speed(found: &mut Findings) -> Result<(), Failure> {
     Ok(())
 }
 
-/// ε/δ from which on the settled wave does not overshoot: by bisection of runs, beside what the exponents of the tail give.
-fn threshold(context: &Context, found: &mut Findings) -> Result<(), Failure> {
+/// Below the threshold by d the exponent of the tail is μ ± iν with ν ∝ √d, and the tail comes back smaller by e^{−φμ/ν}: overshoots
+/// are e^{−a − b/√d − c√d} to the next order. The threshold that four of them have, and nothing else.
+fn from_overshoots(ratios: [f64; 4], overshoots: [f64; 4]) -> Option<f64> {
+    let levels = overshoots.map(|o| -o.ln());
+    // no a, b, c at all: the determinant of the differences vanishes
+    let miss = |threshold: f64| {
+        let roots = ratios.map(|r| (threshold - r).sqrt());
+        let row = |k: usize| {
+            [
+                1.0 / roots[k + 1] - 1.0 / roots[k],
+                roots[k + 1] - roots[k],
+                levels[k + 1] - levels[k],
+            ]
+        };
+        let [x, y, z] = [row(0), row(1), row(2)];
+        x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0])
+            + x[2] * (y[0] * z[1] - y[1] * z[0])
+    };
+    let place = |k: u32| ratios[3] + 1e-4 * f64::from(k);
+    let turns = (1..500).find(|k| miss(place(*k)) * miss(place(k + 1)) <= 0.0)?;
+    let (mut low, mut high) = (place(turns), place(turns + 1));
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        match miss(low) * miss(middle) <= 0.0 {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    Some(0.5 * (low + high))
+}
+
+/// ε/δ from which on the settled wave does not overshoot, from runs below it, beside what the exponents of the tail give.
+fn threshold(found: &mut Findings) -> Result<(), Failure> {
     let kernel =
         |parity, profile| Kernel::new(parity, profile, DELTA, 1, false, "kernel").map_err(failed);
     let bump = Bump::Polynomial(2);
@@ -86,25 +115,30 @@ fn threshold(context: &Context, found: &mut Findings) -> Result<(), Failure> {
         "",
     );
     found.measured("its exponent times δ", exponent * DELTA, "");
-    let (mut low, mut high) = (0.3 * expected, 2.0 * expected);
-    let rounds = if context.small { 5 } else { 8 };
-    for _ in 0..rounds {
-        let middle = 0.5 * (low + high);
-        match settled(middle, 2.0)?.front.overshoot > SEEN {
-            true => low = middle,
-            false => high = middle,
+    let ratios = [0.30, 0.31, 0.32, 0.328];
+    let mut seen = vec![];
+    for points in [960, 1920] {
+        let mut overshoots = [0.0; 4];
+        for (o, ratio) in overshoots.iter_mut().zip(ratios) {
+            let changes = [
+                ("constants.epsilon", (ratio * DELTA).to_string()),
+                ("domain.x", "[-3, 3]".into()),
+                ("points", points.to_string()),
+                ("run.duration", "5".into()),
+            ];
+            let mut e = law(DECK, &changes)?;
+            run_to(&mut e, 5.0)?;
+            let front = measure::front(&places(&e), &e.u, 1.0, 0.0);
+            *o = front.map_or(f64::NAN, |f| f.overshoot);
         }
+        let key = format!("overshoots at ε/δ = {ratios:?}, {points} points");
+        found.measured(&key, digits(&overshoots), "");
+        seen.push(from_overshoots(ratios, overshoots).unwrap_or(f64::NAN));
     }
-    // below the threshold the exponent is μ ± iν with ½g″ν² = threshold − ε/δ, and the tail comes back smaller by e^{−φμ/ν} after the phase φ
-    let g = |k: f64| {
-        let mu = k / DELTA;
-        (odd.growth(mu) - 0.5 * mu) / even.growth(mu) / DELTA
-    };
-    let (k, d) = (exponent * DELTA, 1e-3);
-    let bend = (g(k + d) - 2.0 * g(k) + g(k - d)) / (d * d);
-    let turn = (2.0 * (expected - 0.5 * (low + high)) / bend).sqrt();
-    found.number("threshold", -SEEN.ln() * turn / k);
-    found.measured("threshold of ε/δ by runs", 0.5 * (low + high), "");
+    // errors of the grid are of second order
+    let runs = (4.0 * seen[1] - seen[0]) / 3.0;
+    found.number("threshold", runs - expected);
+    found.measured("threshold of ε/δ by runs", runs, "");
     Ok(())
 }
 

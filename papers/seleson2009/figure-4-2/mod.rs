@@ -89,7 +89,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
                 sharp(200) / bound(200),
                 sharp(500) / bound(500)
             ),
-            ratio[5..].iter().all(|r| (1.3..1.35).contains(r)),
+            ratio[5..]
+                .iter()
+                .all(|r| (1.3..std::f64::consts::SQRT_2).contains(r)),
         );
     }
     found.holds(

@@ -3,7 +3,7 @@
 use peridyne_io::write::table::Table;
 
 use super::motion::{Motion, RightPulse, Wanted};
-use super::runs::{self, APART, CCM, COARSE, CONTRAST, FINE, MD, MODELS, SAFETY, fewer_points};
+use super::runs::{self, APART, CCM, COARSE, FINE, MD, MODELS, SAFETY, fewer_points};
 use crate::measure::largest;
 use crate::{Context, Failure, Findings, profile};
 
@@ -28,13 +28,12 @@ const END: f64 = 300.0;
 fn run(context: &Context) -> Result<Findings, Failure> {
     let smaller = |name: &str| fewer_points(name).map_or(vec![], |c| c.changes(SAFETY, END));
     let runs = runs::all(context, DECK, &MODELS, smaller, |steps, dt| Wanted {
-        columns: 1000,
-        rows: 400,
+        images: true,
         profiles: vec![0, (APART / dt).round() as u64, steps],
         energies: 40,
     })?;
     let mut found = Findings::new();
-    runs::densities(context, &runs, &MODELS, CONTRAST, &mut found)?;
+    runs::densities(context, &runs, &MODELS, &mut found)?;
     let mut pulses = vec![];
     for motion in &runs {
         let pulse = |step| -> Result<RightPulse, Failure> {

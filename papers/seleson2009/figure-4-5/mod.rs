@@ -4,7 +4,7 @@ use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 
 use super::motion::{Motion, RightPulse, Wanted};
-use super::runs::{self, APART, CONTRAST, Name, lowest};
+use super::runs::{self, APART, Name, lowest};
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -30,8 +30,7 @@ const TIME: f64 = 150.45;
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     let wanted = |steps: u64, dt: f64| Wanted {
-        columns: 999,
-        rows: 400,
+        images: true,
         profiles: [0.0, APART, TIME]
             .map(|t| (t / dt).round() as u64)
             .into_iter()
@@ -40,7 +39,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         energies: 60,
     };
     let runs = runs::all(context, DECK, &RUNS, |_| vec![], wanted)?;
-    runs::densities(context, &runs, &RUNS, CONTRAST, &mut found)?;
+    runs::densities(context, &runs, &RUNS, &mut found)?;
     for (motion, (name, label)) in runs.iter().zip(RUNS) {
         let profile = motion.profile(motion.nearest(TIME))?;
         let title = format!("{}, t = {:.2}", motion.titled(label), profile.time);

@@ -32,10 +32,8 @@ const RUNS: [Name; 4] = [
     ("pd-2", "coarse PD"),
     ("pd-4", "coarse PD"),
 ];
-/// Colours run from 1 − this to 1 + this.
-const CONTRAST: f64 = 0.04;
-/// The corner that is shown larger: x between these, t from here on.
-const CORNER: ([f64; 2], f64) = ([850.0, 1000.0], 200.0);
+/// Where the corner that the deck shows larger begins in x.
+const CORNER: f64 = 850.0;
 
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
@@ -45,19 +43,18 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         &RUNS,
         |_| vec![],
         |steps, _| Wanted {
-            columns: 999,
-            rows: 750,
+            images: true,
             profiles: vec![0, steps / 100, steps],
             energies: 0,
         },
     )?;
     // the whole of the molecular dynamics, the corner of all
-    runs::densities(context, &runs[..1], &RUNS, CONTRAST, &mut found)?;
+    runs::densities(context, &runs[..1], &RUNS, &mut found)?;
     for (motion, (name, label)) in runs.iter().zip(RUNS) {
-        let map = motion
-            .image
-            .zoom(&motion.titled(label), CONTRAST, CORNER.0, CORNER.1);
-        found.picture(map.save(&context.out, &format!("corner-{name}"))?);
+        for corner in motion.images.iter().skip(1) {
+            let map = corner.map(&motion.titled(label));
+            found.picture(map.save(&context.out, &format!("corner-{name}"))?);
+        }
     }
     let (md, fine) = (&runs[0], &runs[1]);
     let last = |m: &Motion| -> Result<Vec<f64>, Failure> { Ok(m.profile(m.steps)?.u.clone()) };
@@ -109,7 +106,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     found.holds(
         "shock",
         format!("largest compression of the right pulse: {start:.4} as it starts, {steepest:.4} at the end, at x = {front:.0}"),
-        steepest > 1.5 * start && front > CORNER.0[0],
+        steepest > 1.5 * start && front > CORNER,
     );
     let waves: Vec<f64> = ends
         .iter()
@@ -187,7 +184,7 @@ fn wavelength(u: &[f64], spacing: f64) -> f64 {
 fn literal() -> Result<(String, bool), Failure> {
     let deck = deck::deck(DECK, "literal", &[])?;
     let sim = deck::model(&deck)?;
-    match record(4, sim, 10, &Wanted::default()) {
+    match record(4, sim, 10, &Wanted::default(), &[]) {
         Ok(_) => Ok(("it ran".into(), false)),
         Err(e) => {
             let first = match &e {

@@ -1,9 +1,10 @@
 //! Fig. 1: the mass density over space and time, by atoms and by upscaled models.
 
-use peridyne_io::write::plot::{ColorMap, Map};
+use peridyne_io::write::plot::Map;
+use peridyne_io::write::space_time::{DENSITY, Line, SpaceTime};
 use peridyne_io::write::table::Table;
 
-use super::chain::{DECK, Family, Wave};
+use super::chain::{DECK, Family, Wave, parsed};
 use super::{deck, model};
 use crate::measure::{apart, largest};
 use crate::{Context, Failure, Findings};
@@ -15,39 +16,28 @@ experiment!(
     ["../chain.rs", "chain.toml"]
 );
 
-/// The corner that is shown larger: ranges of x and t.
-const CORNER: [[f64; 2]; 2] = [[850.0, 1000.0], [84.0, 120.0]];
-
-/// Draws rows and columns of a wave's density within ranges of x and t.
-fn image(wave: &Wave, [xs, ts]: [[f64; 2]; 2], bar: [f64; 2], title: &str) -> Map {
-    let inside = |v: f64, r: [f64; 2]| r[0] - 1e-9 <= v && v <= r[1] + 1e-9;
-    let n = wave.x.len();
-    let columns: Vec<usize> = (1..n - 1).filter(|j| inside(wave.x[*j], xs)).collect();
-    let rows: Vec<usize> = (0..wave.time.len())
-        .filter(|k| inside(wave.time[*k], ts))
-        .collect();
-    let mut values = Vec::with_capacity(rows.len() * columns.len());
-    for &k in &rows {
-        let density = wave.density(k);
-        values.extend(columns.iter().map(|j| density[j - 1]));
-    }
-    // cells reach half a step beyond their middles
-    let edges = |first: f64, last: f64, step: f64| [first - 0.5 * step, last + 0.5 * step];
+/// The density of a wave, as the deck's picture of this number shows it.
+fn image(wave: &Wave, number: usize, title: &str) -> Result<Map, Failure> {
+    let deck = parsed(wave.h, Family::Chain)?;
+    let asked = deck.output.space_time.get(number);
+    let none = || {
+        Failure::new(format!(
+            "the deck has no picture {number} over space and time"
+        ))
+    };
+    let asked = asked.ok_or_else(none)?;
+    let reference: Vec<[f64; 3]> = wave.x.iter().map(|x| [*x, 0.0, 0.0]).collect();
+    let line = Line::new(&reference, None, None);
+    let mut image = SpaceTime::new(&line, &asked.window, false).ok_or_else(none)?;
+    let steps = wave.steps() as u64;
     let dt = wave.time[1] - wave.time[0];
-    let x = |k: Option<&usize>| k.map_or(0.0, |j| wave.x[*j]);
-    let t = |k: Option<&usize>| k.map_or(0.0, |k| wave.time[*k]);
-    Map::new(title)
-        .x(
-            "x",
-            "",
-            edges(x(columns.first()), x(columns.last()), wave.h),
-        )
-        .y("t", "", edges(t(rows.first()), t(rows.last()), dt))
-        .value("1/(dy/dx)", "")
-        .between(bar[0], bar[1])
-        .colors(ColorMap::Diverging)
-        .y_down()
-        .grid(columns.len(), &values)
+    for (k, (time, u)) in wave.time.iter().zip(&wave.u).enumerate() {
+        if asked.window.is_row(k as u64, steps, dt) {
+            image.record(*time, &line.density(u));
+        }
+    }
+    let range = asked.range.unwrap_or_else(|| image.range(DENSITY));
+    Ok(image.map(title, DENSITY, [""; 3], range))
 }
 
 /// What stops the run with the single length scale as printed, σ = 2 in f, too.
@@ -76,11 +66,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         ("d-ncm-2", "NCM, h = 2a, 501 points", &ncm[0]),
         ("e-ncm-4", "NCM, h = 4a, 251 points", &ncm[1]),
     ];
-    let bar = [0.85, 1.15];
-    let whole = [[0.0, 1000.0], [0.0, 120.0]];
-    found.picture(image(&md, whole, bar, "MD, 1001 atoms").save(out, "a-md")?);
+    found.picture(image(&md, 0, "MD, 1001 atoms")?.save(out, "a-md")?);
     for (name, title, wave) in all {
-        found.picture(image(wave, CORNER, bar, title).save(out, name)?);
+        found.picture(image(wave, 1, title)?.save(out, name)?);
         let path = out.join(format!("{name}.csv"));
         let density = wave.density(wave.steps());
         Table::new()

@@ -13,7 +13,7 @@ experiment!(
         "../figure-4/plate.toml",
         "../../checkpoint.rs"
     ],
-    long
+    Hours
 );
 
 fn run(context: &Context) -> Result<Findings, Failure> {

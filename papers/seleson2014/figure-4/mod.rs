@@ -7,7 +7,8 @@ experiment!(
     Figure4,
     "figure-4",
     "Energy of a wave on a plate",
-    ["../plate.rs", "plate.toml"]
+    ["../plate.rs", "plate.toml"],
+    Minutes
 );
 
 fn run(context: &Context) -> Result<Findings, Failure> {

@@ -9,7 +9,8 @@ experiment!(
     Figure5,
     "figure-5",
     "Radial displacements and energies of the plate",
-    ["../plate.rs", "../figure-4/plate.toml"]
+    ["../plate.rs", "../figure-4/plate.toml"],
+    Minutes
 );
 
 fn run(context: &Context) -> Result<Findings, Failure> {

@@ -8,7 +8,7 @@ experiment!(
     "figure-6-paper-step",
     "The cube of Fig. 6 with the paper's time step",
     ["../cube.rs", "../figure-6/cube.toml", "../../checkpoint.rs"],
-    long
+    Hours
 );
 
 fn run(context: &Context) -> Result<Findings, Failure> {

@@ -22,6 +22,11 @@ experiment!(
     ["../chain.rs", "../figure-1/chain.toml"]
 );
 
+/// Copper's bulk modulus (GPa) and cube (Å), which the fit has; eV (J).
+const COPPER_BULK: f64 = 138.0;
+const COPPER_CUBE: f64 = 3.6147;
+const ELECTRONVOLT: f64 = 1.602_176_634e-19;
+
 fn mei(potential: Option<&PotentialSpec>) -> Result<Mei, Failure> {
     let read = potential.map(|p| EamForm::read(&p.parameters));
     match read {
@@ -71,6 +76,12 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         .column("value", "", rows.iter().map(|r| r.1))
         .save(&path)?;
     found.file(path);
+
+    // α = (9 K Ω/E_c)^½, Ω a quarter of the cube
+    let volume = COPPER_CUBE.powi(3) / 4.0;
+    let bulk = COPPER_BULK * 1e9 * 1e-30 / ELECTRONVOLT;
+    found.number("alpha", (9.0 * bulk * volume / s.cohesive).sqrt());
+    found.measured("α of the deck", s.alpha, "");
 
     // the host density of the fcc crystal that f was fitted to, without cut-off function
     let f = |x: f64| -> f64 { (0..6).map(|l| s.density[l] * x.powi(-(l as i32))).sum() };

@@ -49,8 +49,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         found.number(&format!("steps-{name}"), row[2]);
     }
     let work: Vec<f64> = rows.iter().map(|r| work(&rows[0]) / work(r)).collect();
-    found.number("work-2", work[1]);
-    found.number("work-4", work[2]);
+    for (h, work, printed) in [(2, work[1], 3.95), (4, work[2], 15.5)] {
+        let key = format!("speedup by points and steps, h = {h}a; printed, by times: {printed}");
+        found.measured(&key, work, "");
+    }
     if !context.small {
         let speedup: Vec<f64> = rows.iter().map(|r| rows[0][3] / r[3]).collect();
         found.holds(

@@ -21,7 +21,8 @@ experiment!(
         "triangular.toml",
         "fcc.toml",
         "copper.toml"
-    ]
+    ],
+    Minutes
 );
 
 /// What is studied of a crystal.

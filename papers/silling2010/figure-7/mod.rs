@@ -4,15 +4,22 @@ use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 
 use super::bar::{LENGTH, Level, Nodes, Way, levels, tent};
-use super::compare::{equilibrium, failed};
+use super::compare::{equilibrium, failed, off_deck};
 use crate::{Context, Failure, Findings};
 
 experiment!(
     Figure7,
     "figure-7",
     "Bar with a defect",
-    ["../bar.rs", "../compare.rs"]
+    [
+        "../bar.rs",
+        "../compare.rs",
+        "../../gallery/bench.rs",
+        "deck.toml"
+    ]
 );
+
+const DECK: &str = include_str!("deck.toml");
 
 /// 0.1 of the tent for bonds that cross or touch the middle.
 fn weak(nodes: Nodes, i: i64, j: i64) -> f64 {
@@ -49,6 +56,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     for nodes in Nodes::ALL {
         let bar = || nodes.bar(|i, j| weak(nodes, i, j));
         let made = levels(bar(), [3, 3], Way::Published)?;
+        if nodes == Nodes::Centred {
+            let u = stretched(&made[0], &made[2])?;
+            off_deck(DECK, &made[0].body, &u, &mut found)?;
+        }
         let (mut plot, mut us) = (
             Plot::new(format!("u near the defect, nodes {}", nodes.name()))
                 .x("x", "")

@@ -66,6 +66,23 @@ fn eliminate(body: &LinearBody<1>) -> u64 {
     products
 }
 
+/// Multiplications of [`eliminate`] for so many free nodes: n³/3 + n² and lower.
+fn multiplications(free: u64) -> u64 {
+    let n = u128::from(free);
+    let above = n * (n + 1) * (2 * n + 1) / 6 - n;
+    (above + n * (n + 1) / 2) as u64
+}
+
+/// What a level of every third point per axis is of a cube's elimination, by the points that are counted on a lattice and many levels
+/// below it.
+fn cube() -> Result<f64, Failure> {
+    let body: LinearBody<3> = LatticeBlock::new([9; 3], 1.0, 1.0).body(|_| true, |_, _| 1.0);
+    let keep = Selection::every(3).choose(&body).map_err(failed)?;
+    let per_point = (body.points() / keep.len()) as u64;
+    let coarse = per_point.pow(3);
+    Ok(multiplications(coarse * per_point) as f64 / multiplications(coarse) as f64)
+}
+
 /// Slope of log y over log x from the first to the last.
 fn exponent(x: &[f64], y: &[f64]) -> f64 {
     let (a, b) = (0, x.len() - 1);
@@ -79,6 +96,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         false => [648, 1296, 2592],
     };
     // per size: nodes, multiplications and seconds of elimination per level; operations and seconds of making levels 1 and 2
+    let mut miscounted = 0.0f64;
     let (mut nodes, mut products, mut solving) = ([[0.0; 3]; 3], [[0.0; 3]; 3], [[0.0; 3]; 3]);
     let (mut effort, mut making) = ([[0.0; 3]; 2], [[0.0; 3]; 2]);
     for (s, &size) in sizes.iter().enumerate() {
@@ -95,17 +113,47 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             }
             let begin = Instant::now();
             products[level][s] = eliminate(&body) as f64;
+            let counted = multiplications(body.points() as u64 - 6) as f64;
+            miscounted = miscounted.max((products[level][s] - counted).abs());
             solving[level][s] = begin.elapsed().as_secs_f64();
             nodes[level][s] = body.points() as f64;
         }
     }
     let last = sizes.len() - 1;
-    found.number("elimination", exponent(&nodes[0], &products[0]));
-    found.number("making", exponent(&nodes[0], &effort[0]));
-    found.number("making-2", exponent(&nodes[1], &effort[1]));
-    if !context.small {
-        found.number("gain", products[0][last] / products[2][last]);
+    found.number("count", miscounted);
+    // three nodes are held at each end of every level
+    let free = nodes.map(|of| of.map(|n| n - 6.0));
+    found.number("elimination", exponent(&free[0], &products[0]));
+    for (level, key) in ["making", "making-2"].into_iter().enumerate() {
+        // balls reach 16 of the nodes that they are made of; one that is cut off costs something, and not more than a whole one
+        let reach = 16.0;
+        let whole = nodes[level].map(|n| n - 2.0 * reach);
+        let most = (whole[last] / whole[0]).ln() / (nodes[level][last] / nodes[level][0]).ln();
+        let found_here = exponent(&nodes[level], &effort[level]);
+        found.holds(
+            key,
+            format!("exponent {found_here:.3}; 1 without ends, at most {most:.3} with them"),
+            (1.0..most).contains(&found_here),
+        );
     }
+    if !context.small {
+        let gain = products[0][last] / products[2][last];
+        let ends = (free[0][last] / free[2][last]) / (nodes[0][last] / nodes[2][last]);
+        found.number("gain", gain / ends.powi(3));
+    }
+    let cube = cube()?;
+    found.number("cube", cube);
+    let [first, second] = effort.map(|of| of[last]);
+    let l = nodes[0][last] / nodes[1][last];
+    found.holds(
+        "price",
+        format!(
+            "making levels 1 and 2 takes {:.4} b K0, the limit for any M is L/(L − 1) = {:.4}",
+            1.0 + second / first,
+            l / (l - 1.0)
+        ),
+        first + second < first * l / (l - 1.0),
+    );
     let (zero, two) = (solving[0][last], solving[2][last]);
     let made = making[0][last] + making[1][last];
     found.measured(

@@ -1,6 +1,6 @@
 //! Level after level: made, written, run.
 
-use super::report::{record, told};
+use super::report::{card, record, told, waves_table};
 use super::way::Way;
 use super::{Acting, CoarsenArguments, Level};
 use crate::failure::{Failure, say};
@@ -12,6 +12,7 @@ use peridyne_io::deck::upscaled::copied;
 use peridyne_io::deck::{Deck, Dim, rounded};
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::linear::write_linear;
+use peridyne_theory::coarsen::waves::{frequencies, stable_step};
 use peridyne_theory::coarsen::{self, Radius, Selection, Stability, Volume};
 use std::io::Write;
 use std::path::Path;
@@ -60,6 +61,7 @@ pub(super) fn levels<const D: usize>(
         return Err(Failure::input("--keep SET retains one set: --levels 1"));
     }
     let mut made: Vec<Level<D>> = vec![];
+    let (finest, finest_step) = (body.clone(), stable_step(&body));
     // of the level below: points among which the next ones are chosen, and points that stay because they are held
     let mut regular: Vec<u32> = (0..body.points() as u32).collect();
     let mut held: Vec<u32> = regular.clone();
@@ -81,6 +83,7 @@ pub(super) fn levels<const D: usize>(
             scheme: way.scheme,
             symmetrise: way.symmetrise,
             rotation: arguments.rotation,
+            mass: way.mass,
             volume: match way.condensed {
                 true => Volume::Lumped,
                 false => Volume::Kept,
@@ -113,11 +116,14 @@ pub(super) fn levels<const D: usize>(
             name,
             body: at_sites(&coarse, &sites),
             report,
+            frequencies: frequencies(&finest, &coarse),
+            steps: [finest_step, stable_step(&coarse)],
             text,
             seconds,
             supports: retained.len() - regular.len(),
         };
         say(&told(level, &made_of, way, deck.units));
+        say(&card(&made_of, way, deck.units));
         if let Stability::Stable { growth } = made_of.report.stability
             && growth > 0.0
             && deck.spec.schedule.statics().is_none()
@@ -165,6 +171,10 @@ fn write_levels<const D: usize>(
             w.write_all(json.as_bytes())
         })
         .map_err(failed)?;
+        if let Some(table) = waves_table(level, deck.units) {
+            let path = out.join(format!("{name}-waves.csv"));
+            table.save(&path).map_err(failed)?;
+        }
     }
     say(&format!(
         "decks in {}: level0.toml to {}.toml",
@@ -173,6 +183,9 @@ fn write_levels<const D: usize>(
     ));
     Ok(())
 }
+
+/// Displacement error of a moving body that is warned of.
+const OFF: f64 = 0.05;
 
 /// Runs all levels and tells how far they are from the finest.
 fn run_levels<const D: usize>(
@@ -213,6 +226,12 @@ fn run_levels<const D: usize>(
             m.seconds[1],
             m.seconds[0],
         ));
+        if deck.spec.schedule.statics().is_none() && m.error > OFF {
+            say(&format!(
+                "warning: {name} moves otherwise than level 0, by {:.0} %: removed points are taken to be in equilibrium at every moment, and waves of some ten coarse spacings and less come out slow; retain more points, or let loads and pulses be longer (the errors of frequencies are in {name}.json)",
+                100.0 * m.error
+            ));
+        }
     }
     Ok(())
 }

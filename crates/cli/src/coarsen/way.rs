@@ -2,7 +2,7 @@
 
 use super::CoarsenArguments;
 use crate::failure::Failure;
-use peridyne_theory::coarsen::Scheme;
+use peridyne_theory::coarsen::{Mass, Scheme};
 
 /// How the flags want it.
 #[derive(Clone, Copy)]
@@ -13,6 +13,7 @@ pub(super) struct Way {
     pub condensed: bool,
     /// Are all prescribed points retained?
     pub supports: bool,
+    pub mass: Mass,
 }
 
 impl Way {
@@ -26,6 +27,8 @@ impl Way {
                 ))
             })
         };
+        let masses = [Mass::Blend, Mass::Lumped, Mass::Consistent];
+        let mass = one_of("mass", &arguments.mass, &["blend", "lumped", "consistent"])?;
         let schemes = [Scheme::Energy, Scheme::Rows, Scheme::Schur];
         let scheme = one_of("scheme", &arguments.scheme, &["energy", "rows", "schur"])?;
         if !(arguments.rotation >= 0.0) {
@@ -38,6 +41,7 @@ impl Way {
             scheme: schemes[scheme],
             symmetrise: one_of("symmetrise", &arguments.symmetrise, &["no", "yes"])? == 1,
             condensed: one_of("loads", &arguments.loads, &["condensed", "silling"])? == 0,
+            mass: masses[mass],
             supports: one_of("supports", &arguments.supports, &["kept", "thinned"])? == 0,
         })
     }

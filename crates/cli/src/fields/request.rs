@@ -28,6 +28,7 @@ pub struct Request {
     pair_force: PairForce,
     pub parts: bool,
     pub pressure: bool,
+    pub coordinate: bool,
     /// What is bonded whatever moves.
     bonded: Option<BondedSpec>,
     pub each: bool,
@@ -90,6 +91,7 @@ impl Request {
             pair_force: pair_force(words)?,
             parts: words.parts,
             pressure: words.pressure,
+            coordinate: words.coordinate,
             bonded: bonded(words)?.or(of_model),
             each: words.each,
             skip: words.skip,
@@ -121,6 +123,7 @@ impl Request {
                 partition: self.partition.clone(),
                 pair_force: self.pair_force,
                 by_part: self.parts,
+                coordinate: self.coordinate,
                 boltzmann: self.units.boltzmann(),
                 ..Method::new(kernel)
             })

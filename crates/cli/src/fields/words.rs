@@ -82,6 +82,9 @@ pub struct FieldsArguments {
     /// Also the pressure, minus a third of the trace of the Cauchy stress.
     #[arg(long)]
     pub pressure: bool,
+    /// Also the material coordinate y (where the mass at a point is centred), its flux, and the angular momentum ρ y × v.
+    #[arg(long)]
+    pub coordinate: bool,
     /// Whose a term's energy is: site (its centre's), equal (in equal parts its atoms'), or centre:W (W its centre's).
     #[arg(long, value_name = "NAME")]
     pub partition: Option<String>,
@@ -232,6 +235,7 @@ struct Keys {
     line: Option<LineKeys>,
     plane: Option<PlaneKeys>,
     pressure: bool,
+    coordinate: bool,
     partition: Option<String>,
     pair_force: Option<String>,
     parts: bool,
@@ -270,6 +274,7 @@ pub struct Words {
     pub line: Option<Vec<String>>,
     pub plane: Option<Vec<String>>,
     pub pressure: bool,
+    pub coordinate: bool,
     pub partition: Option<String>,
     pub pair_force: Option<String>,
     pub parts: bool,
@@ -387,6 +392,7 @@ impl FieldsArguments {
             line,
             plane,
             pressure: self.pressure || keys.pressure,
+            coordinate: self.coordinate || keys.coordinate,
             partition: self.partition.clone().or(keys.partition),
             pair_force: self.pair_force.clone().or(keys.pair_force),
             parts: self.parts || keys.parts,
@@ -433,6 +439,7 @@ grid = [20, 1, 1]
 line = { from = [0.5, 0.5, 0.5], to = [1.5, 1.5, 1.5], points = 7 }
 plane = { corner = [0.5, 0.5, 0.5], edges = [[1.5, 0.5, 0.5], [0.5, 1.5, 0.5]], points = [3, 4] }
 pressure = true
+coordinate = true
 skip = 1
 every = 2
 out = "out/x"

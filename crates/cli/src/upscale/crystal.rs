@@ -370,9 +370,8 @@ fn block(spec: &Spec, factors: &[u32]) -> [u32; 3] {
         .max(1);
     let reach = match (spec.potential(), spec.family) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours) => REACH * p.cut_off(),
-        (Some(_), FamilyChoice::Stencil | FamilyChoice::List) | (None, _) => {
-            spec.horizon.length(spacing)
-        }
+        (Some(_), FamilyChoice::Stencil | FamilyChoice::List | FamilyChoice::Reference)
+        | (None, _) => spec.horizon.length(spacing),
     };
     let reach = reach * f64::from(most);
     let edges = kind.edges();

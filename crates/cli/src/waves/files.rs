@@ -195,6 +195,7 @@ pub fn json(found: &Found) -> Value {
             "long_wave_speeds": d.sound,
             "gradient_coefficients": d.gradients,
             "longitudinal_gradient_coefficients": d.longitudinal(),
+            "length_scale": d.length_scale(),
         })).collect::<Vec<_>>(),
         "gradient_fractions": s.fractions.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "nonlinear_gradient_equation": s.nonlinear.iter().map(|(stretch, equation)| json!({

@@ -264,6 +264,10 @@ fn gradients(t: &mut String, found: &Found) {
             })
             .collect();
         let _ = writeln!(t, "  {}  {}", d.name, each.join(", "));
+        if let Some(l) = d.length_scale() {
+            let length = found.deck.units.write(l, Dim::LENGTH);
+            let _ = writeln!(t, "       length scale √|c₄/c₂| = {length}");
+        }
     }
 }
 

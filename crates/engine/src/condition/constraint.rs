@@ -152,15 +152,29 @@ impl<const D: usize> Constraint<D> {
         }
     }
 
-    /// With the force of the step's end: account for the work.
-    pub fn end(&mut self, body: &Body<D>, u: &Field<D>, f: &Field<D>, t: f64, dt: f64) {
+    /// What a component of a point gained of its own kinetic energy (energy density).
+    pub fn gained(body: &Body<D>, i: usize, [v0, v1]: [f64; 2]) -> f64 {
+        0.5 * body.density.at(i) * (v1 * v1 - v0 * v0)
+    }
+
+    /// With the force of the step's end: account for the work. `gained` says of a slot, an axis and the velocities of the step's start
+    /// and end how much kinetic energy was gained (energy density).
+    pub fn end(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &Field<D>,
+        gained: &dyn Fn(usize, usize, [f64; 2]) -> f64,
+        t: f64,
+        dt: f64,
+    ) {
         for (k, &s) in self.slots.iter().enumerate() {
             let i = s as usize;
-            let (rho, volume) = (body.density.at(i), body.volume.at(i));
+            let volume = body.volume.at(i);
             for a in (0..D).filter(|a| self.program.acts(*a)) {
                 let [u0, v0, f0] = self.last[k][a];
                 let v1 = self.velocity(a, k, t, dt);
-                let gained = 0.5 * rho * (v1 * v1 - v0 * v0);
+                let gained = gained(i, a, [v0, v1]);
                 let given = 0.5 * (f0 + f[a][i]) * (u[a][i] - u0);
                 self.work += volume * (gained - given);
             }

@@ -119,7 +119,7 @@ impl<const D: usize> Driven<D> {
     ) {
         match self {
             Driven::Indenter(i) => i.add(body, [u, v], f, t, [dt; 2]),
-            Driven::Load(l) => l.add(body, [u, v], f, t, dt),
+            Driven::Load(l) => l.add(body, [u, v], f, t, dt, None),
         }
     }
 

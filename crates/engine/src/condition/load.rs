@@ -139,7 +139,8 @@ impl<const D: usize> Load<D> {
         }
     }
 
-    /// Add the force density at time `t` to `f`; `v` is the velocity of the step's middle, `dt` 0 at the start of a run.
+    /// Add the force density at time `t` to `f`; `v` is the velocity of the step's middle, `dt` 0 at the start of a run. `push` is `ρ a` of
+    /// the step's start where masses couple points and forces on one of them do not say how it is accelerated.
     pub fn add(
         &mut self,
         body: &Body<D>,
@@ -147,6 +148,7 @@ impl<const D: usize> Load<D> {
         f: &mut Field<D>,
         t: f64,
         dt: f64,
+        push: Option<&Field<D>>,
     ) {
         if let (LoadKind::Body(density), Some(condensed)) = (&self.kind, &mut self.condensed) {
             condensed.evaluate(density, t);
@@ -186,7 +188,12 @@ impl<const D: usize> Load<D> {
                     LoadKind::Damping(c) => {
                         let half = 0.5 * dt / body.density.at(i);
                         let c = c.at(0, k, &self.points[k], t);
-                        -c * (v[a][i] + half * f[a][i]) / (1.0 + half * c)
+                        let others = match push {
+                            None => f[a][i],
+                            // without this force's own part in it
+                            Some(push) => push[a][i] - self.last[k][a],
+                        };
+                        -c * (v[a][i] + half * others) / (1.0 + half * c)
                     }
                     LoadKind::Replace(p) if p.acts_on(a, k) => {
                         p.at(a, k, &self.points[k], t) - f[a][i]

@@ -28,6 +28,80 @@ pub fn largest_ratio<const D: usize>(
     interaction: &mut dyn Interaction<D>,
     mass: &[f64],
 ) -> f64 {
+    let mut tiny = Tiny::new(body, interaction);
+    let inner = |x: &[[f64; D]], y: &[[f64; D]]| -> f64 {
+        x.iter()
+            .zip(y)
+            .zip(mass)
+            .map(|((x, y), m)| m * (0..D).map(|a| x[a] * y[a]).sum::<f64>())
+            .sum()
+    };
+    lanczos(body, &inner, &mut |w| tiny.pull(w, |i| mass[i]))
+}
+
+/// Masses that couple points, in order of ids: `M x`, and the accelerations `M⁻¹F`.
+pub struct Coupled<'a, const D: usize> {
+    pub times: &'a dyn Fn(&[[f64; D]]) -> Vec<[f64; D]>,
+    pub solve: &'a dyn Fn(&[[f64; D]]) -> Vec<[f64; D]>,
+}
+
+impl<const D: usize> Coupled<'_, D> {
+    fn inner(&self, x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
+        let times = (self.times)(y);
+        let both = x.as_flattened().iter().zip(times.as_flattened());
+        both.map(|(x, y)| x * y).sum()
+    }
+
+    /// Largest eigenvalue of `M⁻¹K` (1 / time²) at the reference configuration.
+    pub fn largest_eigenvalue(&self, body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
+        let mut tiny = Tiny::new(body, interaction);
+        let inner = |x: &[[f64; D]], y: &[[f64; D]]| self.inner(x, y);
+        lanczos(body, &inner, &mut |w| (self.solve)(&tiny.pull(w, |_| 1.0)))
+    }
+
+    /// A bound on every eigenvalue of `M⁻¹K` (1 / time²) of bonds that act directly, symmetric or not: with L the masses lumped,
+    /// `|L^-½ K L^-½| ≤ √(|L⁻¹K|_∞ |L⁻¹Kᵀ|_∞)` times the largest eigenvalue of `M⁻¹L`.
+    pub fn bound(&self, body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
+        let mut own = vec![[[0.0; D]; D]; body.len];
+        let (mut across, mut down) = (vec![[0.0f64; D]; body.len], vec![[0.0f64; D]; body.len]);
+        interaction.tangents(body, &body.at_rest(), &mut |bond| {
+            for a in 0..D {
+                for b in 0..D {
+                    let c = body.volume.at(bond.i) * bond.stiffness[a][b];
+                    own[bond.i][a][b] += c;
+                    across[bond.i][a] += c.abs();
+                    down[bond.j][b] += c.abs();
+                }
+            }
+        });
+        let mass = |i: usize| body.volume.at(i) * body.density.at(i);
+        let (mut rows, mut columns) = (0.0f64, 0.0f64);
+        for &s in &body.slots {
+            let i = s as usize;
+            for a in 0..D {
+                let row: f64 = (0..D).map(|b| own[i][a][b].abs()).sum();
+                let column: f64 = (0..D).map(|b| own[i][b][a].abs()).sum();
+                rows = rows.max((row + across[i][a]) / mass(i));
+                columns = columns.max((column + down[i][a]) / mass(i));
+            }
+        }
+        let lumped: Vec<f64> = body.slots.iter().map(|s| mass(*s as usize)).collect();
+        let inner = |x: &[[f64; D]], y: &[[f64; D]]| self.inner(x, y);
+        let lighter = lanczos(body, &inner, &mut |w| {
+            let weighed = w.iter().zip(&lumped);
+            let weighed: Vec<[f64; D]> = weighed.map(|(w, m)| w.map(|c| m * c)).collect();
+            (self.solve)(&weighed)
+        });
+        (rows * columns).sqrt() * lighter
+    }
+}
+
+/// Largest eigenvalue of an operator that is symmetric in an inner product, as a Ritz value and a margin.
+fn lanczos<const D: usize>(
+    body: &Body<D>,
+    inner: &dyn Fn(&[[f64; D]], &[[f64; D]]) -> f64,
+    apply: &mut dyn FnMut(&[[f64; D]]) -> Vec<[f64; D]>,
+) -> f64 {
     // every point in motion, no symmetry: a fixed low-discrepancy start
     let mut w = vec![[0.0; D]; body.points()];
     for (rank, id) in by_place(body).into_iter().enumerate() {
@@ -35,30 +109,14 @@ pub fn largest_ratio<const D: usize>(
             ((rank * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
         });
     }
-    let norm = |w: &[[f64; D]]| -> f64 {
-        w.iter()
-            .zip(mass)
-            .map(|(w, m)| m * w.iter().map(|c| c * c).sum::<f64>())
-            .sum::<f64>()
-            .sqrt()
-    };
+    let norm = |w: &[[f64; D]]| inner(w, w).sqrt();
     let scale = norm(&w);
     w.iter_mut().flatten().for_each(|c| *c /= scale);
     let mut previous = vec![[0.0; D]; body.points()];
-    let mut u = body.at_rest();
-    let mut f = zeros::<D>(body.len);
-    // what acts at rest: 0 for solids, not for atoms under pressure
-    let mut rest = zeros::<D>(body.len);
-    interaction.forces(body, &u, &mut rest, Sweep::Hold, None);
     let (mut alphas, mut betas): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
     for _ in 0..STEPS.min(D * body.points()) {
-        let mut next = product(body, interaction, mass, &w, &mut u, &mut f, &rest);
-        let alpha: f64 = next
-            .iter()
-            .zip(&w)
-            .zip(mass)
-            .map(|((n, w), m)| m * (0..D).map(|a| n[a] * w[a]).sum::<f64>())
-            .sum();
+        let mut next = apply(&w);
+        let alpha = inner(&next, &w);
         let beta = betas.last().copied().unwrap_or(0.0);
         for ((n, w), p) in next.iter_mut().zip(&w).zip(&previous) {
             for a in 0..D {
@@ -123,36 +181,53 @@ pub fn row_bound<const D: usize>(body: &Body<D>, interaction: &mut dyn Interacti
     bound
 }
 
-/// `M⁻¹K w` by one sweep at a displacement so small that the law is linear.
-fn product<const D: usize>(
-    body: &Body<D>,
-    interaction: &mut dyn Interaction<D>,
-    mass: &[f64],
-    w: &[[f64; D]],
-    u: &mut Field<D>,
-    f: &mut Field<D>,
-    rest: &Field<D>,
-) -> Vec<[f64; D]> {
-    let peak = w.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
-    let small = 1e-7 * body.spacing / peak.max(f64::MIN_POSITIVE);
-    for (w, &s) in w.iter().zip(&body.slots) {
-        for a in 0..D {
-            u[a][s as usize] = small * w[a];
+/// Sweeps at displacements so small that the law is linear.
+struct Tiny<'a, const D: usize> {
+    body: &'a Body<D>,
+    interaction: &'a mut dyn Interaction<D>,
+    u: Field<D>,
+    f: Field<D>,
+    /// What acts at rest: 0 for solids, not for atoms under pressure.
+    rest: Field<D>,
+}
+
+impl<'a, const D: usize> Tiny<'a, D> {
+    fn new(body: &'a Body<D>, interaction: &'a mut dyn Interaction<D>) -> Self {
+        let u = body.at_rest();
+        let mut rest = zeros::<D>(body.len);
+        interaction.forces(body, &u, &mut rest, Sweep::Hold, None);
+        Tiny {
+            f: zeros(body.len),
+            body,
+            interaction,
+            u,
+            rest,
         }
     }
-    for c in u.iter_mut() {
-        body.fill_images(c);
-    }
-    interaction.forces(body, u, f, Sweep::Hold, None);
-    body.slots
-        .iter()
-        .zip(mass)
-        .map(|(&s, mass)| {
+
+    /// `K w` over the mass of every point.
+    fn pull(&mut self, w: &[[f64; D]], mass: impl Fn(usize) -> f64) -> Vec<[f64; D]> {
+        let (body, u) = (self.body, &mut self.u);
+        let peak = w.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
+        let small = 1e-7 * body.spacing / peak.max(f64::MIN_POSITIVE);
+        for (w, &s) in w.iter().zip(&body.slots) {
+            for a in 0..D {
+                u[a][s as usize] = small * w[a];
+            }
+        }
+        for c in u.iter_mut() {
+            body.fill_images(c);
+        }
+        self.interaction
+            .forces(body, u, &mut self.f, Sweep::Hold, None);
+        let (f, rest) = (&self.f, &self.rest);
+        let each = body.slots.iter().enumerate().map(|(i, &s)| {
             let s = s as usize;
-            let scale = body.volume.at(s) / (small * mass);
+            let scale = body.volume.at(s) / (small * mass(i));
             std::array::from_fn(|a| (rest[a][s] - f[a][s]) * scale)
-        })
-        .collect()
+        });
+        each.collect()
+    }
 }
 
 /// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on Sturm counts.

@@ -23,7 +23,7 @@ mod random;
 mod tests;
 
 pub use measure::{Measure, Misfit, Rule};
-pub(crate) use op::{Binary, Op, Unary};
+pub(crate) use op::{Binary, Op, Ternary, Unary};
 pub(crate) use parse::nearest;
 use std::fmt;
 use std::ops::Range;
@@ -63,7 +63,7 @@ impl Expression {
         Ok(Self::measured(source, constants, &measure::Plain(measure::PLACE))?.0)
     }
 
-    /// The same of other variables, at most three, in place of x, y, z and t.
+    /// The same of other variables in place of x, y, z and t; those of more than three are evaluated by [`Expression::of_variables`].
     ///
     /// ```
     /// use peridyne::expression::Expression;
@@ -113,6 +113,16 @@ impl Expression {
     /// Value at the point `x` (length) at time `t`.
     pub fn eval(&self, x: &[f64; 3], t: f64) -> f64 {
         op::run(&self.program, x, t)
+    }
+
+    /// Value where the variables that it was compiled of are these.
+    pub fn of_variables(&self, values: &[f64]) -> f64 {
+        op::run(&self.program, values, 0.0)
+    }
+
+    /// Does it depend on the variable of this place?
+    pub fn depends_on(&self, variable: usize) -> bool {
+        self.program.contains(&Op::Coordinate(variable))
     }
 
     /// The value, if it depends on nothing.

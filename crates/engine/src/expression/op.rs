@@ -243,7 +243,7 @@ impl Ternary {
 }
 
 /// Runs a program that the parser has checked: it leaves one number and never needs more than [`STACK`].
-pub(super) fn run(program: &[Op], x: &[f64; 3], t: f64) -> f64 {
+pub(super) fn run(program: &[Op], x: &[f64], t: f64) -> f64 {
     if let [Op::Push(value)] = program {
         return *value;
     }

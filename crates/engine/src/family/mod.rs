@@ -4,6 +4,7 @@ pub(crate) mod cells;
 pub mod horizon;
 pub(crate) mod links;
 pub(crate) mod neighbours;
+pub mod nodes;
 pub(crate) mod offsets;
 pub mod stencil;
 

@@ -188,7 +188,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
         history::limit(critical[0], critical[1])
     }
 
-    /// What enumerates the bonds: `"stencil"`, `"list"` or `"neighbours"`.
+    /// What enumerates the bonds: `"stencil"`, `"list"`, `"neighbours"` or `"reference"`.
     fn family(&self) -> &'static str;
 
     /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the law has no forces

@@ -1,10 +1,10 @@
-//! What a bond of a cloud weighs: influence function times volume fraction, from its length alone.
+//! What a bond of a cloud weighs: influence function times volume fraction.
 
 use crate::execute::lane::Lane;
 use crate::law::influence::InfluenceFunction;
 use crate::spec::Influence;
 
-/// `ω(r0) ν(r0)` with `ν = min(1, cut − rate r0)`, evaluated in lanes wherever a bond is met, so that nothing needs to be
+/// `ω(ξ) ν(r0)` with `ν = min(1, cut − rate r0)`, evaluated in lanes wherever a bond is met, so that nothing needs to be
 /// stored.
 #[derive(Debug, Clone, Copy)]
 pub struct BondWeight {
@@ -33,22 +33,38 @@ impl BondWeight {
         }
     }
 
-    /// `ω ν` of bonds of these lengths.
+    /// The same from both ends: the mean of ω(ξ) and ω(−ξ).
+    pub fn mean(self) -> Self {
+        BondWeight {
+            influence: self.influence.mean(),
+            ..self
+        }
+    }
+
+    /// `ω ν` of bonds ξ of these lengths.
     #[inline(always)]
-    pub fn at<L: Lane>(&self, r0: L, inv_r0: L) -> L {
-        self.within(r0, inv_r0, L::splat(self.cut))
+    pub fn at<L: Lane, const D: usize>(&self, xi: &[L; D], r0: L, inv_r0: L) -> L {
+        self.within(xi, r0, inv_r0, L::splat(self.cut))
     }
 
     /// The same where the partner's volume begins to fade elsewhere: `cut` is `½ + δ/h` of the bond's own horizon.
     #[inline(always)]
-    pub fn within<L: Lane>(&self, r0: L, inv_r0: L, cut: L) -> L {
-        self.influence.at(r0, inv_r0) * self.fraction(r0, cut)
+    pub fn within<L: Lane, const D: usize>(&self, xi: &[L; D], r0: L, inv_r0: L, cut: L) -> L {
+        self.influence.at(xi, r0, inv_r0) * self.fraction(r0, cut)
     }
 
-    /// ω alone.
+    /// ω alone, of this end and of the other.
     #[inline(always)]
-    pub fn influence<L: Lane>(&self, r0: L, inv_r0: L) -> L {
-        self.influence.at(r0, inv_r0)
+    pub fn influence<L: Lane, const D: usize>(&self, xi: &[L; D], r0: L, inv_r0: L) -> [L; 2] {
+        let own = self.influence.at(xi, r0, inv_r0);
+        if !self.influence.is_directed() {
+            return [own; 2];
+        }
+        let mut back = *xi;
+        for a in 0..D {
+            back[a] = L::splat(0.0) - xi[a];
+        }
+        [own, self.influence.at(&back, r0, inv_r0)]
     }
 
     /// ν alone.
@@ -78,12 +94,12 @@ mod tests {
                 for n in 1..=1000 {
                     let r = d * n as f64 / 1000.0;
                     let nu = scaling.map_or(1.0, |h| volume_fraction(r, d, h));
-                    let exact = influence(kind, r, d) * nu;
-                    let scale = influence(kind, 0.1 * d, d);
+                    let exact = influence(kind, &[r], r, d) * nu;
+                    let scale = influence(kind, &[0.1 * d], 0.1 * d, d);
                     assert!(
-                        (w.at(r, 1.0 / r) - exact).abs() <= 1e-15 * scale.max(exact),
+                        (w.at(&[r], r, 1.0 / r) - exact).abs() <= 1e-15 * scale.max(exact),
                         "{kind:?} at {r}: {} is not {exact}",
-                        w.at(r, 1.0 / r)
+                        w.at(&[r], r, 1.0 / r)
                     );
                 }
             }

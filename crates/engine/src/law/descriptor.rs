@@ -63,8 +63,8 @@ pub enum Value {
     Word(&'static [(&'static str, &'static str)]),
     /// Any word.
     Name,
-    /// An expression of these variables, that measures this.
-    Formula(&'static [&'static str], Dimension),
+    /// An expression of these variables, that measures this; `None`: whatever they make of it.
+    Formula(&'static [&'static str], Option<Dimension>),
     /// Tables of functions: in decks the name of a file that has them, eam/alloy (setfl) or .eam (funcfl).
     Table,
 }
@@ -229,9 +229,8 @@ impl Key {
     /// What it measures, where it is made of numbers.
     pub fn dimension(&self) -> Option<Dimension> {
         match self.value {
-            Value::Number(dimension, _)
-            | Value::List(_, dimension, _)
-            | Value::Formula(_, dimension) => Some(dimension),
+            Value::Number(dimension, _) | Value::List(_, dimension, _) => Some(dimension),
+            Value::Formula(_, dimension) => dimension,
             Value::Direction
             | Value::Rows(_)
             | Value::Entries(_)
@@ -547,6 +546,8 @@ pub trait Shelved: Sized {
     const TURNS: bool = false;
     /// Do some of its bonds break at a stretch of their own? Then bonds break by nothing else, and toughness of places spares points at most.
     const KINDS: bool = false;
+    /// May its bonds pull in the reference, as those of atoms do? Then its tangents are not sweeps at tiny displacements.
+    const PULLS_AT_REST: bool = false;
 
     fn descriptor() -> Descriptor;
 

@@ -109,7 +109,7 @@ mod tests {
                         2 => 2.0,
                         _ => 2.0 * PI * x,
                     };
-                    let part = along * h * h * influence(kind, r, horizon) * r * r;
+                    let part = along * h * h * influence(kind, &[r], r, horizon) * r * r;
                     weight += 2.0 * part;
                     // bonds of this ξ begin up to z in front of it
                     across += z * part;

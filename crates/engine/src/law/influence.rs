@@ -1,27 +1,48 @@
-//! Influence functions ω of the bond length: written once, for plain numbers and for lanes.
+//! Influence functions ω(ξ): written once, for plain numbers and for lanes.
+//!
+//! One that knows directions need not be the same from both ends. State-based laws weigh with ω(ξ) at i and ω(−ξ) at j: action is reaction
+//! whatever they are (sandia2010, Remark 3.0.2; ω₊ and ω₋ of Algorithm 2). A bond-based bond has one micromodulus: its pull is
+//! `T[i]⟨ξ⟩ − T[j]⟨−ξ⟩` of `T⟨ξ⟩ = ½ c ω(ξ) s`, so that its ω is the mean of both.
 
-use crate::execute::lane::{Lane, Piece};
-use crate::spec::Influence;
+use crate::execute::lane::{Lane, Piece, TILE};
+use crate::spec::{Formula, Influence};
 
-/// ω for one horizon δ. Multiplications only (and `1/r` as given), hence the same bits in every width.
+/// ω for one horizon δ. Multiplications only (and `1/r` as given), hence the same bits in every width; expressions are evaluated number by
+/// number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InfluenceFunction {
     kind: Influence,
-    /// 1/δ
+    /// δ and 1/δ
+    horizon: f64,
     inv_horizon: f64,
+    /// Is it the mean of both ends?
+    mean: bool,
 }
 
 impl InfluenceFunction {
     pub fn new(kind: Influence, horizon: f64) -> Self {
         InfluenceFunction {
             kind,
+            horizon,
             inv_horizon: 1.0 / horizon,
+            mean: false,
         }
     }
 
-    /// ω(r); `inv_r` is 1/r.
+    /// `½ (ω(ξ) + ω(−ξ))` of this.
+    pub fn mean(self) -> Self {
+        InfluenceFunction { mean: true, ..self }
+    }
+
+    /// Is ω(ξ) another than ω(−ξ)?
     #[inline(always)]
-    pub fn at<L: Lane>(&self, r: L, inv_r: L) -> L {
+    pub fn is_directed(&self) -> bool {
+        !self.mean && self.kind.is_directed()
+    }
+
+    /// ω(ξ); `r` is |ξ| and `inv_r` is 1/r.
+    #[inline(always)]
+    pub fn at<L: Lane, const D: usize>(&self, xi: &[L; D], r: L, inv_r: L) -> L {
         let q = r * L::splat(self.inv_horizon);
         match self.kind {
             Influence::Constant => L::splat(1.0),
@@ -29,13 +50,58 @@ impl InfluenceFunction {
             Influence::Conical => L::splat(1.0) - q,
             Influence::Gaussian => L::apart(Gaussian(q)),
             Influence::CubicSpline => L::apart(CubicSpline(q)),
+            Influence::Formula(formula) => L::apart(Written {
+                formula,
+                horizon: self.horizon,
+                mean: self.mean,
+                xi: *xi,
+                r,
+            }),
         }
     }
 }
 
-/// ω(r) for a horizon δ.
-pub fn influence(kind: Influence, r: f64, horizon: f64) -> f64 {
-    InfluenceFunction::new(kind, horizon).at(r, 1.0 / r)
+/// ω(ξ) for a horizon δ; `r` is |ξ|.
+pub fn influence<const D: usize>(kind: Influence, xi: &[f64; D], r: f64, horizon: f64) -> f64 {
+    InfluenceFunction::new(kind, horizon).at(xi, r, 1.0 / r)
+}
+
+/// `½ (ω(ξ) + ω(−ξ))`
+pub fn mean_influence<const D: usize>(kind: Influence, xi: &[f64; D], r: f64, horizon: f64) -> f64 {
+    let function = InfluenceFunction::new(kind, horizon);
+    function.mean().at(xi, r, 1.0 / r)
+}
+
+struct Written<L, const D: usize> {
+    formula: Formula,
+    horizon: f64,
+    mean: bool,
+    xi: [L; D],
+    r: L,
+}
+
+impl<L: Lane, const D: usize> Piece for Written<L, D> {
+    type Out = L;
+    #[inline(always)]
+    fn run(self) -> L {
+        let r = self.r.to_array();
+        let mut xi = [[0.0; TILE]; 3];
+        for a in 0..D {
+            xi[a] = self.xi[a].to_array();
+        }
+        let both = self.mean && self.formula.is_directed();
+        let mut all = [0.0; TILE];
+        for l in 0..L::N {
+            let of = [xi[0][l], xi[1][l], xi[2][l]];
+            all[l] = self.formula.at(of, r[l], self.horizon);
+            if both {
+                let back = [-of[0], -of[1], -of[2]];
+                all[l] = 0.5 * (all[l] + self.formula.at(back, r[l], self.horizon));
+            }
+        }
+        // SAFETY: a number per lane
+        unsafe { L::load(all.as_ptr()) }
+    }
 }
 
 struct Gaussian<L>(L);
@@ -108,6 +174,7 @@ mod tests {
             Influence::CubicSpline if q <= 0.5 => 1.0 - 6.0 * q * q + 6.0 * q * q * q,
             Influence::CubicSpline if q <= 1.0 => 2.0 * (1.0 - q).powi(3),
             Influence::CubicSpline => 0.0,
+            Influence::Formula(_) => f64::NAN,
         }
     }
 
@@ -118,12 +185,47 @@ mod tests {
             let largest = printed(kind, 0.1 * d, d);
             for n in 1..=1000 {
                 let r = d * f64::from(n) / 1000.0;
-                let (found, exact) = (influence(kind, r, d), printed(kind, r, d));
+                let (found, exact) = (influence(kind, &[r], r, d), printed(kind, r, d));
                 assert!(
                     (found - exact).abs() <= 1e-15 * largest.max(exact),
                     "{kind:?} at {r}: {found} is not {exact}"
                 );
             }
         }
+    }
+
+    /// The words as expressions, in lanes and one by one; and the two ends of a directed one.
+    #[test]
+    fn expressions_are_what_they_say() {
+        let d = 0.0031;
+        let words = [
+            (Influence::Constant, "1"),
+            (Influence::Inverse, "1/r"),
+            (Influence::Conical, "1 - r/delta"),
+            (Influence::Gaussian, "exp(-(2*r/delta)^2)"),
+        ];
+        for (word, text) in words {
+            let written = Influence::Formula(Formula::parse(text, &[]).unwrap());
+            assert!(!written.is_directed());
+            for n in 1..=100 {
+                let r = d * f64::from(n) / 100.0;
+                let [found, exact] = [written, word].map(|k| influence(k, &[r], r, d));
+                assert!((found - exact).abs() <= 2e-15 * (1.0 + exact), "{text} {r}");
+            }
+        }
+        let upwind = Influence::Formula(Formula::parse("1 + xi_x/r", &[]).unwrap());
+        assert!(upwind.is_directed());
+        assert_eq!(influence(upwind, &[3.0, 4.0], 5.0, d), 1.6);
+        assert_eq!(influence(upwind, &[-3.0, -4.0], 5.0, d), 0.4);
+        assert_eq!(mean_influence(upwind, &[3.0, 4.0], 5.0, d), 1.0);
+    }
+
+    /// One text is one formula, and another text or another constant another.
+    #[test]
+    fn formulas_are_equal_where_their_texts_are() {
+        let of = |text, a| Formula::parse(text, &[("a", a)]).unwrap();
+        assert_eq!(of("r^a", 2.0), of("r^a", 2.0));
+        assert_ne!(of("r^a", 2.0), of("r^a", 3.0));
+        assert_ne!(of("r^2", 2.0), of("r^a", 2.0));
     }
 }

@@ -56,6 +56,8 @@ pub trait State {
     fn force_density(&self, id: usize) -> Point;
     fn volume(&self, id: usize) -> f64;
     fn density(&self, id: usize) -> f64;
+    /// `½ ρ v·v`; of masses that couple points `½ v·(M v)/V`.
+    fn kinetic_energy_density(&self, id: usize) -> f64;
     fn material(&self, id: usize) -> usize;
     fn mark(&self, id: usize) -> i32;
     /// Number of bodies side by side, 1 where nobody named any.

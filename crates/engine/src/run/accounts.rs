@@ -37,6 +37,9 @@ impl<const D: usize> Model<D> {
             let v2: f64 = (0..D).map(|a| self.v[a][i] * self.v[a][i]).sum();
             ledger.kinetic += 0.5 * self.body.density.at(i) * volume * v2;
         }
+        if let Some(kinetic) = self.coupled_kinetic() {
+            ledger.kinetic = kinetic;
+        }
         for load in &self.loads {
             if load.is_damping() {
                 ledger.dissipated -= load.work
@@ -104,6 +107,7 @@ impl<const D: usize> Model<D> {
         if self.implicit.is_some() {
             return energy;
         }
+        let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
         for &s in &self.body.slots {
             let i = s as usize;
             let (rho, volume) = (self.body.density.at(i), self.body.volume.at(i));
@@ -111,7 +115,7 @@ impl<const D: usize> Model<D> {
             for a in 0..D {
                 let v = self.v[a][i];
                 now += v * v;
-                before += (v - 0.5 * self.dt / rho * self.f[a][i]).powi(2);
+                before += (v - 0.5 * self.dt / rho * f[a][i]).powi(2);
             }
             energy += 0.5 * rho * volume * f64::max(now - before, 0.0);
         }

@@ -10,7 +10,91 @@ use crate::message;
 use crate::quantity::{Dimension, Message, rounded};
 use crate::space::AXES;
 use crate::space::lattice::LatticeKind;
-use crate::spec::{Horizon, Spec, ThermalSpec};
+use crate::spec::{BodySpec, FamilyChoice, Horizon, Spec, ThermalSpec};
+
+/// What a spec's family means for its law. Potentials of pairs and densities have their reference family on a lattice as a stencil.
+pub(super) fn resolve_family(
+    spec: &mut Spec,
+    potentials: Option<&AnyPotentials>,
+) -> Result<(), BuildError> {
+    let refused =
+        |message: &str, help: &str| Err(BuildError::unsupported("family", message).help(help));
+    match (spec.family, potentials) {
+        (FamilyChoice::List, Some(_)) => refused(
+            "a list stores bonds of peridynamic laws, and this law is an interatomic potential",
+            "write family = \"reference\": those within the horizon in the reference, for ever; or leave it out: those that are near now",
+        ),
+        (FamilyChoice::Reference, None) => refused(
+            "family = \"reference\" belongs to interatomic potentials: the families of this law are always those of the reference",
+            "leave family out",
+        ),
+        (FamilyChoice::Reference, Some(potentials)) => {
+            let lattice = matches!(
+                spec.body,
+                BodySpec::Lattice { perturb: None, .. } | BodySpec::Sites { .. }
+            );
+            if lattice && potentials.has_stencil() && spec.bonded.is_none() {
+                spec.family = FamilyChoice::Stencil;
+            }
+            Ok(())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Can atoms be carried along by nodes?
+pub(super) fn check_smooth(spec: &Spec, atoms: bool) -> Result<(), BuildError> {
+    let Some(smooth) = &spec.smooth else {
+        return Ok(());
+    };
+    let refused = |path: &str, message: &str, help: &str| {
+        Err(BuildError::unsupported(path, message).help(help))
+    };
+    if !atoms || spec.family != FamilyChoice::Reference {
+        return refused(
+            "smooth",
+            "smoothing averages the force states of a potential, which are those of the reference",
+            "write family = \"reference\", with an interatomic potential as the law",
+        );
+    }
+    if spec.materials.len() > 1 {
+        return refused(
+            "smooth",
+            "a node carries all atoms near it, and with several materials it is of none",
+            "give the atoms one material",
+        );
+    }
+    if spec.thermal.is_some() {
+        return refused(
+            "thermal",
+            "atoms that are carried along have no thermal motion of their own",
+            "remove thermal, or smooth",
+        );
+    }
+    if matches!(&spec.body, BodySpec::Cloud(cloud) if !cloud.velocity.is_empty()) {
+        return refused(
+            "smooth",
+            "the file has velocities of atoms, and atoms that are carried along have none of their own",
+            "give the places alone; velocities of nodes are those of [[initial]]",
+        );
+    }
+    if !spec.transfers.is_empty() {
+        return refused(
+            "smooth",
+            "a potential conducts nothing: its bonds are not those of a continuum",
+            "take a law of solids (pmb, lps, …) for heat and species",
+        );
+    }
+    for (path, length) in [
+        ("smooth.width", Some(smooth.width)),
+        ("smooth.spacing", smooth.spacing),
+    ] {
+        if length.is_some_and(|l| !(l > 0.0 && l.is_finite())) {
+            return Err(BuildError::invalid(path, "expected a positive length"));
+        }
+    }
+    Ok(())
+}
 
 /// A potential on current neighbours needs a cut-off, and periods of at least two of them.
 pub(super) fn check_box(
@@ -23,23 +107,35 @@ pub(super) fn check_box(
             "potential.cutoff",
             format!("the potential has no cut-off ({cutoff})"),
         )
-        .help("give a cutoff, or fixed neighbours: family = \"stencil\""));
+        .help("give a cutoff, or the neighbours of the reference: family = \"reference\" with a horizon"));
     }
+    check_periods("potential.cutoff", "cut-off", cutoff, period)
+}
+
+/// Nobody may be within reach twice: a length of this name and path is at most half of every period.
+pub(super) fn check_periods(
+    path: &str,
+    name: &str,
+    length: f64,
+    period: &[Option<f64>],
+) -> Result<(), BuildError> {
     for (axis, p) in AXES.iter().zip(period) {
         if let Some(p) = p
-            && cutoff > 0.5 * p * (1.0 + 1e-12)
+            && length > 0.5 * p * (1.0 + 1e-12)
         {
             return Err(BuildError::conflict(
-                "potential.cutoff",
+                path,
                 message![
-                    "the cut-off ",
-                    Dimension::LENGTH.of(cutoff),
+                    format!("the {name} "),
+                    Dimension::LENGTH.of(length),
                     " is beyond half the period ",
                     Dimension::LENGTH.of(*p),
                     format!(" along {axis}: an atom would see another twice"),
                 ],
             )
-            .help("make the box longer along this axis, or the cut-off shorter"));
+            .help(format!(
+                "make the box longer along this axis, or the {name} shorter"
+            )));
         }
     }
     Ok(())

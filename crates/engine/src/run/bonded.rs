@@ -29,8 +29,8 @@ pub(super) fn around<const D: usize>(
     };
     if spec.family == FamilyChoice::Stencil {
         return refused(
-            "molecules have current neighbours",
-            "remove family = \"stencil\"",
+            "molecules have no stencil",
+            "remove family = \"stencil\": atoms feel those that are near now, or with family = \"reference\" those of the reference",
         );
     }
     if !matches!(spec.body, BodySpec::Cloud(_)) {

@@ -3,12 +3,13 @@
 use super::atoms;
 use super::bind::{bind, names};
 use super::clouds::{own_densities, own_velocities};
-use super::constitutive::{Shelf, criteria};
+use super::constitutive::{Shelf, criteria, directed};
 use super::equilibrium::state::StaticState;
 use super::faces::Faces;
 use super::feasible::{consistent, enough_memory, possible};
 use super::implicit;
 use super::implicit::state::Implicit;
+use super::inertia::state::Inertia;
 use super::model::Model;
 use super::parts::{Part, parts};
 use super::reference::current_neighbours;
@@ -18,15 +19,18 @@ use super::transfers::state::Transfers;
 use super::{Info, Simulation, Steered};
 use super::{bonds, indenters, own_horizons, precracks, surface, transfers};
 use super::{contact, gaps, meant};
-use crate::body::zeros;
+use crate::body::{Values, zeros};
 use crate::condition::carried::Carried;
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
+use crate::family::nodes::Nodes;
+use crate::interaction::Interaction;
+use crate::interaction::atoms::smoothed::Smoothed;
 use crate::message;
 use crate::quantity::{Dimension, Warnings, rounded};
-use crate::spec::{BodySpec, Control, Horizon, LawSpec, Spec, Stepper, TimeStep};
+use crate::spec::{BodySpec, Control, FamilyChoice, Horizon, LawSpec, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
 
 /// How to build, as opposed to what.
@@ -71,20 +75,27 @@ pub fn build_in<const D: usize>(
     shelf.resolve(&mut resolved)?;
     let expanding = transfers::expanding(&mut resolved);
     let own = own_horizons::resolve(&mut resolved);
-    if criteria::remembering(&mut resolved)? || expanding || own {
+    let directed = directed(&mut resolved)?;
+    if criteria::remembering(&mut resolved)? || expanding || own || directed {
         shelf.resolve(&mut resolved)?;
     }
+    consistent(&resolved)?;
+    let potentials = shelf.potentials(&resolved)?;
+    atoms::check_smooth(&resolved, potentials.is_some())?;
+    atoms::resolve_family(&mut resolved, potentials.as_ref())?;
     let spec = &resolved;
-    consistent(spec)?;
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = Warnings::default();
     let (mut parts, mut body) = parts::<D>(spec)?;
-    let potentials = shelf.potentials(spec)?;
-    if let Some(potentials) = &potentials
-        && current_neighbours(spec)
-    {
-        atoms::check_box(potentials, &body.period)?;
-        parts[0].horizon = potentials.reach;
+    match (&potentials, spec.family) {
+        (Some(potentials), _) if current_neighbours(spec) => {
+            atoms::check_box(potentials, &body.period)?;
+            parts[0].horizon = potentials.reach;
+        }
+        (Some(_), FamilyChoice::Reference) => {
+            atoms::check_periods("horizon", "horizon", parts[0].horizon, &body.period)?;
+        }
+        _ => {}
     }
     let bonded_horizons = || parts.iter().filter(|p| p.bonded).map(|p| p.horizon);
     let horizon = bonded_horizons()
@@ -97,13 +108,26 @@ pub fn build_in<const D: usize>(
         let atoms = current_neighbours(spec);
         enough_memory(own, part.stencil.as_ref(), part.horizon, atoms)?;
     }
+    let smoothed = match &spec.smooth {
+        None => None,
+        Some(smooth) => {
+            let (nodes, carried) = Nodes::new(&body, smooth)?;
+            let mut atoms = std::mem::replace(&mut body, nodes);
+            atoms.density = Values::Uniform(spec.materials[0].density);
+            own_densities(spec, &mut atoms);
+            Some((atoms, carried))
+        }
+    };
     let carriers = match spec.micromoduli() {
         Some(linear) => (**linear).clone().of::<D>().and_then(|l| l.carriers),
         None => None,
     };
     let (sets, carrier_sets) = sets(spec, &body, carriers.as_ref())?;
     assign_materials(spec, &mut body, &sets)?;
-    own_densities(spec, &mut body);
+    match &smoothed {
+        None => own_densities(spec, &mut body),
+        Some((atoms, carried)) => carried.give_masses(atoms, &mut body),
+    }
     own_horizons::give(spec, &mut body, horizon)?;
     if !body.horizon.is_empty() {
         let own = body.slots.iter().map(|s| body.horizon[*s as usize]);
@@ -115,8 +139,16 @@ pub fn build_in<const D: usize>(
     if let (Some(potentials), BodySpec::Lattice { kind, spacing, .. }) = (&potentials, &spec.body) {
         warnings.extend(atoms::crystal(spec, potentials, *kind, *spacing)?);
     }
-    let (mut constitutive, mut interaction) =
-        bind(spec, &mut parts, &mut body, shelf, simd, &mut warnings)?;
+    let (mut constitutive, mut interaction) = match smoothed {
+        None => bind(spec, &mut parts, &mut body, shelf, simd, &mut warnings)?,
+        Some((mut atoms, carried)) => {
+            let (constitutive, inner) =
+                bind(spec, &mut parts, &mut atoms, shelf, simd, &mut warnings)?;
+            let made = Smoothed::new(&body, atoms, inner, carried);
+            let made: Box<dyn Interaction<D>> = Box::new(made);
+            (constitutive, made)
+        }
+    };
     let cell_volume = body.volume.uniform();
     if let Some(factors) = &spec.surface {
         surface::scale(factors, &mut body, interaction.as_mut())?;
@@ -209,6 +241,7 @@ pub fn build_in<const D: usize>(
         let rest = body.at_rest();
         interaction.mend(&body, &rest, &|_, _, _| true);
     }
+    let inertia = Inertia::of(spec, &body)?;
     let limits = match options.trust_time_step
         || spec.schedule.statics().is_some()
         || spec.schedule.stepper == Stepper::Still
@@ -217,7 +250,7 @@ pub fn build_in<const D: usize>(
         false => Limits::of(
             spec,
             (&parts, &constitutive),
-            &body,
+            (&body, inertia.as_ref()),
             interaction.as_mut(),
             cell_volume,
             repulsion.as_ref(),
@@ -281,6 +314,7 @@ pub fn build_in<const D: usize>(
         f: zeros(body.len),
         u,
         verlet: Verlet::new(simd, &body),
+        inertia,
         contact: repulsion.map(|r| {
             let pairs = constitutive.first().pairs.as_ref();
             r.contact(&parts, &body, pairs.map_or(least_horizon, |p| p.shortest()))

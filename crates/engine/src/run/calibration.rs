@@ -68,7 +68,7 @@ fn family<const D: usize>(
         let back = periods(body, &xi);
         let xi: [f64; D] = std::array::from_fn(|a| xi[a] - back[a]);
         let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let w = weight.at(r0, 1.0 / r0) * body.volume.at(j);
+        let w = weight.at(&xi, r0, 1.0 / r0) * body.volume.at(j);
         sum.first += w * r0;
         sum.second += w * r0 * r0;
         sum.bare += weight.volume_fraction(r0) * body.volume.at(j) * r0;

@@ -21,6 +21,7 @@ mod gaps;
 mod healing;
 mod implicit;
 mod indenters;
+mod inertia;
 mod interfaces;
 mod meant;
 mod model;
@@ -69,7 +70,7 @@ pub struct Info {
     pub directed_bonds: u64,
     /// Smallest, mean and largest family.
     pub family: (usize, f64, usize),
-    /// `"stencil"`, `"list"` or `"neighbours"`.
+    /// `"stencil"`, `"list"`, `"neighbours"` or `"reference"`.
     pub family_kind: &'static str,
     /// Directed bonds whose length is within round-off of the horizon.
     pub near_horizon: u64,

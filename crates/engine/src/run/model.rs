@@ -5,6 +5,7 @@ use super::equilibrium::state::StaticState;
 use super::faces::Faces;
 use super::healing::state::Healing;
 use super::implicit::state::Implicit;
+use super::inertia::state::Inertia;
 use super::preload::state::Preload;
 use super::probes::state::Probe;
 use super::transfers::state::Transfers;
@@ -57,6 +58,8 @@ pub struct Model<const D: usize> {
     pub(super) v: Field<D>,
     pub(super) f: Field<D>,
     pub(super) verlet: Verlet,
+    /// Where masses couple points.
+    pub(super) inertia: Option<Inertia<D>>,
     pub(super) loads: Vec<Load<D>>,
     pub(super) constraints: Vec<Constraint<D>>,
     pub(super) indenters: Vec<Indenter<D>>,
@@ -136,6 +139,7 @@ impl<const D: usize> Model<D> {
             + self.interaction.bytes()
             + self.contact.as_ref().map_or(0, Contact::bytes)
             + self.friction.as_ref().map_or(0, Friction::bytes)
+            + self.inertia.as_ref().map_or(0, |i| i.masses.bytes())
             + 3 * D * 8 * self.body.len
             + self
                 .transfers

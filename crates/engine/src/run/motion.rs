@@ -113,11 +113,13 @@ impl<const D: usize> Model<D> {
             indenter.add(&self.body, state, &mut self.f, t, [dt, self.dt]);
         }
         for load in &mut self.loads {
-            load.add(&self.body, [&self.u, &self.v], &mut self.f, t, dt);
+            let push = self.inertia.as_ref().map(|i| &i.push);
+            load.add(&self.body, [&self.u, &self.v], &mut self.f, t, dt, push);
         }
         for d in &mut self.driven {
             d.add(&self.body, &self.u, &self.v, &mut self.f, t, dt);
         }
+        self.accelerate();
     }
 
     /// Points may be anywhere now: whoever keeps track of what is near forgets it.
@@ -136,7 +138,8 @@ impl<const D: usize> Model<D> {
     /// Bring velocities to the whole step.
     pub(super) fn finish(&mut self) {
         if self.pending {
-            self.verlet.kick(&self.body, &mut self.v, &self.f, self.dt);
+            let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
+            self.verlet.kick(&self.body, &mut self.v, f, self.dt);
             let (t, dt) = (self.time(), self.dt);
             for c in &self.constraints {
                 c.settle(&mut self.v, t, dt);
@@ -263,6 +266,9 @@ impl<const D: usize> Model<D> {
         let (t, dt) = (self.time(), self.dt);
         self.update_toughness(t + dt)?;
         let pressed = self.pressed();
+        if self.holds_others() {
+            self.accelerate();
+        }
         for c in &mut self.constraints {
             c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
         }
@@ -277,19 +283,21 @@ impl<const D: usize> Model<D> {
             true => f64::INFINITY,
             false => self.body.spacing,
         };
+        let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
         let fastest = self.verlet.advance(
             &self.body,
             &mut self.u,
             &mut self.v,
-            &self.f,
+            f,
             dt,
             self.pending,
             limit,
         );
         if !(fastest < limit * limit) {
             let error = self.refused(limit);
+            let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
             self.verlet
-                .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, limit);
+                .retreat(&self.body, &mut self.u, &mut self.v, f, dt, limit);
             self.pending = false;
             self.still.settle(&mut self.v);
             return Err(error);
@@ -327,8 +335,9 @@ impl<const D: usize> Model<D> {
         }
         self.forces(true, 0.0);
         let dt = self.dt;
+        let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
         self.verlet
-            .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, 0.0);
+            .retreat(&self.body, &mut self.u, &mut self.v, f, dt, 0.0);
         self.pending = false;
     }
 
@@ -359,9 +368,8 @@ impl<const D: usize> Model<D> {
             self.step_back();
             return Err(error);
         }
-        for c in &mut self.constraints {
-            c.end(&self.body, &self.u, &self.f, t, dt);
-        }
+        let change = self.inertia.as_ref().map(|i| i.change(dt));
+        self.account_constraints(t, dt, change.as_ref());
         self.pending = true;
         Ok(())
     }

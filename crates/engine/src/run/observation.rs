@@ -68,6 +68,16 @@ impl<const D: usize> State for View<'_, D> {
         self.model.body.density.at(self.slot(id))
     }
 
+    fn kinetic_energy_density(&self, id: usize) -> f64 {
+        let model = &*self.model;
+        let v = |id: usize| std::array::from_fn::<_, D, _>(|a| model.v[a][self.slot(id)]);
+        let own = v(id);
+        match &model.inertia {
+            None => 0.5 * self.density(id) * full(&own).iter().map(|c| c * c).sum::<f64>(),
+            Some(inertia) => inertia.masses.kinetic_energy_density(id, &v),
+        }
+    }
+
     fn material(&self, id: usize) -> usize {
         self.model.body.material_of(self.slot(id))
     }
@@ -120,7 +130,7 @@ impl<const D: usize> State for View<'_, D> {
                 visit(FamilyBond {
                     ends: [i, j].map(|s| id[s] as usize),
                     xi: full(&xi),
-                    weight: model.constitutive.at(i).0.weight(r0),
+                    weight: model.constitutive.at(i).0.weight(&xi, r0),
                     whole: state == BondState::Whole,
                 });
             });

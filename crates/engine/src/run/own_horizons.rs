@@ -46,6 +46,7 @@ fn possible(spec: &Spec) -> Result<(), BuildError> {
         Influence::Constant => true,
         Influence::Inverse => !pmb,
         Influence::Conical | Influence::Gaussian | Influence::CubicSpline => false,
+        Influence::Formula(formula) => !pmb && !formula.knows_horizon(),
     };
     if !alike {
         return refused(

@@ -3,7 +3,7 @@
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::family::stencil::{MOST, Stencil, too_many};
-use crate::law::influence::influence;
+use crate::law::influence::mean_influence;
 use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
 use crate::message;
@@ -76,16 +76,17 @@ fn bulk_family<const D: usize>(
         } else {
             1.0
         };
-        let omega = influence(spec.influence, r0, horizon);
+        let edges = grid.lattice.kind.edges();
+        let xi: [f64; 3] = std::array::from_fn(|a| {
+            0.25 * grid.lattice.spacing * edges[a] * f64::from(o.quarter[a])
+        });
+        let omega = mean_influence(spec.influence, &xi, r0, horizon);
         let w = nu * omega * volume / stencil.offsets.len() as f64;
         sum.bare += nu * volume / stencil.offsets.len() as f64 * r0;
         sum.first += w * r0;
         sum.second += w * r0 * r0;
-        let edges = grid.lattice.kind.edges();
         family.push(Partner {
-            xi: std::array::from_fn(|a| {
-                0.25 * grid.lattice.spacing * edges[a] * f64::from(o.quarter[a])
-            }),
+            xi,
             omega,
             volume: nu * volume / stencil.offsets.len() as f64,
         });
@@ -176,7 +177,8 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
         })
     };
     let list_if_asked = |r: Reference<D>| {
-        let list = spec.family == FamilyChoice::List || !spec.pairs.is_empty();
+        let listed = matches!(spec.family, FamilyChoice::List | FamilyChoice::Reference);
+        let list = listed || !spec.pairs.is_empty();
         if list || current_neighbours(spec) {
             Ok(Reference {
                 body: r.body.to_cloud()?,

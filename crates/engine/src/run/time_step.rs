@@ -3,6 +3,7 @@
 use super::atoms;
 use super::constitutive::ConstitutiveModels;
 use super::contact::Rules;
+use super::inertia::state::Inertia;
 use super::parts::Part;
 use super::probe;
 use crate::body::Body;
@@ -41,12 +42,15 @@ impl Limits {
     pub fn of<const D: usize>(
         spec: &Spec,
         (parts, constitutive): (&[Part], &ConstitutiveModels),
-        body: &Body<D>,
+        (body, inertia): (&Body<D>, Option<&Inertia<D>>),
         interaction: &mut dyn Interaction<D>,
         cell_volume: Option<f64>,
         repulsion: Option<&Rules>,
     ) -> Result<Limits, BuildError> {
-        let lambda = probe::bonds(constitutive.first(), body, interaction, spec, cell_volume)?;
+        let lambda = match inertia {
+            Some(inertia) => inertia.largest_eigenvalue(body, interaction),
+            None => probe::bonds(constitutive.first(), body, interaction, spec, cell_volume)?,
+        };
         let touching = repulsion.and_then(|r| r.limit(parts, body, lambda));
         Ok(Limits {
             bond: probe::step(lambda),

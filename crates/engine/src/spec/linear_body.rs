@@ -3,7 +3,7 @@
 //! Force density at i: `L_i = Σ_j C_ij (u_j − u_i)` (silling2010, section 4, with `C_ij` the volume of j included).
 //! State-based laws fit too: their rows reach two horizons.
 
-use super::Carriers;
+use super::{Carriers, MassMatrix};
 use std::any::Any;
 
 /// Points, and which of them talk to which.
@@ -25,6 +25,8 @@ pub struct LinearBody<const D: usize> {
     pub block: Vec<[[f64; D]; D]>,
     /// Of a condensed body: where its loads act.
     pub carriers: Option<Carriers<D>>,
+    /// Inertia that couples points; `None`: every point has its own mass alone, volume times density. These are its masses lumped.
+    pub mass: Option<MassMatrix<D>>,
 }
 
 /// A linear body of any dimension.
@@ -150,6 +152,7 @@ impl<const D: usize> LinearBody<D> {
             partner: vec![],
             block: vec![],
             carriers: None,
+            mass: None,
         }
     }
 
@@ -176,10 +179,19 @@ impl<const D: usize> LinearBody<D> {
             let (blocks, partners) = (self.block.len(), self.partner.len());
             return Err(format!("{blocks} micromoduli of {partners} partners"));
         }
+        if let Some(mass) = &self.mass {
+            mass.check(&self.masses())?;
+        }
         match &self.carriers {
             Some(carriers) => carriers.check(n),
             None => Ok(()),
         }
+    }
+
+    /// `[N]` volume times density.
+    pub fn masses(&self) -> Vec<f64> {
+        let each = self.volume.iter().zip(&self.density);
+        each.map(|(v, rho)| v * rho).collect()
     }
 
     /// Partners and micromoduli of point `i`.
@@ -224,5 +236,6 @@ impl<const D: usize> LinearBody<D> {
             + 4 * self.partner.len()
             + 8 * D * D * self.block.len()
             + self.carriers.as_ref().map_or(0, Carriers::bytes)
+            + self.mass.as_ref().map_or(0, MassMatrix::bytes)
     }
 }

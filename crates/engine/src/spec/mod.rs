@@ -14,10 +14,12 @@ mod indenter;
 mod interface;
 mod law;
 mod linear_body;
+mod mass_matrix;
 mod potential;
 mod preload;
 mod probe;
 mod schedule;
+mod smooth;
 mod surface;
 mod transfer;
 
@@ -31,7 +33,7 @@ pub use bonds::{
 };
 pub use carriers::Carriers;
 pub use condition::{ConditionKind, ConditionSpec, InitialSpec, ThermalSpec};
-pub use family::{Calibration, FamilyChoice, Horizon, Influence};
+pub use family::{Calibration, FamilyChoice, Formula, Horizon, Influence};
 pub use indenter::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
 pub use interface::InterfaceSpec;
 pub use law::{
@@ -40,12 +42,14 @@ pub use law::{
 };
 pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
+pub use mass_matrix::MassMatrix;
 pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
 pub use preload::PreloadSpec;
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
 pub use schedule::{
     Control, Cycles, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep,
 };
+pub use smooth::{SmoothSpec, Window};
 use std::sync::Arc;
 pub use surface::{SurfaceFactor, SurfaceFactors, SurfaceMethod};
 pub use transfer::{
@@ -116,6 +120,8 @@ pub struct Spec {
     pub transfers: Vec<TransferSpec>,
     /// Which family enumerates the bonds; `Auto` takes the stencil for lattice bodies, the list otherwise.
     pub family: FamilyChoice,
+    /// Nodes that carry the atoms of a reference family along; `None`: the atoms move.
+    pub smooth: Option<SmoothSpec>,
     /// Statics that the motion of the schedule begins from.
     pub preload: Option<PreloadSpec>,
     pub schedule: Schedule,
@@ -169,6 +175,7 @@ impl Spec {
             indenters: vec![],
             transfers: vec![],
             family: FamilyChoice::Auto,
+            smooth: None,
             preload: None,
             schedule: Schedule {
                 steps: 0,

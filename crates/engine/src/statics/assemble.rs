@@ -98,6 +98,7 @@ pub fn linear_body_touching<const D: usize>(
         partner: Vec::with_capacity(parts.iter().map(|p| p.partner.len()).sum()),
         block: Vec::with_capacity(parts.iter().map(|p| p.partner.len()).sum()),
         carriers: None,
+        mass: None,
     };
     for part in parts {
         let begin = made.partner.len();

@@ -7,11 +7,13 @@
 //! | is it held? | [`support`] |
 //! | is it elastic? | [`Soundness`] |
 //! | where is it in equilibrium? | [`direct`] (banded in 1-D), [`cg`]; of any law [`relaxation`] |
+//! | what do its masses do where they couple points? | [`Masses`] |
 //! | how does it vibrate? | [`modes`] |
 
 pub mod assemble;
 pub mod cg;
 pub mod direct;
+mod masses;
 pub mod modes;
 pub mod operator;
 pub mod relaxation;
@@ -22,6 +24,7 @@ mod vectors;
 use crate::error::SolveError;
 pub use assemble::{Touching, linear_body, linear_body_touching};
 pub use direct::{Direct, SYMMETRIC};
+pub use masses::Masses;
 pub use operator::{Assembled, LinearOperator, Shifted, Swept};
 pub use soundness::Soundness;
 pub use support::Support;

@@ -1,6 +1,7 @@
 //! Lowest modes of vibration: `K φ = ω² M φ`, by Lanczos on the inverse.
 
 use super::direct::{Direct, SYMMETRIC};
+use super::masses::Masses;
 use super::support::Support;
 use super::vectors::{add, dot};
 use crate::error::SolveError;
@@ -40,9 +41,8 @@ pub fn lowest<const D: usize>(
     if asymmetry > SYMMETRIC {
         return Err(SolveError::NotSymmetric { asymmetry });
     }
-    let mass: Vec<f64> = (0..body.points())
-        .map(|i| body.volume[i] * body.density[i])
-        .collect();
+    let mass = body.masses();
+    let coupled = Masses::of(body);
     // a bound on ω², for the shift that makes rigid motions harmless
     let stiffest = (0..body.points())
         .map(|i| {
@@ -59,9 +59,22 @@ pub fn lowest<const D: usize>(
     if let Some(left) = memory::available().filter(|left| bytes > *left) {
         return Err(SolveError::TooManyModes { count, bytes, left });
     }
-    let factors = Direct::new(body, support, shift)?;
+    let factors = match &coupled {
+        None => Direct::new(body, support, shift)?,
+        Some(masses) => {
+            let (shifted, own) = masses.with(body, shift);
+            Direct::against(&shifted, support, &own)?
+        }
+    };
     let times_mass = |x: &[[f64; D]]| -> Vec<[f64; D]> {
-        x.iter().zip(&mass).map(|(x, m)| x.map(|c| c * m)).collect()
+        match &coupled {
+            None => x.iter().zip(&mass).map(|(x, m)| x.map(|c| c * m)).collect(),
+            Some(masses) => {
+                let mut product = masses.times(x);
+                support.mask(&mut product);
+                product
+            }
+        }
     };
     // every point in motion, no symmetry
     let mut q: Vec<[f64; D]> = (0..body.points())

@@ -120,6 +120,7 @@ mod tests {
             partner: vec![1, 0, 2, 1],
             block: [1.0, 0.5, 1.0, 2.0].map(|c| [[c]]).to_vec(),
             carriers: None,
+            mass: None,
         }
     }
 
@@ -159,6 +160,7 @@ mod tests {
             partner: vec![1, 0],
             block: vec![c; 2],
             carriers: None,
+            mass: None,
         };
         assert_eq!(bond([[3.0, 0.0], [0.0, 0.0]]).soundness().rotation, 0.0);
         assert_eq!(bond([[3.0, 0.0], [0.0, 3.0]]).soundness().rotation, 1.0);

@@ -362,6 +362,7 @@ mod tests {
             partner: vec![1, 0, 2, 1],
             block: [2.0, 2.0, 0.0, 0.0].map(|c| [[c]]).to_vec(),
             carriers: None,
+            mass: None,
         };
         let mut support = Support::none(3);
         support.free[0][0] = false;

@@ -26,7 +26,7 @@ pub struct Conduction<'a, const D: usize> {
     /// Conductivity of the material of a slot.
     pub conductivity: &'a dyn Fn(usize) -> f64,
     /// `ω ν` of a bond between two slots of a length.
-    pub weight: &'a dyn Fn(usize, usize, f64) -> f64,
+    pub weight: &'a dyn Fn(usize, usize, &[f64], f64) -> f64,
     /// Place of the point in a slot.
     pub place: &'a [u32],
     /// Of a body that is exact at its surface; `None`: each end has the weighted volume of the bonds that it has.
@@ -92,7 +92,7 @@ impl Rows {
                 true => a,
                 false => 2.0 * a * b / (a + b),
             };
-            let weight = (of.weight)(i, j, square.sqrt());
+            let weight = (of.weight)(i, j, xi, square.sqrt());
             let factor = of.surface.as_ref().map_or(1.0, |s| (s.factor)(i, j, xi));
             let weight = weight * factor;
             let reach = k * (D as f64 * weight) * volume(i) * volume(j);

@@ -196,7 +196,7 @@ fn a_cut_of_one_image_cuts_both_directions() {
             body: &body,
             stencil: &stencil,
             law: BondBased { c: 1.0 },
-            weight: &|_| 1.0,
+            weight: &|_, _| 1.0,
             point_constants: PointConstants::None,
             toughness: vec![Toughness {
                 s00: f64::INFINITY,

@@ -131,7 +131,9 @@ fn sweeps_at_tiny_displacements_are_the_tangent_at_rest_of_torn_bodies() {
         }
         assert!(worst < 1e-11 * most, "{name}: {:e}", worst / most);
     }
-    for case in cases().iter().filter(|c| c.d() > 1) {
+    // functions of lengths that a deck writes may pull at rest: their statics takes assembled tangents
+    let at_peace = |c: &&Case| c.d() > 1 && c.material.name != "embedded";
+    for case in cases().iter().filter(at_peace) {
         for family in [FamilyChoice::Stencil, FamilyChoice::List] {
             let mut spec = case.spec();
             spec.family = family;

@@ -28,7 +28,8 @@ pub fn chain_omega2(spec: &Spec, sim: &mut dyn Simulation, theta: f64) -> f64 {
     let bonds: Vec<(f64, f64, f64)> = (1..=3)
         .map(|j| {
             let r = j as f64 * H;
-            let w = influence(spec.influence, r, horizon) * volume_fraction(r, horizon, H) * v;
+            let w =
+                influence(spec.influence, &[r], r, horizon) * volume_fraction(r, horizon, H) * v;
             (j as f64, r, w)
         })
         .collect();

@@ -61,8 +61,8 @@ fn same_as_stencil<const D: usize, W: Law>(
 ) -> Tally {
     let body = case.body();
     let cloud = body.to_cloud().unwrap();
-    let weight = |r0: f64| {
-        influence(case.influence, r0, case.delta()) * volume_fraction(r0, case.delta(), H)
+    let weight = |xi: &[f64; D], r0: f64| {
+        influence(case.influence, xi, r0, case.delta()) * volume_fraction(r0, case.delta(), H)
     };
     let mut stencil = StencilInteraction::new(StencilParts {
         body: &body,

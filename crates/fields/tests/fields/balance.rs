@@ -52,14 +52,33 @@ fn converges(name: &str, frame: &Frame, sites: &dyn Sites, method: &Method) {
         ("mass", all.map(|r| r.mass)),
         ("momentum", all.map(|r| r.momentum)),
         ("energy", all.map(|r| r.energy)),
+        ("internal energy", all.map(|r| r.internal_energy)),
+        ("coordinate", all.map(|r| r.coordinate)),
+        ("angular momentum", all.map(|r| r.angular_momentum)),
     ] {
+        // with one axis of y known no component of y × v is
+        if law == "angular momentum" && of[0].value.is_nan() && name == "averaged over a plane" {
+            continue;
+        }
         let order = order(of.map(|r| r.value));
         assert!((order - 2.0).abs() < 0.1, "{name} {law}: {order} {of:?}");
-        assert!(of[1].relative() < 0.02, "{name} {law}: {of:?}");
+        // of what follows from the laws the rate may be small
+        let follows = !["mass", "momentum", "energy"].contains(&law);
+        assert!(follows || of[1].relative() < 0.02, "{name} {law}: {of:?}");
     }
     // with exact rates of the instant the differences in space alone are left, of the size they should have
     let exact = of_frame(frame, sites, method, &points(frame), 0.02).unwrap();
-    for r in [exact.mass, exact.momentum, exact.energy] {
+    for r in [
+        exact.mass,
+        exact.momentum,
+        exact.energy,
+        exact.internal_energy,
+        exact.coordinate,
+        exact.angular_momentum,
+    ] {
+        if r.value.is_nan() && name == "averaged over a plane" {
+            continue;
+        }
         assert!((r.value / r.expected - 1.0).abs() < 0.2, "{name}: {r:?}");
         assert!(r.extrapolated < 0.1 * r.value, "{name}: {r:?}");
     }
@@ -106,6 +125,29 @@ const WRONG: [(&str, Signs); 4] = [
         },
     ),
 ];
+
+/// y is no material coordinate: the sign with which (4.0.72) is printed, and an angular momentum that takes y for material, leave what does not fall.
+#[test]
+fn what_y_is_short_of_a_material_coordinate_does_not_fall() {
+    let frame = gas(1);
+    let printed = Signs {
+        coordinate: -1.0,
+        ..RIGHT
+    };
+    let material = Signs {
+        torque: 0.0,
+        ..RIGHT
+    };
+    let [a, b] = halves(&frame, &pairs(), &smooth(), printed).map(|r| r.coordinate);
+    let [c, d] = halves(&frame, &pairs(), &smooth(), material).map(|r| r.angular_momentum);
+    for (far, near) in [(a, b), (c, d)] {
+        assert!(
+            order([far.value, near.value]).abs() < 0.1,
+            "{far:?} {near:?}"
+        );
+        assert!(near.value > 5.0 * near.expected, "{near:?}");
+    }
+}
 
 fn smooth() -> Method {
     method(Shape::Polynomial(5), 1.6)
@@ -285,11 +327,14 @@ fn averages_over_axes_balance() {
         .map(|x| cell.at(frame.cell.fraction(*x)))
         .collect();
     frame.cell = cell;
-    for axes in [[false, true, true], [false, false, true]] {
+    for (name, axes) in [
+        ("averaged over a plane", [false, true, true]),
+        ("averaged", [false, false, true]),
+    ] {
         let extents = frame.cell.extents(axes).unwrap();
         let kernel = peridyne_fields::Kernel::averaged(Shape::Polynomial(5), 1.6, extents).unwrap();
         let method = Method::new(kernel);
-        converges("averaged", &frame, &Triplets, &method);
+        converges(name, &frame, &Triplets, &method);
         // churning of whole planes is too little to be missed
         for (what, signs) in &WRONG[..3] {
             let signs = *signs;

@@ -195,7 +195,10 @@ fn a_diamond_lattice_has_fields() {
         &frame,
         &Triplets,
         &Targets::Grid([6; 3]),
-        &method(Shape::Polynomial(3), 2.0),
+        &Method {
+            coordinate: true,
+            ..method(Shape::Polynomial(3), 2.0)
+        },
     )
     .unwrap();
     for quantity in Quantity::ALL {

@@ -115,7 +115,8 @@ fn circle(reference: Frame, sites: &dyn Sites, length: f64, central: bool) {
     let body = peridynamic(&now, &states, &targets, &own);
     let atoms = evaluate(&now, sites, &targets, &own).unwrap();
     let largest = |x: &[f64]| x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    for quantity in Quantity::ALL {
+    let places = |q: &Quantity| Quantity::PLACES.contains(q);
+    for quantity in Quantity::ALL.into_iter().filter(|q| !places(q)) {
         let (a, b) = (body.get(quantity).unwrap(), atoms.get(quantity).unwrap());
         // what is 0 but for round-off, beside stress
         let size = largest(b).max(largest(atoms.get(Quantity::Stress).unwrap()));
@@ -169,6 +170,70 @@ fn embedded_atoms_as_a_peridynamic_body_have_the_stress_of_atoms() {
 fn fans_as_a_peridynamic_body_have_the_stress_of_atoms() {
     circle(gas(4), &Triplets, 1.0, false);
     circle(silicon(), &*stillinger_weber(), 2.0, false);
+}
+
+/// The averaged material, `T̄[x]⟨q − x⟩ = Σ_jk ∂U^(j)/∂x_k φ(x − X_j) φ(q − X_k)`: `∫{T̄[x]⟨q − x⟩ − T̄[q]⟨x − q⟩} dq = Σ F_j φ(x − X_j)`, with forces
+/// of the fields' own sums and `∫φ` by Simpson's rule.
+fn averaged(reference: Frame, sites: &dyn Sites, length: f64) {
+    let mut now = reference.clone();
+    let mut random = Random(13);
+    for x in &mut now.position {
+        let u = random.vector();
+        (0..3).for_each(|c| x[c] += 0.1 * length * u[c]);
+    }
+    let families = families(&reference, sites.reach() + 0.4 * length);
+    let (_, states) = states(&reference, &now, &families, sites);
+    let width = 1.4 * length;
+    let method = method(Shape::Polynomial(4), width);
+    let kernel = &method.kernel;
+    let radial = |n: usize| {
+        let r = width * n as f64 / 20_000.0;
+        4.0 * std::f64::consts::PI * r * r * kernel.value([r, 0.0, 0.0])
+    };
+    let whole: f64 = (0..10_000)
+        .map(|n| radial(2 * n) + 4.0 * radial(2 * n + 1) + radial(2 * n + 2))
+        .sum::<f64>()
+        * width
+        / 60_000.0;
+    assert!((whole - 1.0).abs() < 1e-13, "{whole}");
+    let all = evaluate(&now, sites, &Targets::Grid([2; 3]), &method).unwrap();
+    let images: Vec<[f64; 3]> = (0..125)
+        .map(|n| now.cell.shift([n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2]))
+        .collect();
+    let phi = |x: [f64; 3], y: [f64; 3]| {
+        let value = |s: &[f64; 3]| kernel.value(std::array::from_fn(|c| y[c] + s[c] - x[c]));
+        images.iter().map(value).sum::<f64>()
+    };
+    let [mut off, mut size] = [0.0f64; 2];
+    for _ in 0..20 {
+        let x = random.vector().map(|c| 2.0 * length * c);
+        let (mut left, mut right) = ([0.0; 3], [0.0; 3]);
+        for (i, _, y, own) in &states {
+            let from = now.position[*i];
+            let to = std::array::from_fn(|c| from[c] + y[c]);
+            // what the state of i says of i itself is on both sides alike
+            let weight = whole * (phi(x, from) - phi(x, to));
+            (0..3).for_each(|c| left[c] += weight * own[c]);
+        }
+        for (place, force) in now.position.iter().zip(&all.force) {
+            let weight = phi(x, *place);
+            (0..3).for_each(|c| right[c] += weight * force[c]);
+        }
+        for c in 0..3 {
+            off = off.max((left[c] - right[c]).abs());
+            size = size.max(right[c].abs());
+        }
+    }
+    println!("{off:e} of {size:e}");
+    assert!(size > 0.0 && off < 1e-12 * size, "{off:e} of {size:e}");
+}
+
+#[test]
+fn averaged_force_states_integrate_to_averaged_forces() {
+    averaged(gas(4), &pairs(), 1.0);
+    averaged(gas(4), &embedded(), 1.0);
+    averaged(gas(4), &Triplets, 1.0);
+    averaged(silicon(), &*stillinger_weber(), 2.0);
 }
 
 #[test]

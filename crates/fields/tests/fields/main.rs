@@ -7,5 +7,6 @@ mod duals;
 mod effort;
 mod force_states;
 mod pair_forces;
+mod places;
 mod sample;
 mod sums;

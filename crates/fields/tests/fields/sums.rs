@@ -248,7 +248,8 @@ fn small_cells_are_their_own_neighbours() {
             let targets = Targets::Points(vec![[0.3, 0.2, 0.1], [-4.0, 0.9, 2.0]]);
             let [a, b] =
                 [&small, &large].map(|f| evaluate(f, &Triplets, &targets, &method).unwrap());
-            for q in Quantity::ALL {
+            let places = |q: &Quantity| Quantity::PLACES.contains(q);
+            for q in Quantity::ALL.into_iter().filter(|q| !places(q)) {
                 let (a, b) = (a.get(q).unwrap(), b.get(q).unwrap());
                 let size = b.iter().fold(1.0f64, |m, x| m.max(x.abs()));
                 for (x, y) in a.iter().zip(b) {
@@ -263,7 +264,10 @@ fn small_cells_are_their_own_neighbours() {
 #[test]
 fn threads_and_ways_to_ask_do_not_show() {
     let frame = gas(2);
-    let method = method(Shape::QuarticSpline, 1.4);
+    let method = Method {
+        coordinate: true,
+        ..method(Shape::QuarticSpline, 1.4)
+    };
     let grid = Targets::Grid([5, 6, 7]);
     let run = |threads: usize, targets: &Targets| {
         let pool = rayon::ThreadPoolBuilder::new()
@@ -333,7 +337,10 @@ fn what_is_not_defined_is_said() {
     let mut frame = cluster(3, 1);
     let sites = Cluster { count: 3, seed: 1 };
     let targets = Targets::Points(vec![frame.position[0], [40.0, 0.0, 0.0]]);
-    let method = method(Shape::Polynomial(3), 1.0);
+    let method = Method {
+        coordinate: true,
+        ..method(Shape::Polynomial(3), 1.0)
+    };
     let fields = evaluate(&frame, &sites, &targets, &method).unwrap();
     for q in Quantity::ALL {
         let values = fields.get(q).unwrap();
@@ -359,6 +366,16 @@ fn what_is_not_defined_is_said() {
     let fields = evaluate(&frame, &sites, &targets, &method).unwrap();
     for q in Quantity::ALL {
         assert_eq!(fields.get(q).is_none(), q.moves(), "{q:?}");
+    }
+    // those of places where they are asked for
+    let method = Method {
+        coordinate: false,
+        ..method
+    };
+    let fields = evaluate(&cluster(3, 1), &sites, &targets, &method).unwrap();
+    for q in Quantity::ALL {
+        let own = Quantity::PLACES.contains(&q);
+        assert_eq!(fields.get(q).is_none(), own, "{q:?}");
     }
 }
 

@@ -9,6 +9,7 @@ use peridyne::spec::{FamilyChoice, Spec};
 use peridyne_fields::effort::{Effort, bonds_within};
 use peridyne_fields::fields::NO_TEMPERATURE;
 use peridyne_fields::molecules::Molecules;
+use peridyne_fields::neighbours::Families;
 use peridyne_fields::pairs::{self, Pull};
 use peridyne_fields::residuals::{self, Residuals};
 use peridyne_fields::{Cell, Fields, FieldsError, Frame, Kernel, Method, Quantity, Targets};
@@ -16,8 +17,12 @@ use std::sync::Arc;
 
 /// What forces are made of.
 enum Forces {
-    /// Atoms and their current neighbours.
-    Sites(Box<dyn Sites>, Option<Arc<Molecules>>),
+    /// Atoms, and what they keep: bonds of molecules, families of the reference.
+    Sites {
+        sites: Box<dyn Sites>,
+        molecules: Option<Arc<Molecules>>,
+        families: Option<Arc<Families>>,
+    },
     /// Bonds of a body.
     Bonds,
 }
@@ -52,12 +57,12 @@ impl Live {
         spec: &Spec,
         corner: [f64; 3],
     ) -> Result<Live, FieldsError> {
-        let atoms = spec.potential().is_some();
-        let current = match spec.family {
-            FamilyChoice::Auto | FamilyChoice::Neighbours => atoms,
+        let atoms = spec.potential().is_some() && spec.smooth.is_none();
+        let by_sites = match spec.family {
+            FamilyChoice::Auto | FamilyChoice::Neighbours | FamilyChoice::Reference => atoms,
             FamilyChoice::Stencil | FamilyChoice::List => false,
         };
-        let forces = match current {
+        let forces = match by_sites {
             false => Forces::Bonds,
             true => {
                 let sites = Shelf::standard()
@@ -66,7 +71,11 @@ impl Live {
                 let count = sim.info().points as usize;
                 let bonded = spec.bonded.as_deref().cloned();
                 let molecules = bonded.map(|b| Molecules::new(b, count)).transpose()?;
-                Forces::Sites(sites, molecules.map(Arc::new))
+                Forces::Sites {
+                    sites,
+                    molecules: molecules.map(Arc::new),
+                    families: None,
+                }
             }
         };
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
@@ -77,7 +86,7 @@ impl Live {
                 bounds[1][a] = bounds[1][a].max(x[a] + half);
             }
         }
-        Ok(Live {
+        let mut live = Live {
             forces,
             atoms,
             boltzmann: spec.boltzmann,
@@ -88,7 +97,18 @@ impl Live {
             periodic: spec.periodic,
             resting: spec.schedule.statics().is_some(),
             bounds,
-        })
+        };
+        if spec.family == FamilyChoice::Reference && atoms {
+            let mut reference = live.frame(sim, &live.cell(&Place::Points(vec![]))?);
+            reference.position = sim.vectors("reference");
+            // a whole number of spacings is meant inclusively
+            let horizon = sim.info().horizon * (1.0 + 1e-9);
+            let made = Families::new(&reference, horizon)?;
+            if let Forces::Sites { families, .. } = &mut live.forces {
+                *families = Some(Arc::new(made));
+            }
+        }
+        Ok(live)
     }
 
     /// Are its steps increments of load?
@@ -99,7 +119,8 @@ impl Live {
     /// Name of what pulls, for descriptions.
     pub fn source(&self) -> &'static str {
         match self.forces {
-            Forces::Sites(..) => "potential of the model, current neighbours",
+            Forces::Sites { families: None, .. } => "potential of the model, current neighbours",
+            Forces::Sites { .. } => "potential of the model, families of the reference",
             Forces::Bonds => "bonds of the model",
         }
     }
@@ -150,14 +171,23 @@ impl Live {
         let extents = cell.extents(asked.averaged)?;
         let made = Method {
             boltzmann: self.boltzmann,
+            coordinate: asked.coordinate,
             ..Method::new(Kernel::averaged(asked.shape, asked.width, extents)?)
         };
         let method = match (&asked.choice, &self.forces) {
-            (Some(choice), Forces::Sites(_, molecules)) => Method {
+            (
+                Some(choice),
+                Forces::Sites {
+                    molecules,
+                    families,
+                    ..
+                },
+            ) => Method {
                 partition: choice.partition.clone(),
                 pair_force: choice.pair_force,
                 by_part: choice.parts,
                 molecules: molecules.clone(),
+                families: families.clone(),
                 ..made
             },
             (Some(_), Forces::Bonds) | (None, _) => pairs::method(made),
@@ -179,7 +209,7 @@ impl Live {
     ) -> Effort {
         let frame = self.frame(sim, cell);
         let (bonds, reach) = match &self.forces {
-            Forces::Sites(sites, _) => (bonds_within(&frame, sites.reach()), sites.reach()),
+            Forces::Sites { sites, .. } => (bonds_within(&frame, sites.reach()), sites.reach()),
             Forces::Bonds => (0.5 * sim.info().directed_bonds as f64, 0.0),
         };
         Effort::of(&frame, bonds, reach, targets, method)
@@ -215,7 +245,7 @@ impl Live {
         method: &Method,
     ) -> Result<Fields, FieldsError> {
         let mut fields = match &self.forces {
-            Forces::Sites(sites, _) => {
+            Forces::Sites { sites, .. } => {
                 peridyne_fields::evaluate(frame, sites.as_ref(), targets, method)?
             }
             Forces::Bonds => of_bonds(sim, frame, targets, method)?,

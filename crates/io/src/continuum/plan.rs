@@ -28,6 +28,8 @@ pub struct FieldsSpec {
     pub film: bool,
     /// Write the pressure, too.
     pub pressure: bool,
+    /// Make y, its flux and the angular momentum, too.
+    pub coordinate: bool,
     /// Points at which residuals are measured.
     pub residuals: usize,
 }
@@ -77,13 +79,13 @@ impl FieldsSpec {
         let frames = if self.each { self.frames(steps) } else { 0 };
         // slices of stress and temperature
         let films = if self.film { 2 * self.frames(steps) } else { 0 };
-        PICTURE * films as f64 + bytes(self.place.points(), frames)
+        PICTURE * films as f64 + bytes(self.place.points(), frames, self.coordinate)
     }
 }
 
-/// What tables of so many points take at most: of means, of their errors, and of so many frames (bytes).
-pub fn bytes(points: u64, frames: u64) -> f64 {
-    let numbers: usize = Quantity::ALL.iter().map(|q| q.components()).sum();
+/// What tables of so many points take at most, with y and what goes with it or without: of means, of their errors, and of so many frames (bytes).
+pub fn bytes(points: u64, frames: u64, coordinate: bool) -> f64 {
+    let numbers = Quantity::numbers(coordinate);
     // 8 in an array, about 24 as text
     32.0 * numbers as f64 * points as f64 * (2.0 + frames as f64)
 }
@@ -109,6 +111,7 @@ mod tests {
             each: false,
             film: false,
             pressure: false,
+            coordinate: false,
             residuals: 0,
         };
         assert_eq!(asked.place.points(), 20);

@@ -79,6 +79,7 @@ pub fn foresee(
             let (made, missing): (Vec<_>, Vec<_>) = Quantity::ALL
                 .into_iter()
                 .filter(|q| asked.pressure || *q != Quantity::Pressure)
+                .filter(|q| asked.coordinate || !Quantity::PLACES.contains(q))
                 .partition(|q| fields.get(*q).is_some());
             Foreseen {
                 grid,

@@ -4,6 +4,7 @@ mod condition;
 mod crack;
 mod fields;
 mod indenter;
+mod influence;
 mod law;
 mod molecules;
 mod names;
@@ -17,12 +18,13 @@ use super::units::Dim;
 use super::value::{At, Named, Number, Or, Vector, Written};
 pub use condition::{Condition, Contact, Friction, Initial};
 pub use crack::{BondFactor, FlatShape, Healing, Precrack, Toughness};
-pub use fields::{Centre, Fields};
+pub use fields::{Centre, Fields, Smooth};
 pub use indenter::{Cohesion, Indenter, Rigid, Rotation};
+pub use influence::InfluenceWritten;
 pub use law::{Given, Law};
 pub use molecules::Molecules;
 pub use names::*;
-pub use output::{Output, Picture};
+pub use output::{Output, Picture, SpaceTimes};
 pub use region::{Mark, Periodic, Set, Shape};
 pub use run::{LoadCycles, MethodName, Probe, ReleaseName, Run, Safety, SolverName, Statics};
 use schemars::JsonSchema;
@@ -92,14 +94,17 @@ pub struct Document {
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub own_horizon: Option<Number>,
     /// constant for pmb and inverse for lps when left out.
-    pub influence: Option<InfluenceName>,
+    pub influence: Option<At<InfluenceWritten>>,
     /// Scale the partner's volume where its cell straddles the horizon; true when left out.
     pub volume_scaling: Option<bool>,
     /// discrete (the body really has the modulus asked for) when left out.
     pub calibration: Option<CalibrationName>,
-    /// auto when left out: a stencil on lattices, a list of a cloud, current neighbours of atoms. Atoms on a "stencil" keep
-    /// the neighbours they have in the lattice.
+    /// auto when left out: a stencil on lattices, a list of a cloud, current neighbours of atoms. "reference" makes a potential of any kind a
+    /// peridynamic material: atoms keep those that are within `horizon` in the reference, whatever they do, and members beyond the cut-off
+    /// add nothing. Atoms on a "stencil" keep the neighbours they have in the lattice.
     pub family: Option<FamilyName>,
+    /// Nodes that carry the atoms of family = "reference" along: the smoothed material. Left out: the atoms themselves move.
+    pub smooth: Option<At<Smooth>>,
     /// ["x"]: the body's region spans one period; or { x = "50 mm" }.
     pub periodic: Option<At<Periodic>>,
     /// Factors of bonds near the surface of a lattice body with a bond-based law; none when left out. exact: every uniform
@@ -164,7 +169,7 @@ pub struct Body {
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// Its own, instead of that of the deck; of several bodies only.
-    pub influence: Option<At<InfluenceName>>,
+    pub influence: Option<At<InfluenceWritten>>,
     /// Its own, stencil or list, instead of that of the deck; of several bodies only.
     pub family: Option<At<FamilyName>>,
     /// Lattice that fills the region; instead of a file.
@@ -220,7 +225,7 @@ pub struct Interface {
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// constant when left out.
-    pub influence: Option<InfluenceName>,
+    pub influence: Option<At<InfluenceWritten>>,
     /// When its bonds break; never when left out.
     pub fracture: Option<At<Fracture>>,
 }

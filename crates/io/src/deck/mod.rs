@@ -33,6 +33,7 @@ pub use units::{Constants, Dim, UnitSystem, counted, example, named, rounded, us
 
 use crate::continuum::plan::FieldsSpec;
 use crate::read::Cells;
+use crate::write::space_time::Window;
 use crate::write::trajectory::Format;
 use document::Document;
 use lower::{Entries, Files};
@@ -98,6 +99,8 @@ pub struct OutputSpec {
     pub history: Option<u64>,
     /// Pictures of the last state.
     pub pictures: Vec<PictureSpec>,
+    /// Fields of a body on a line over place and time.
+    pub space_time: Vec<SpaceTimeSpec>,
     /// `report.html` at the end.
     pub report: bool,
     /// Files of all frames of atoms.
@@ -128,6 +131,29 @@ pub struct PictureSpec {
     /// A vector field.
     pub arrows: Option<String>,
     pub film: bool,
+}
+
+/// A field over place and time that a deck asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpaceTimeSpec {
+    /// [`DENSITY`](crate::write::space_time::DENSITY) or a field of points.
+    pub field: String,
+    pub component: Option<String>,
+    /// Plain numbers of the deck.
+    pub range: Option<[f64; 2]>,
+    pub window: Window,
+}
+
+impl SpaceTimeSpec {
+    /// The whole of a field.
+    pub fn of(field: String) -> SpaceTimeSpec {
+        SpaceTimeSpec {
+            field,
+            component: None,
+            range: None,
+            window: Window::default(),
+        }
+    }
 }
 
 impl Deck {

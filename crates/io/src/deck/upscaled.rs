@@ -157,7 +157,10 @@ pub fn upscaled(
                 table.remove("horizon");
                 table.remove("family");
             }
-            FamilyChoice::Auto | FamilyChoice::Stencil | FamilyChoice::List => {
+            FamilyChoice::Auto
+            | FamilyChoice::Stencil
+            | FamilyChoice::List
+            | FamilyChoice::Reference => {
                 table.insert("family".into(), "stencil".into());
             }
         }
@@ -186,18 +189,21 @@ pub fn upscaled(
         let named = toml::to_string(&table).map_err(|e| e.to_string())?;
         files.retain(|(_, name)| named.contains(&**name));
     }
-    let run = inner(&mut table, "run").ok_or("the deck has no run")?;
-    if let TimeStep::Fixed(dt) = coarse.schedule.time_step {
-        run.insert("time_step".into(), plain(dt, Dim::TIME));
-    }
-    if let Some(end) = end {
-        run.remove("steps");
-        run.insert("duration".into(), plain(end, Dim::TIME));
-    } else if run.contains_key("steps") {
-        run.insert("steps".into(), Value::Integer(coarse.schedule.steps as i64));
+    // statics have increments of load, which stay
+    if let Some(run) = inner(&mut table, "run") {
+        if let TimeStep::Fixed(dt) = coarse.schedule.time_step {
+            run.insert("time_step".into(), plain(dt, Dim::TIME));
+        }
+        if let Some(end) = end {
+            run.remove("steps");
+            run.insert("duration".into(), plain(end, Dim::TIME));
+        } else if run.contains_key("steps") {
+            run.insert("steps".into(), Value::Integer(coarse.schedule.steps as i64));
+        }
     }
     let [before, after] = [&deck.spec, coarse].map(|spec| spec.schedule.steps as f64);
     let fewer = match deck.duration {
+        _ if deck.spec.schedule.statics().is_some() => 1.0,
         // their number is not known before they run
         Some(_) => 1.0 / f64::from(factor),
         None => after / before,

@@ -3,7 +3,7 @@
 use super::npz::Npz;
 use super::{Cells, Points, ReadError};
 use ndarray::{Array1, Array2, Array3};
-use peridyne::spec::{AnyLinearBody, Carriers, Cloud, LinearBody};
+use peridyne::spec::{AnyLinearBody, Carriers, Cloud, LinearBody, MassMatrix};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -47,6 +47,50 @@ struct Arrays {
     partner: Array1<i32>,
     block: Array3<f64>,
     loads: Option<Loads>,
+    masses: Option<Masses>,
+}
+
+/// Masses that couple points.
+struct Masses {
+    start: Array1<i64>,
+    partner: Array1<i32>,
+    block: Array3<f64>,
+}
+
+impl Masses {
+    fn read(file: &mut Npz) -> Result<Masses, String> {
+        Ok(Masses {
+            start: file.array("mass_start")?,
+            partner: file.array("mass_partner")?,
+            block: file.array("mass_block")?,
+        })
+    }
+
+    /// Of a body of `n` points in `d` dimensions.
+    fn check(&self, n: usize, d: usize) -> Result<(), String> {
+        let all = self.partner.len();
+        if self.start.len() != n + 1 || self.block.dim() != (all, d, d) {
+            return Err(format!(
+                "`mass_start` and `mass_block` do not belong to `mass_partner`: expected {} and ({all}, {d}, {d}) entries",
+                n + 1
+            ));
+        }
+        if self.start.iter().any(|s| *s < 0) || self.partner.iter().any(|p| *p < 0) {
+            return Err("`mass_start` and `mass_partner` must not be negative".into());
+        }
+        match self.block.iter().all(|x| x.is_finite()) {
+            true => Ok(()),
+            false => Err("`mass_block` must be finite".into()),
+        }
+    }
+
+    fn matrix<const D: usize>(&self) -> MassMatrix<D> {
+        MassMatrix {
+            start: self.start.iter().map(|s| *s as usize).collect(),
+            partner: self.partner.iter().map(|p| *p as u32).collect(),
+            block: blocks(&self.block),
+        }
+    }
 }
 
 /// Where the loads of a condensed body act.
@@ -145,6 +189,10 @@ impl Arrays {
                 true => Some(Loads::read(file)?),
                 false => None,
             },
+            masses: match file.has("mass_partner") {
+                true => Some(Masses::read(file)?),
+                false => None,
+            },
         };
         arrays.check()?;
         Ok(arrays)
@@ -208,6 +256,9 @@ impl Arrays {
                 before = j;
             }
         }
+        if let Some(masses) = &self.masses {
+            masses.check(n, d)?;
+        }
         match &self.loads {
             Some(loads) => loads.check(n, d),
             None => Ok(()),
@@ -228,8 +279,12 @@ impl Arrays {
             partner: self.partner.iter().map(|p| *p as u32).collect(),
             block: blocks(&self.block),
             carriers: self.loads.as_ref().map(Loads::carriers),
+            mass: self.masses.as_ref().map(Masses::matrix),
         };
-
+        if let Some(mass) = &body.mass {
+            mass.check(&body.masses())
+                .map_err(|e| format!("`mass_block`: {e}"))?;
+        }
         AnyLinearBody::new(body).ok_or_else(|| format!("{D} dimensions"))
     }
 
@@ -260,6 +315,7 @@ mod tests {
             partner: vec![1, 0, 2, 1],
             block: [1.0, 0.5, 1.0, 2.0].map(|c| [[c]]).to_vec(),
             carriers: None,
+            mass: None,
         }
     }
 
@@ -303,6 +359,43 @@ mod tests {
         write_linear(&path, &body).unwrap();
         let said = read(&path).unwrap_err().to_string();
         assert!(said.contains("`load_target` names point 3"), "{said}");
+    }
+
+    #[test]
+    fn masses_that_couple_points_are_kept_and_looked_at() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("body.npz");
+        let mut body = chain();
+        let own = body.masses();
+        body.mass = Some(MassMatrix {
+            start: vec![0, 2, 4, 5],
+            partner: vec![0, 1, 0, 1, 2],
+            block: [own[0] - 0.1, 0.1, 0.1, own[1] - 0.1, own[2]]
+                .map(|m| [[m]])
+                .to_vec(),
+        });
+        let back = |body: &LinearBody<1>| {
+            write_linear(&path, body).unwrap();
+            read(&path).map(|p| {
+                Arc::unwrap_or_clone(p.micromoduli.unwrap())
+                    .of::<1>()
+                    .unwrap()
+            })
+        };
+        assert_eq!(back(&body).unwrap(), body);
+        let changed = |change: fn(&mut MassMatrix<1>)| {
+            let mut body = body.clone();
+            change(body.mass.as_mut().unwrap());
+            back(&body).unwrap_err().to_string()
+        };
+        let said = changed(|m| m.block[1][0][0] = 0.2);
+        assert!(said.contains("not the same from both ends"), "{said}");
+        let said = changed(|m| m.block[4][0][0] += 0.2);
+        assert!(said.contains("the sum of all masses"), "{said}");
+        let said = changed(|m| m.partner[4] = 1);
+        assert!(said.contains("itself among them"), "{said}");
+        let said = changed(|m| m.start[3] = 4);
+        assert!(said.contains("`mass_block`"), "{said}");
     }
 
     #[test]

@@ -3,7 +3,10 @@
 use super::atomic::{WriteError, write_file};
 use super::plot::Plot;
 use crate::deck::{Dim, UnitSystem};
+use peridyne::spec::Influence;
+use peridyne_theory::gradient::comparison::Verdict;
 use peridyne_theory::upscale::card::{Card, Side};
+use peridyne_theory::upscale::kernels::Kernel;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -22,6 +25,60 @@ pub struct Measured {
     pub steps: [u64; 2],
     /// At which both are compared, the end of the coarse deck (time).
     pub time: f64,
+    /// Of both runs at the same times.
+    pub energies: Energies,
+}
+
+/// Energies of both runs over time, strain energy and total less those of the body at rest in its reference.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Energies {
+    /// Time; of statics t.
+    pub time: Vec<f64>,
+    /// `[fine, coarse][kinetic, strain, total]` at these times.
+    pub of: [[Vec<f64>; 3]; 2],
+}
+
+/// What the three energies are.
+pub const ENERGIES: [&str; 3] = ["kinetic", "strain", "total"];
+
+impl Energies {
+    /// The largest difference of both runs over time, over the largest value of the fine one; `None`: it has none.
+    pub fn differences(&self) -> [Option<f64>; 3] {
+        let [fine, coarse] = &self.of;
+        std::array::from_fn(|k| {
+            let size = fine[k].iter().fold(0.0f64, |m, e| m.max(e.abs()));
+            let apart = fine[k].iter().zip(&coarse[k]);
+            let apart = apart.fold(0.0f64, |m, (a, b)| m.max((b - a).abs()));
+            (size > 0.0).then(|| apart / size)
+        })
+    }
+
+    fn json(&self) -> Value {
+        let [fine, coarse] = self
+            .of
+            .each_ref()
+            .map(|e| json!({ "kinetic": e[0], "strain": e[1], "total": e[2] }));
+        let [kinetic, strain, total] = self.differences();
+        json!({
+            "time": self.time, "fine": fine, "coarse": coarse,
+            "largest_difference": { "kinetic": kinetic, "strain": strain, "total": total },
+        })
+    }
+}
+
+/// Words of decks.
+const INFLUENCES: [(Influence, &str); 5] = [
+    (Influence::Constant, "constant"),
+    (Influence::Inverse, "inverse"),
+    (Influence::Conical, "conical"),
+    (Influence::Gaussian, "gaussian"),
+    (Influence::CubicSpline, "cubic_spline"),
+];
+
+/// The word of decks, or that the deck has its own.
+pub fn influence_name(influence: Influence) -> &'static str {
+    let known = INFLUENCES.iter().find(|(known, _)| *known == influence);
+    known.map_or("the deck's", |(_, name)| name)
 }
 
 fn side(s: &Side) -> Value {
@@ -34,7 +91,31 @@ fn side(s: &Side) -> Value {
         "reference_energy_density": s.energy,
         "stiffness": s.stiffness,
         "zener_ratio": s.anisotropy,
+        "length_scale": s.length_scale,
         "unstable_waves": s.unstable,
+    })
+}
+
+fn upscaling(v: &Verdict) -> Value {
+    json!({
+        "equal_to_order": v.order,
+        "compared_to_order": v.compared,
+        "first_difference": v.difference.map(|(order, part)| json!({ "order": order, "relative": part })),
+        "all_in_the_limit_of_many_neighbours": v.limit,
+        "verdict": v.to_string(),
+    })
+}
+
+fn kernel(k: &Kernel) -> Value {
+    json!({
+        "influence": influence_name(k.influence),
+        "horizon": k.horizon,
+        "horizon_kept": k.kept,
+        "bonds_per_point": k.bonds,
+        "upscaling": upscaling(&k.verdict),
+        "difference_of_c4": k.fourth,
+        "length_scale": k.length_scale,
+        "wavelength_below_which_the_error_exceeds_1_percent": k.wavelength,
     })
 }
 
@@ -43,6 +124,8 @@ fn json(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Value {
         "factor": card.factor,
         "dimension": card.dimension,
         "kept": card.rule.describe(),
+        "upscaling": upscaling(&card.verdict),
+        "kernels": card.kernels.iter().map(kernel).collect::<Vec<_>>(),
         "fine": side(&card.fine),
         "coarse": side(&card.coarse),
         "energies": card.energies.iter().map(|e| json!({
@@ -72,6 +155,7 @@ fn json(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Value {
             "steps": m.steps,
             "time": m.time,
             "speed_up": m.seconds[0] / m.seconds[1],
+            "energies": m.energies.json(),
         })),
         "notes": card.notes.iter().map(|n| units.tell(n)).collect::<Vec<_>>(),
     })
@@ -92,6 +176,7 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
     for note in &card.notes {
         let _ = writeln!(t, "- {}", units.tell(note));
     }
+    let _ = writeln!(t, "\nGradient equations: {}.", card.verdict);
     t += "\n| | fine | coarse |\n|---|---:|---:|\n";
     let mut row = |name: &str, f: f64, c: f64, dim: Dim| {
         let (f, c) = (units.show(f, dim), units.show(c, dim));
@@ -138,6 +223,9 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
     if let (Some(f), Some(c)) = (card.fine.anisotropy, card.coarse.anisotropy) {
         row("Zener's ratio", f, c, Dim::NUMBER);
     }
+    if let (Some(f), Some(c)) = (card.fine.length_scale, card.coarse.length_scale) {
+        row("length scale √\\|c₄/c₂\\|", f, c, Dim::LENGTH);
+    }
     for g in &card.gradients {
         row(
             &format!("gradient coefficient of ∂^{}", g.order),
@@ -146,11 +234,11 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
             coefficient(g.order),
         );
     }
-    let _ = writeln!(
-        t,
-        "\nPredicted cost (points × bonds × steps, both at their stable step): 1 : {:.1}.\n",
-        card.cost
-    );
+    let what = match card.statics {
+        true => "points × bonds, of an iteration",
+        false => "points × bonds × steps, both at their stable step",
+    };
+    let _ = writeln!(t, "\nPredicted cost ({what}): 1 : {:.1}.\n", card.cost);
     t += "| direction | error | waves shorter than |\n|---|---:|---:|\n";
     for d in &card.dispersion {
         for (tolerance, wavelength) in &d.wavelengths {
@@ -163,6 +251,12 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
             });
             let _ = writeln!(t, "| {} | {} % | {text} |", d.direction, 100.0 * tolerance);
         }
+    }
+    if !card.kernels.is_empty() {
+        t += "\nKernels for the coarse model, each fitted to the same moduli, the best first:\n\n| influence | horizon | bonds | gradient equation | c₄ | length scale √\\|c₄/c₂\\| | 1 % waves shorter than |\n|---|---:|---:|---|---:|---:|---:|\n";
+    }
+    for row in kernel_rows(&card.kernels, units) {
+        let _ = writeln!(t, "| {} |", row.join(" | "));
     }
     t += "\n| strain | mode | energy density, fine | coarse | difference |\n|---:|---|---:|---:|---:|\n";
     for e in &card.energies {
@@ -204,9 +298,50 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
             100.0 * m.error,
             units.show(m.largest, Dim::LENGTH)
         );
+        let _ = writeln!(t, "\nThe {}.", energies_told(&m.energies));
     }
     t += "\n![dispersion](dispersion.png)\n\n![energy](energy.png)\n";
+    if measured.is_some_and(|m| m.energies.time.len() > 1) {
+        t += "\n![energies of both runs](energies.png)\n";
+    }
     t
+}
+
+/// Cells of the table of kernels: influence, horizon, bonds, gradient equation, c₄, length scale, wavelength of 1 %.
+pub fn kernel_rows(kernels: &[Kernel], units: UnitSystem) -> Vec<[String; 7]> {
+    let length = |l: f64| units.show(l, Dim::LENGTH);
+    let row = |k: &Kernel| {
+        [
+            influence_name(k.influence).to_string(),
+            format!(
+                "{}{}",
+                length(k.horizon),
+                if k.kept { " (kept)" } else { "" }
+            ),
+            k.bonds.to_string(),
+            k.verdict.equal(),
+            k.fourth
+                .map_or("–".into(), |f| format!("{:+.2} %", 100.0 * f)),
+            k.length_scale.map_or("–".into(), length),
+            k.wavelength.map_or("none".into(), length),
+        ]
+    };
+    kernels.iter().map(row).collect()
+}
+
+/// How far the energies of both runs are apart.
+pub fn energies_told(energies: &Energies) -> String {
+    let each = ENERGIES.iter().zip(energies.differences());
+    let each: Vec<String> = each
+        .filter_map(|(name, d)| Some(format!("{name} {:.3} %", 100.0 * d?)))
+        .collect();
+    match each.is_empty() {
+        true => "energies of both runs are zero".into(),
+        false => format!(
+            "energies of both runs differ over time by at most, of the largest: {}",
+            each.join(", ")
+        ),
+    }
 }
 
 /// Writes the card into `dir`; numbers of `card.md` and of pictures are in these units.
@@ -266,6 +401,22 @@ pub fn write(
     }
     if !card.energies.is_empty() {
         files.extend(plot.save(dir, "energy")?);
+    }
+    if let Some(m) = measured.filter(|m| m.energies.time.len() > 1) {
+        let time = match card.statics {
+            true => String::new(),
+            false => units.unit(Dim::TIME),
+        };
+        let mut plot = Plot::new("Energies of both runs, of the strain since the body at rest")
+            .x("t", &time)
+            .y("energy", &units.unit(Dim::ENERGY));
+        let [fine, coarse] = &m.energies.of;
+        for (k, name) in ENERGIES.iter().enumerate() {
+            plot = plot
+                .line(&format!("{name}, fine"), &m.energies.time, &fine[k])
+                .dashed(&format!("{name}, coarse"), &m.energies.time, &coarse[k]);
+        }
+        files.extend(plot.save(dir, "energies")?);
     }
     Ok(files)
 }

@@ -1,16 +1,16 @@
 //! Files of a conservation law: `frames.npz` (`x`, `t`, `u[frame, point]`), pictures, `run.json`.
 
 use super::atomic::{WriteError, write_file};
+use super::npz::write_npz;
 use super::picture::label;
 use super::plot::{ColorMap, Map, Plot};
 use super::run_json::{Setting, Status};
+use super::space_time::Drawing;
 use crate::deck::Dim;
 use crate::deck::conservation::LawDeck;
-use ndarray::{ArrayViewD, IxDyn};
-use ndarray_npy::NpzWriter;
-use peridyne_transport::{Grid, measure};
+use peridyne_transport::{Grid, measure, noll};
 use serde::Serialize;
-use std::io::{Cursor, Error, Write as _};
+use std::io::Write as _;
 use std::path::Path;
 
 /// States at times.
@@ -19,6 +19,10 @@ pub struct Frames {
     grid: Grid,
     times: Vec<f64>,
     values: Vec<f64>,
+    /// Of the local law, where the run compares itself with it.
+    exact: Vec<f64>,
+    /// Through the faces, where it is asked for.
+    flux: Vec<f64>,
 }
 
 impl Frames {
@@ -27,19 +31,26 @@ impl Frames {
             grid: *grid,
             times: vec![],
             values: vec![],
+            exact: vec![],
+            flux: vec![],
         }
     }
 
-    pub fn push(&mut self, time: f64, u: &[f64]) {
-        self.times.push(time);
-        self.values.extend_from_slice(u);
+    /// A state of the deck's law, with `exact` where the run compares itself with it.
+    pub fn push(&mut self, deck: &LawDeck, exact: Option<&[f64]>) {
+        let e = &deck.evolution;
+        self.times.push(e.time);
+        self.values.extend_from_slice(&e.u);
+        self.exact.extend_from_slice(exact.unwrap_or_default());
+        if deck.flux {
+            let flux = noll::through_faces(e.operator.law(), &e.u, e.time);
+            self.flux.extend_from_slice(&flux);
+        }
     }
 
-    /// The last state, unless it is there.
-    pub fn push_last(&mut self, time: f64, u: &[f64]) {
-        if self.times.last() != Some(&time) {
-            self.push(time, u);
-        }
+    /// Is there one of this time?
+    pub fn has(&self, time: f64) -> bool {
+        self.times.last() == Some(&time)
     }
 
     fn frame(&self, n: usize) -> &[f64] {
@@ -47,29 +58,31 @@ impl Frames {
         &self.values[n * points..][..points]
     }
 
-    /// `x` (of a plane `x[point, 2]`), `t`, `u[frame, point]`; points along x run fastest.
+    /// `x` (of a plane `x[point, 2]`), `t`, `u[frame, point]`; points along x run fastest. `exact[frame, point]`; `faces` and `flux[frame, face]`.
     ///
     /// # Errors
     /// The operating system's.
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
-        let bytes = self.archive().map_err(WriteError::at("write", path))?;
-        write_file(path, |w| w.write_all(&bytes))
-    }
-
-    fn archive(&self) -> Result<Vec<u8>, Error> {
-        let mut file = NpzWriter::new_compressed(Cursor::new(vec![]));
-        let mut add = |name: &str, values: &[f64], shape: &[usize]| -> Result<(), Error> {
-            let array = ArrayViewD::from_shape(IxDyn(shape), values).map_err(Error::other)?;
-            file.add_array(name, &array).map_err(Error::other)
-        };
         let (n, d) = (self.grid.points(), self.grid.dimension);
         let x: Vec<f64> = (0..n)
             .flat_map(|k| self.grid.place(k).into_iter().take(d))
             .collect();
-        add("x", &x, &[n, d][..if d == 1 { 1 } else { 2 }])?;
-        add("t", &self.times, &[self.times.len()])?;
-        add("u", &self.values, &[self.times.len(), n])?;
-        Ok(file.finish().map_err(Error::other)?.into_inner())
+        let rows = self.times.len();
+        let mut arrays: Vec<(&str, &[f64], Vec<usize>)> = vec![
+            ("x", &x, [n, d][..if d == 1 { 1 } else { 2 }].to_vec()),
+            ("t", &self.times, vec![rows]),
+            ("u", &self.values, vec![rows, n]),
+        ];
+        if !self.exact.is_empty() {
+            arrays.push(("exact", &self.exact, vec![rows, n]));
+        }
+        let Grid { low, spacing, .. } = self.grid;
+        let faces: Vec<f64> = (0..=n).map(|k| low[0] + spacing * k as f64).collect();
+        if !self.flux.is_empty() {
+            arrays.push(("faces", &faces, vec![n + 1]));
+            arrays.push(("flux", &self.flux, vec![rows, n + 1]));
+        }
+        write_npz(path, &arrays)
     }
 }
 
@@ -103,6 +116,10 @@ pub fn write_pictures(dir: &Path, deck: &LawDeck, frames: &Frames) -> Result<(),
         };
         let label = format!("t = {:.4} {time}", frames.times[f]);
         plot = plot.line(label.trim_end(), &x, &frames.frame(f)[middle..][..n]);
+        if let Some(exact) = frames.exact.get(f * n..(f + 1) * n) {
+            let label = if k == 0 { "local law" } else { "" };
+            plot = plot.dashed(label, &x, exact);
+        }
     }
     plot.save(dir, "profiles")?;
     let plane = rows > 1;
@@ -120,19 +137,57 @@ pub fn write_pictures(dir: &Path, deck: &LawDeck, frames: &Frames) -> Result<(),
         ),
         false => deck.title.clone(),
     };
-    let map = Map::new(title)
-        .x("x", &length, ends(0))
-        .value("u", &u)
-        .between(low, low + spread)
-        .colors(ColorMap::of([low, low + spread]));
+    let range = [low, low + spread];
+    let colors = ColorMap::of(range);
     if plane {
+        let map = Map::new(title)
+            .x("x", &length, ends(0))
+            .value("u", &u)
+            .between(range[0], range[1])
+            .colors(colors);
         let map = map.y("y", &length, ends(1)).equal().grid(n, last);
         map.save(dir, "last")?;
     } else if count > 1 {
-        let map = map.y("t", &time, [frames.times[0], frames.times[count - 1]]);
-        map.grid(n, &frames.values).save(dir, "space_time")?;
+        let drawing = Drawing {
+            title: &title,
+            x: ("x", &length, ends(0)),
+            t: (&time, [frames.times[0], frames.times[count - 1]]),
+            value: ("u", &u),
+            range,
+            colors,
+        };
+        drawing.map(n, &frames.values).save(dir, "space_time")?;
     }
     Ok(())
+}
+
+/// How far u is from the solution of the local law, over it: in the mean, the mean square and at most.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Compared {
+    pub with: &'static str,
+    pub time: f64,
+    pub error_l1: f64,
+    pub error_l2: f64,
+    pub error_max: f64,
+}
+
+impl Compared {
+    /// The state of now beside the solution `exact`.
+    pub fn new(deck: &LawDeck, exact: &[f64]) -> Option<Compared> {
+        let with = deck.reference.as_ref()?.solution().name();
+        let [error_l1, error_l2, error_max] = measure::relative_distances(&deck.evolution.u, exact);
+        Some(Compared {
+            with,
+            time: deck.evolution.time,
+            error_l1,
+            error_l2,
+            error_max,
+        })
+    }
+
+    pub fn errors(&self) -> [f64; 3] {
+        [self.error_l1, self.error_l2, self.error_max]
+    }
 }
 
 /// What `run.json` holds.
@@ -161,6 +216,9 @@ pub struct Report {
     pub time_error: Option<f64>,
     /// What they may add.
     pub time_error_allowed: Option<f64>,
+    /// How far u is from the solution of the local law at the end, where the run compares itself with it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compared: Option<Compared>,
     /// What looked wrong in the deck, and in the run.
     pub warnings: Vec<String>,
     /// What reports tell besides.

@@ -8,6 +8,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::atomic::WriteError;
+use super::folder::SPACE_TIME;
 use crate::read::vtu::collected;
 
 /// Names that are told in a warning.
@@ -86,6 +87,13 @@ pub fn sweep_pictures(dir: &Path) -> Result<(), WriteError> {
             .is_some_and(|stem| !stem.is_empty() && stem.chars().all(plain))
         {
             remove(dir, name)?;
+            // what is beside a field over place and time
+            for end in ["svg", "npz"]
+                .iter()
+                .filter(|_| name.starts_with(SPACE_TIME))
+            {
+                remove(dir, &name.replace(".png", &format!(".{end}")))?;
+            }
         }
     }
     Ok(())

@@ -97,6 +97,9 @@ const OWN: [&str; 14] = [
 /// What a script has written besides its results: a list of its files.
 pub const FILES: &str = "files.json";
 
+/// What names of fields over place and time begin with.
+pub const SPACE_TIME: &str = "space_time_";
+
 /// Is this the name of a file of the results that has its name whatever a deck or script says: the history, a frame, a
 /// picture, …?
 pub fn is_own(name: &Path) -> bool {
@@ -110,8 +113,13 @@ pub fn is_own(name: &Path) -> bool {
             .and_then(|n| n.strip_suffix(".vtu"));
         number.is_some_and(|n| n.bytes().all(|b| b.is_ascii_digit()))
     };
+    let over_time = ["png", "svg", "npz"].iter().any(|end| {
+        let stem = first.strip_suffix(end).and_then(|n| n.strip_suffix('.'));
+        stem.is_some_and(|n| n.starts_with(SPACE_TIME))
+    });
     // of those that are folders, all that is in them
-    OWN.contains(&first) || parts.next().is_none() && (frame("points_") || frame("bonds_"))
+    OWN.contains(&first)
+        || parts.next().is_none() && (frame("points_") || frame("bonds_") || over_time)
 }
 
 /// A name without the parts that say nothing (`./`).

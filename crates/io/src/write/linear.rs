@@ -7,6 +7,10 @@
 //! Bodies that were condensed with their loads say where these act: `load_position [M][D]`, `load_volume [M]` and
 //! `load_spacing [1]` of the points of the finest body, and the matrix that passes their forces on,
 //! `F_q = Σ_p T_qp F_p`: `load_start [M + 1]`, `load_target`, `load_block [..][D][D]`, one row per point p.
+//!
+//! Bodies whose masses couple points have the mass matrix, `F_i = Σ_j M_ij a_j`: `mass_start [N + 1]`, `mass_partner`,
+//! `mass_block [..][D][D]` (mass), one row per point with the point itself in it. Without these every point has its own mass alone,
+//! volume times density; with them these are the masses lumped, and the sum is the same.
 
 use super::atomic::{WriteError, write_file};
 use crate::read::source;
@@ -77,6 +81,17 @@ fn archive<const D: usize>(body: &LinearBody<D>) -> Result<Vec<u8>, Error> {
     };
     file.add_array("asymmetry", &column(&[asymmetry]))
         .map_err(bad)?;
+    if let Some(mass) = &body.mass {
+        let start: Vec<i64> = mass.start.iter().map(|s| *s as i64).collect();
+        file.add_array("mass_start", &Array1::from_vec(start))
+            .map_err(bad)?;
+        let partner: Vec<i32> = mass.partner.iter().map(|p| *p as i32).collect();
+        file.add_array("mass_partner", &Array1::from_vec(partner))
+            .map_err(bad)?;
+        let block = mass.block.iter().flatten().flatten().copied().collect();
+        let block = Array3::from_shape_vec((mass.partner.len(), D, D), block).map_err(shape)?;
+        file.add_array("mass_block", &block).map_err(bad)?;
+    }
     if let Some(carriers) = &body.carriers {
         let m = carriers.points();
         let position = carriers.position.iter().flatten().copied().collect();

@@ -102,6 +102,7 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         indenters: vec![],
         transfers: vec![],
         family: FamilyChoice::Auto,
+        smooth: None,
         preload: None,
         own_horizon: None,
         schedule: Schedule {

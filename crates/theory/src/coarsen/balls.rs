@@ -4,6 +4,7 @@ use super::ball::{Ball, Beyond, Scratch, Walk, walk};
 use super::block::{Block, unit};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
+use super::shapes::Shapes;
 use super::signature::{Looks, Signature, grain};
 use super::solve::{Effort, adjoint};
 use peridyne::spec::LinearBody;
@@ -22,6 +23,8 @@ pub(super) struct Task<'a, const D: usize> {
     pub asymmetry: f64,
     /// `[N]`: do loads act on this point?
     pub loaded: &'a [bool],
+    /// Are shapes of all removed points wanted?
+    pub shaped: bool,
 }
 
 /// What an elimination makes.
@@ -30,6 +33,8 @@ pub(super) struct Eliminated<const D: usize> {
     pub work: Work,
     /// `[N]` per loaded point: which coarse points its force reaches, ascending, and the part that does; empty for the others.
     pub pass: Vec<Vec<(u32, Block<D>)>>,
+    /// If they were wanted, or are there anyway.
+    pub shapes: Option<Shapes<D>>,
 }
 
 /// What the balls took.

@@ -196,8 +196,31 @@ pub(super) fn stable<const D: usize>(
         false => body.volume[i],
     };
     let mut dense = vec![0.0; n * n];
+    let coupled = body.mass.as_ref().filter(|_| massive);
     for (i, j, v) in entries {
-        dense[i * n + j] += v / mass(i / D);
+        dense[i * n + j] += match coupled {
+            Some(_) => v,
+            None => v / mass(i / D),
+        };
+    }
+    if let Some(masses) = coupled {
+        let mut lower = vec![];
+        for i in 0..body.points() {
+            let (partners, blocks) = masses.row(i);
+            for (&j, m) in partners.iter().zip(blocks) {
+                let all = (0..D * D).map(|k| (D * i + k / D, D * j as usize + k % D, k));
+                let of = |(r, c, k): (usize, usize, usize)| (r, c, m[k / D][k % D]);
+                lower.extend(all.map(of).filter(|(r, c, _)| c <= r));
+            }
+        }
+        let Ok(factors) = Factors::symmetric(n, &lower, |_| true) else {
+            return Ok(Stability::Unknown);
+        };
+        for j in 0..n {
+            let mut column: Vec<f64> = (0..n).map(|i| dense[i * n + j]).collect();
+            factors.solve(&mut column);
+            (0..n).for_each(|i| dense[i * n + j] = column[i]);
+        }
     }
     let Some(values) = eigenvalues(n, |i, j| dense[i * n + j]) else {
         return Ok(Stability::Unknown);

@@ -72,6 +72,7 @@ impl<const D: usize> Coupling<D> {
             partner: vec![],
             block: vec![],
             carriers: None,
+            mass: None,
         };
         for (row, v) in self.rows.iter().zip(&body.volume) {
             for (j, k) in row {

@@ -8,16 +8,12 @@
 
 use super::ball::{Beyond, Scratch};
 use super::balls::{Eliminated, Task};
-use super::block::{Block, add_product, largest, scaled, transposed, unit, zero};
+use super::block::{Block, add_product, largest, scaled, transposed, unit};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
+use super::shapes::Shapes;
 use super::small::solve_semidefinite;
 use rayon::prelude::*;
-
-/// Shapes, by removed point: retained points (by number in the coarse body, ascending) and `S_pq`.
-pub(super) struct Shapes<const D: usize> {
-    rows: Vec<Vec<(u32, Block<D>)>>,
-}
 
 pub(super) fn energy<const D: usize>(
     task: &Task<D>,
@@ -51,9 +47,10 @@ pub(super) fn energy<const D: usize>(
         .collect();
     let shapes = Shapes { rows };
     Ok(Eliminated {
-        coupling: galerkin(task, &shapes),
+        coupling: stiffness(task, &shapes),
         work: balls.work,
         pass,
+        shapes: Some(shapes),
     })
 }
 
@@ -117,90 +114,20 @@ fn carry_rigid_motions<const D: usize>(
     }
 }
 
-/// `Sᵀ K S`, column by column.
-fn galerkin<const D: usize>(task: &Task<D>, shapes: &Shapes<D>) -> Coupling<D> {
-    let (body, points) = (task.body, task.body.points());
-    let carriers = carriers(task, shapes);
-    let rows = (0..task.retained.len())
-        .into_par_iter()
-        .map_init(
-            || (Sparse::new(points), Sparse::new(task.retained.len())),
-            |(force, column), k| {
-                for &p in &carriers[k] {
-                    let row = &shapes.rows[p as usize];
-                    let Ok(at) = row.binary_search_by_key(&(k as u32), |r| r.0) else {
-                        continue;
-                    };
-                    let s = &row[at].1;
-                    let (partners, blocks) = body.row(p as usize);
-                    let v = body.volume[p as usize];
-                    for (&j, c) in partners.iter().zip(blocks) {
-                        let c = scaled(v, c);
-                        add_product(force.at(j), &transposed(&c), s);
-                        add_product(force.at(p), &scaled(-1.0, &c), s);
-                    }
-                }
-                force.drain(|p, f| {
-                    for (q, s) in &shapes.rows[p as usize] {
-                        add_product(column.at(*q), &transposed(s), &f);
-                    }
-                });
-                let mut row = vec![];
-                column.drain(|q, f| {
-                    if q as usize != k {
-                        row.push((q, transposed(&f)));
-                    }
-                });
-                row.sort_unstable_by_key(|r: &(u32, _)| r.0);
-                row
-            },
-        )
-        .collect();
+/// `Sᵀ K S`
+fn stiffness<const D: usize>(task: &Task<D>, shapes: &Shapes<D>) -> Coupling<D> {
+    let body = task.body;
+    let mut rows = shapes.galerkin(task.retained.len(), |p, s, force| {
+        let (partners, blocks) = body.row(p as usize);
+        let v = body.volume[p as usize];
+        for (&j, c) in partners.iter().zip(blocks) {
+            let c = scaled(v, c);
+            add_product(force.at(j), &transposed(&c), s);
+            add_product(force.at(p), &scaled(-1.0, &c), s);
+        }
+    });
+    for (k, row) in (0..).zip(&mut rows) {
+        row.retain(|(q, _)| *q != k);
+    }
     Coupling { rows }
-}
-
-/// Points that each shape reaches.
-fn carriers<const D: usize>(task: &Task<D>, shapes: &Shapes<D>) -> Vec<Vec<u32>> {
-    let mut carriers = vec![vec![]; task.retained.len()];
-    for (p, row) in (0..).zip(&shapes.rows) {
-        for (q, _) in row {
-            carriers[*q as usize].push(p);
-        }
-    }
-    carriers
-}
-
-/// Few blocks of many.
-struct Sparse<const D: usize> {
-    place: Vec<u32>,
-    touched: Vec<u32>,
-    value: Vec<Block<D>>,
-}
-
-impl<const D: usize> Sparse<D> {
-    fn new(n: usize) -> Sparse<D> {
-        Sparse {
-            place: vec![u32::MAX; n],
-            touched: vec![],
-            value: vec![],
-        }
-    }
-
-    fn at(&mut self, k: u32) -> &mut Block<D> {
-        let place = &mut self.place[k as usize];
-        if *place == u32::MAX {
-            *place = self.touched.len() as u32;
-            self.touched.push(k);
-            self.value.push(zero());
-        }
-        &mut self.value[*place as usize]
-    }
-
-    /// Gives all blocks in the order in which they were touched, and forgets them.
-    fn drain(&mut self, mut take: impl FnMut(u32, Block<D>)) {
-        for (k, v) in self.touched.drain(..).zip(self.value.drain(..)) {
-            self.place[k as usize] = u32::MAX;
-            take(k, v);
-        }
-    }
 }

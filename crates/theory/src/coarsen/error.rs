@@ -99,6 +99,14 @@ pub enum CoarsenError {
         limit: usize,
     },
     #[error(
+        "the exact elimination has {removed} removed and {retained} retained unknowns, and the masses that go with it need more than the {limit} numbers it may hold: coarsen by balls, or take lumped masses (--mass lumped)"
+    )]
+    ShapesTooLarge {
+        removed: usize,
+        retained: usize,
+        limit: usize,
+    },
+    #[error(
         "points do not lie on a lattice along axis {axis} (point {point} is off by {} of the spacing): choose by blue noise or mark points", rounded(*.off, 2)
     )]
     NotLattice { axis: usize, point: usize, off: f64 },

@@ -84,6 +84,7 @@ impl<const D: usize> LatticeBlock<D> {
             partner: vec![],
             block: vec![],
             carriers: None,
+            mass: None,
         };
         let offsets = offsets(self.reach);
         for i in &places {

@@ -15,6 +15,8 @@
 //! `b_q + Σ_e K_qe K_ee⁻¹ b_e`. Without, a load acts on the retained points alone, as in the paper, which has none on removed ones
 //! (5); with [`Volume::Kept`] the same force density is then the same force at every level.
 //!
+//! In motion removed points are carried by the shapes: [`Mass`].
+//!
 //! The balls' radius can be chosen by the effective modulus: [`Radius::Tolerance`]. Interior points of lattices share one ball.
 //! The result is a [`LinearBody`] again: it runs, and it can be coarsened further.
 
@@ -27,21 +29,25 @@ mod energy;
 mod error;
 pub mod exact;
 pub mod lattice;
+mod mass;
 mod mass_lumping;
 mod near;
 mod rows;
 mod schur;
 mod select;
+mod shapes;
 mod signature;
 mod small;
 mod solve;
 mod sublattice;
 #[cfg(test)]
 mod tests;
+pub mod waves;
 
 pub use balls::Work;
 pub use check::{DEFINITE_LIMIT, EIGEN_LIMIT, Stability};
 pub use error::CoarsenError;
+pub use mass::Mass;
 pub use mass_lumping::{Lumping, Volume};
 pub use schur::SCHUR_LIMIT;
 pub use select::Selection;
@@ -79,6 +85,7 @@ pub struct Options {
     pub scheme: Scheme,
     pub radius: Radius,
     pub volume: Volume,
+    pub mass: Mass,
     /// Makes action reaction where the rows do not: `K_ij ← ½ (K_ij + K_jiᵀ)`. Rotations of such a body may meet forces.
     pub symmetrise: bool,
     /// Largest force under a rigid rotation that is accepted, as [`Soundness::rotation`], beyond that of the body below.
@@ -91,6 +98,7 @@ impl Default for Options {
             scheme: Scheme::default(),
             radius: Radius::Tolerance(0.01),
             volume: Volume::default(),
+            mass: Mass::default(),
             symmetrise: false,
             rotation: 1e-3,
         }
@@ -172,6 +180,7 @@ pub fn coarsen<const D: usize>(
         range: body.range(),
         asymmetry: below.asymmetry,
         loaded: &loaded,
+        shaped: options.mass != Mass::Lumped,
     };
     let plan = Plan {
         task,
@@ -179,6 +188,7 @@ pub fn coarsen<const D: usize>(
         lumped: mass_lumping::lump_mass(body, &retained, &marked, spacing(body, retained.len())),
     };
     let (mut made, radius, convergence) = plan.converged()?;
+    made.body.mass = mass::matrix(&plan.task, made.shapes.take(), &made.body, options.mass);
     made.body.carriers = body.carriers.clone().map(|c| c.passed(&made.pass));
     check::connected(&made.coupling, &retained, &parts, radius)?;
     let soundness = made.body.soundness();
@@ -297,6 +307,7 @@ struct Made<const D: usize> {
     asymmetry: f64,
     work: Work,
     pass: Vec<Vec<(u32, block::Block<D>)>>,
+    shapes: Option<shapes::Shapes<D>>,
 }
 
 impl<const D: usize> Plan<'_, D> {
@@ -316,6 +327,7 @@ impl<const D: usize> Plan<'_, D> {
             coupling,
             work,
             pass,
+            shapes,
         } = match self.options.scheme {
             Scheme::Rows => rows::rows(task, radius)?,
             Scheme::Schur => schur::schur(task)?,
@@ -345,6 +357,7 @@ impl<const D: usize> Plan<'_, D> {
             asymmetry,
             work,
             pass,
+            shapes,
         })
     }
 

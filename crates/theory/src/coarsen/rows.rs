@@ -5,9 +5,10 @@
 
 use super::ball::Beyond;
 use super::balls::{Eliminated, Task};
-use super::block::{Block, add, inverse, product, zero};
+use super::block::{Block, add, inverse, product, transposed, unit, zero};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
+use super::shapes::Shapes;
 
 pub(super) fn rows<const D: usize>(
     task: &Task<D>,
@@ -23,7 +24,7 @@ pub(super) fn rows<const D: usize>(
             .collect();
         let loads: Vec<(u32, Block<D>)> = (walk.removed.iter().copied())
             .zip(solved.adjoint.iter().copied())
-            .filter(|(e, _)| task.loaded[*e as usize])
+            .filter(|(e, _)| task.shaped || task.loaded[*e as usize])
             .collect();
         (row, loads)
     });
@@ -36,7 +37,7 @@ pub(super) fn rows<const D: usize>(
         }
     }
     for (e, row) in pass.iter_mut().enumerate() {
-        if !task.loaded[e] || task.marked[e] {
+        if !(task.shaped || task.loaded[e]) || task.marked[e] {
             continue;
         }
         let mut sum = zero();
@@ -46,9 +47,30 @@ pub(super) fn rows<const D: usize>(
             *x = product(x, &all);
         }
     }
+    // what carries the force of a point moves it
+    let shapes = task.shaped.then(|| {
+        let rows = pass.iter().map(|row| {
+            row.iter()
+                .map(|(k, x)| (*k, transposed(x)))
+                .collect::<Vec<_>>()
+        });
+        let mut shapes = Shapes {
+            rows: rows.collect(),
+        };
+        for (k, &q) in (0..).zip(task.retained) {
+            shapes.rows[q as usize] = vec![(k, unit())];
+        }
+        shapes
+    });
+    for (e, row) in pass.iter_mut().enumerate() {
+        if !task.loaded[e] {
+            row.clear();
+        }
+    }
     Ok(Eliminated {
         coupling: Coupling::new(task.retained, coarse),
         work: balls.work,
         pass,
+        shapes,
     })
 }

@@ -1,9 +1,10 @@
 //! The exact elimination of all removed points at once: the reference for every ball and every number of levels.
 
 use super::balls::{Eliminated, Task, Work};
-use super::block::{Block, add_product, scaled, transposed, zero};
+use super::block::{Block, add_product, scaled, transposed, unit, zero};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
+use super::shapes::Shapes;
 use super::solve::SYMMETRIC;
 use peridyne::error::SolveError;
 use peridyne::statics::{Direct, Support};
@@ -31,6 +32,13 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, Coa
             limit: SCHUR_LIMIT,
         });
     }
+    if task.shaped && n * m > SCHUR_LIMIT {
+        return Err(CoarsenError::ShapesTooLarge {
+            removed: n,
+            retained: m,
+            limit: SCHUR_LIMIT,
+        });
+    }
     let support = Support {
         free: task.marked.iter().map(|held| [!held; D]).collect(),
     };
@@ -47,7 +55,7 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, Coa
         Err(_) => return Err(CoarsenError::IndefiniteBody),
     };
     // one column of the coarse stiffness after the other: the forces on retained points when one is displaced
-    let column = |q: u32| -> Option<Vec<Block<D>>> {
+    let column = |q: u32| -> Option<(Vec<Block<D>>, Vec<Block<D>>)> {
         let mut displaced = vec![zero::<D>(); body.points()];
         for b in 0..D {
             let mut u = match &factors {
@@ -76,12 +84,24 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, Coa
             .as_flattened()
             .iter()
             .all(|x| x.is_finite());
-        finite.then_some(blocks)
+        let shape = match task.shaped {
+            true => displaced,
+            false => vec![],
+        };
+        finite.then_some((blocks, shape))
     };
-    let columns: Vec<Option<Vec<Block<D>>>> = retained.par_iter().map(|q| column(*q)).collect();
+    let columns: Vec<Option<_>> = retained.par_iter().map(|q| column(*q)).collect();
     let mut rows = vec![Vec::with_capacity(retained.len() - 1); retained.len()];
+    let mut shapes = vec![vec![]; body.points()];
     for (q, blocks) in columns.into_iter().enumerate() {
-        let blocks = blocks.ok_or(CoarsenError::IndefiniteBody)?;
+        let (blocks, shape) = blocks.ok_or(CoarsenError::IndefiniteBody)?;
+        for (p, s) in shape
+            .into_iter()
+            .enumerate()
+            .filter(|(p, _)| !task.marked[*p])
+        {
+            shapes[p].push((q as u32, s));
+        }
         for (i, block) in blocks.into_iter().enumerate().filter(|(i, _)| *i != q) {
             rows[i].push((q as u32, block));
         }
@@ -105,10 +125,14 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, Coa
         points: body.points(),
         ..Work::default()
     };
+    for (k, &q) in (0..).zip(retained) {
+        shapes[q as usize] = vec![(k, unit())];
+    }
     Ok(Eliminated {
         coupling: Coupling { rows },
         work,
         pass,
+        shapes: task.shaped.then_some(Shapes { rows: shapes }),
     })
 }
 

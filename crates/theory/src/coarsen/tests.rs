@@ -2,6 +2,7 @@ mod bodies;
 mod errors;
 mod exactness;
 mod loads;
+mod motion;
 mod published;
 mod schemes;
 mod selection;

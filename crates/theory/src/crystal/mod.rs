@@ -121,6 +121,10 @@ pub enum CrystalError {
         "waves, stability and upscaling are not known of the law {0}: they take pmb, lps, springs and potentials"
     )]
     Shelved(String),
+    #[error(
+        "waves and constants of lps are known where its influence function is the same from both ends of a bond, ω(ξ) = ω(−ξ)"
+    )]
+    Directed,
     /// Materials that lie anyhow.
     #[error(
         "the materials do not repeat within the body: plane waves are those of a periodic crystal. Name sublattices by the sites of the \

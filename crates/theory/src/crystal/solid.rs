@@ -5,7 +5,7 @@
 use super::cells::{links, primitive};
 use super::{Bond, Crystal, CrystalError, positive};
 use peridyne::family::volume_fraction;
-use peridyne::law::influence::influence;
+use peridyne::law::influence::mean_influence;
 use peridyne::law::micromodulus::{Moments, micromodulus};
 use peridyne::law::solid::eam_like::Solid;
 use peridyne::space::lattice::LatticeKind;
@@ -56,9 +56,10 @@ impl LatticeSolid {
         self.spacing * self.kind.site_volume().powf(1.0 / d)
     }
 
-    /// `ω ν V` of a bond.
-    fn weight(&self, r0: f64) -> f64 {
-        influence(self.influence, r0, self.delta()) * self.fraction(r0) * self.volume()
+    /// `ω ν V` of a bond, the mean of both ends.
+    fn weight<const D: usize>(&self, xi: &[f64; D], r0: f64) -> f64 {
+        let omega = mean_influence(self.influence, xi, r0, self.delta());
+        omega * self.fraction(r0) * self.volume()
     }
 
     /// ν
@@ -71,7 +72,7 @@ impl LatticeSolid {
 
     /// Sums over a family: `Σ ω ν V r0`, `Σ ω ν V r0²`, `Σ ν V r0`.
     pub fn moments<const D: usize>(&self) -> Result<Moments, CrystalError> {
-        let bare = self.bonds::<D>(|_| [0.0; 2])?;
+        let bare = self.bonds::<D>(|_, _| [0.0; 2])?;
         let mut m = Moments {
             first: 0.0,
             second: 0.0,
@@ -79,17 +80,18 @@ impl LatticeSolid {
         };
         for b in bare.bonds.iter().filter(|b| b.from == 0) {
             let r = b.length();
-            m.first += self.weight(r) * r;
-            m.second += self.weight(r) * r * r;
+            let weight = self.weight(&b.xi, r);
+            m.first += weight * r;
+            m.second += weight * r * r;
             m.bare += self.fraction(r) * self.volume() * r;
         }
         Ok(m)
     }
 
-    /// Bonds with `[stiffness, share]` by reference length.
+    /// Bonds with `[stiffness, share]` by ξ and its length.
     fn bonds<const D: usize>(
         &self,
-        law: impl Fn(f64) -> [f64; 2],
+        law: impl Fn(&[f64; D], f64) -> [f64; 2],
     ) -> Result<Crystal<D>, CrystalError> {
         positive("the lattice spacing", self.spacing)?;
         positive("the density", self.density)?;
@@ -112,11 +114,13 @@ impl LatticeSolid {
             bonds: links
                 .iter()
                 .map(|l| {
-                    let [stiffness, share] = law(self.spacing * (l.squared as f64).sqrt() / 4.0);
+                    let xi = l.offset.map(|x| x * self.spacing);
+                    let length = self.spacing * (l.squared as f64).sqrt() / 4.0;
+                    let [stiffness, share] = law(&xi, length);
                     Bond {
                         from: l.from,
                         to: l.to,
-                        xi: l.offset.map(|x| x * self.spacing),
+                        xi,
                         tension: 0.0,
                         stiffness,
                         share,
@@ -129,15 +133,19 @@ impl LatticeSolid {
     /// Bond-based (PMB) solid of micromodulus c: `stiffness = c ω ν V² / r0`.
     pub fn bond_based<const D: usize>(&self, c: f64) -> Result<Crystal<D>, CrystalError> {
         let v = self.volume();
-        self.bonds(|r| [c * self.weight(r) * v / r, 0.0])
+        self.bonds(|xi, r| [c * self.weight(xi, r) * v / r, 0.0])
     }
 
     /// EAM-like solid (LPS): `stiffness = 2β ω ν V²/m`, `share = n ω ν V r0/m`, `F″ = κV`.
     pub fn state_based<const D: usize>(&self, solid: Solid) -> Result<Crystal<D>, CrystalError> {
+        // the shares of a bond's ends would differ, which waves do not know
+        if self.influence.is_directed() {
+            return Err(CrystalError::Directed);
+        }
         let v = self.volume();
         let m = self.moments::<D>()?.second;
-        let mut crystal = self.bonds::<D>(|r| {
-            let w = self.weight(r);
+        let mut crystal = self.bonds::<D>(|xi, r| {
+            let w = self.weight(xi, r);
             [2.0 * solid.beta * w * v / m, solid.n * w * r / m]
         })?;
         crystal.curvature.fill(solid.kappa * v);

@@ -25,6 +25,87 @@ pub struct Comparison<F> {
     pub rows: Vec<Row<F>>,
 }
 
+/// To which gradient order two models are upscalings of each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// The order to which all coefficients are equal; 0: not even long waves are alike.
+    pub order: usize,
+    /// The last order compared.
+    pub compared: usize,
+    /// The first order that differs, and by what part of its largest coefficient.
+    pub difference: Option<(usize, f64)>,
+    /// Are all orders equal in the limit of many neighbours within one horizon? Both are sums over the points of one integral there.
+    pub limit: bool,
+}
+
+impl Verdict {
+    /// Of relative differences by order, which are equal up to `tolerance`; of several of one order the largest counts.
+    pub fn of(differences: &[(usize, f64)], tolerance: f64, limit: bool) -> Verdict {
+        let mut orders: Vec<usize> = differences.iter().map(|(order, _)| *order).collect();
+        orders.sort_unstable();
+        orders.dedup();
+        let largest = |order: usize| {
+            let of = differences.iter().filter(|(o, _)| *o == order);
+            of.map(|(_, d)| *d).fold(0.0, f64::max)
+        };
+        let apart = |order: &&usize| largest(**order) > tolerance;
+        let first = orders.iter().find(apart);
+        let before = |order: usize| orders.iter().rev().find(|o| **o < order);
+        Verdict {
+            order: match first {
+                Some(first) => before(*first).copied().unwrap_or(0),
+                None => orders.last().copied().unwrap_or(0),
+            },
+            compared: orders.last().copied().unwrap_or(0),
+            difference: first.map(|order| (*order, largest(*order))),
+            limit,
+        }
+    }
+
+    /// As "equal to order 2 (in the limit of many neighbours: all)".
+    pub fn equal(&self) -> String {
+        let limit = match self.limit {
+            true if self.difference.is_some() => " (in the limit of many neighbours: all)",
+            _ => "",
+        };
+        match self.order {
+            0 => format!("equal to no order{limit}"),
+            n if self.difference.is_none() => format!("equal to order {n}, the last compared"),
+            n => format!("equal to order {n}{limit}"),
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.equal())?;
+        match self.difference {
+            None => Ok(()),
+            Some((2, d)) => write!(f, "; long waves differ by {} %", rounded(100.0 * d, 4)),
+            Some((n, d)) => write!(f, "; order {n} differs by {} %", rounded(100.0 * d, 4)),
+        }
+    }
+}
+
+/// Relative differences by order of coefficients in any number of dimensions, `[p][component]` of order 2p + 2: the largest over the largest
+/// coefficient of that order.
+pub fn differences(left: &[Vec<f64>], right: &[Vec<f64>]) -> Vec<(usize, f64)> {
+    let size = |c: &[f64]| c.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let orders = left.iter().zip(right).enumerate();
+    let relative = |(p, (l, r)): (usize, (&Vec<f64>, &Vec<f64>))| {
+        let apart: Vec<f64> = l.iter().zip(r).map(|(l, r)| l - r).collect();
+        let scale = size(l).max(size(r));
+        // where neither has this order they are equal in it
+        let part = if scale == 0.0 {
+            0.0
+        } else {
+            size(&apart) / scale
+        };
+        (2 * p + 2, part)
+    };
+    orders.map(relative).collect()
+}
+
 /// Compare order by order. `tolerance` is relative; 0 asks for equality, which fractions can meet.
 pub fn compare<F: Field>(
     left: &Expansion<F>,
@@ -56,6 +137,11 @@ fn largest<F: Field>(p: &JetPolynomial<F>) -> f64 {
 }
 
 impl<F> Comparison<F> {
+    /// Relative differences by order.
+    pub fn differences(&self) -> Vec<(usize, f64)> {
+        self.rows.iter().map(|r| (r.order, r.relative)).collect()
+    }
+
     /// The gradient order to which the models agree: 0 if not even in long waves.
     pub fn equal_to_order(&self) -> usize {
         self.rows
@@ -130,6 +216,30 @@ mod tests {
                 d(512) / d(1024)
             );
         }
+    }
+
+    #[test]
+    fn a_verdict_is_the_order_before_the_first_that_differs() {
+        let rows = [(2, 1e-14), (4, 0.1), (2, 3e-13), (4, 0.75), (6, 0.0)];
+        let v = Verdict::of(&rows, 1e-9, true);
+        assert_eq!((v.order, v.compared, v.difference), (2, 6, Some((4, 0.75))));
+        assert_eq!(
+            v.to_string(),
+            "equal to order 2 (in the limit of many neighbours: all); order 4 differs by 75 %"
+        );
+        let v = Verdict::of(&[(2, 0.02), (4, 0.0)], 1e-9, false);
+        assert_eq!(
+            (v.order, v.to_string().as_str()),
+            (0, "equal to no order; long waves differ by 2 %")
+        );
+        let v = Verdict::of(&[(2, 0.0), (4, 0.0)], 1e-9, true);
+        assert_eq!(v.to_string(), "equal to order 4, the last compared");
+        // of two components of order 4 one differs by 1 of 8
+        let [l, r] = [
+            [vec![1.0, 0.0], vec![8.0, 2.0]],
+            [vec![1.0, 0.0], vec![8.0, 3.0]],
+        ];
+        assert_eq!(differences(&l, &r), [(2, 0.0), (4, 0.125)]);
     }
 
     #[test]

@@ -28,7 +28,10 @@ pub fn fractions(spec: &Spec, terms: usize) -> Option<Vec<Q>> {
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Constant) => Some(Q::ratio(1, 1)),
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Inverse) => Some(Q::ratio(1, j)),
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Conical) => Some(Q::ratio(m - j, m)),
-        (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Gaussian | Influence::CubicSpline)
+        (
+            LawSpec::Pmb(_) | LawSpec::Springs(_),
+            Influence::Gaussian | Influence::CubicSpline | Influence::Formula(_),
+        )
         | (
             LawSpec::Lps(_)
             | LawSpec::LpsAsTyped { .. }

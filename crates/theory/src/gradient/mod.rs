@@ -23,6 +23,15 @@ pub struct Expansion<F> {
     pub orders: Vec<JetPolynomial<F>>,
 }
 
+/// The length scale of a gradient equation `ρ ü = c₂ u″ + c₄ u⁗ + …`: `L = √|c₄/c₂|` (length; seleson2009 (3.2), where b is −c₄). Waves much longer than L
+/// do not know it. `None`: one of them is missing.
+pub fn length_scale(coefficients: &[f64]) -> Option<f64> {
+    match coefficients {
+        [c2, c4, ..] if *c2 != 0.0 => Some((c4 / c2).abs().sqrt()),
+        _ => None,
+    }
+}
+
 impl<F: Field> Expansion<F> {
     /// `Σ_p c_p ∂^{2p+2} y`.
     pub fn linear(coefficients: &[F]) -> Self {

@@ -3,6 +3,7 @@
 use crate::crystal::Crystal;
 use crate::dispersion::verlet_frequency;
 use crate::dispersion::zone::{SpecialPoint, path};
+use crate::gradient::length_scale;
 use std::f64::consts::PI;
 
 /// Steps along each line of the path.
@@ -64,6 +65,11 @@ impl Direction {
                 .sum()
         };
         self.gradients.iter().map(of).collect()
+    }
+
+    /// Of longitudinal waves (length).
+    pub fn length_scale(&self) -> Option<f64> {
+        length_scale(&self.longitudinal())
     }
 }
 

@@ -1,10 +1,13 @@
 //! The error card of an upscaling: what both models say of the same crystal, side by side.
 
 use super::atoms::{Atoms, has_basis_or_fans};
+use super::kernels::Kernel;
+use super::verdict::{EQUAL, directions, linear_differences, shortest};
 use super::{Rule, UpscaleError, crystal, lattice};
 use crate::crystal::Crystal;
 use crate::exact::polynomial::Monomial;
-use crate::gradient::nonlinear;
+use crate::gradient::comparison::{Verdict, compare};
+use crate::gradient::{Expansion, length_scale, nonlinear};
 use crate::lattice_dynamics::{NONLINEAR_TERMS, STRETCHES};
 use peridyne::message;
 use peridyne::quantity::{Dimension, Message};
@@ -31,6 +34,8 @@ pub struct Side {
     pub stiffness: Vec<Vec<f64>>,
     /// Zener's ratio 2 c44/(c11 − c12) of cubic crystals.
     pub anisotropy: Option<f64>,
+    /// √|c₄/c₂| of longitudinal waves along x (length); `None` with several sites per cell.
+    pub length_scale: Option<f64>,
     /// Slowest growing wave that does not oscillate but grows: its part of all waves, if there is one.
     pub unstable: Option<f64>,
 }
@@ -83,12 +88,18 @@ pub struct Card {
     pub rule: Rule,
     pub fine: Side,
     pub coarse: Side,
+    /// Are they upscalings of each other? By the gradient equations along all symmetry directions; of chains of atoms by the nonlinear ones, too; with
+    /// several sites per cell by the elastic constants alone.
+    pub verdict: Verdict,
+    /// Influence functions for the coarse model; empty where nobody asked.
+    pub kernels: Vec<Kernel>,
     pub energies: Vec<EnergyRow>,
     pub gradients: Vec<GradientRow>,
     pub nonlinear: Vec<NonlinearRow>,
     pub dispersion: Vec<Dispersion>,
-    /// Points × bonds × steps of the fine model over those of the coarse, both at their stable steps.
+    /// Points × bonds × steps of the fine model over those of the coarse, both at their stable steps; in statics points × bonds.
     pub cost: f64,
+    pub statics: bool,
     /// Where the upscaling is not valid, in words.
     pub notes: Vec<Message>,
 }
@@ -158,20 +169,8 @@ fn card_in<const D: usize>(
         notes.push("Neighbours are those of the reference: beyond a compression of a tenth some that would enter are missing; bonds never change partners (no diffusion, melting, slip).".into());
     }
     let energies = energies(fine, coarse, &mut notes);
-    let directions: Vec<(String, [f64; D])> = match D {
-        1 => vec![("x".into(), [1.0; D])],
-        2 => vec![
-            ("[10]".into(), unit(&[1.0, 0.0])),
-            ("[11]".into(), unit(&[1.0, 1.0])),
-        ],
-        _ => vec![
-            ("[100]".into(), unit(&[1.0, 0.0, 0.0])),
-            ("[110]".into(), unit(&[1.0, 1.0, 0.0])),
-            ("[111]".into(), unit(&[1.0, 1.0, 1.0])),
-        ],
-    };
-    let (kind, spacing) = lattice(coarse)?;
-    let end = PI / (spacing * kind.nearest());
+    let directions = directions::<D>();
+    let end = shortest(coarse)?;
     let dispersion = directions
         .iter()
         .map(|(name, n)| waves(name, *n, &a, &b, end))
@@ -192,20 +191,32 @@ fn card_in<const D: usize>(
             .collect(),
         _ => vec![],
     };
-    let cost = |s: &Side| s.points * s.bonds as f64 / s.stable_step;
+    let statics = fine.schedule.statics().is_some();
+    let cost = |s: &Side| match statics {
+        true => s.points * s.bonds as f64,
+        false => s.points * s.bonds as f64 / s.stable_step,
+    };
+    let stretched = match (D, &a_reference) {
+        (1, Some(_)) => of_stretches(fine, coarse)?,
+        _ => vec![],
+    };
+    let mut apart = linear_differences(&a, &b, [&left.stiffness, &right.stiffness]);
+    for (_, fine, coarse) in &stretched {
+        apart.extend(compare(fine, coarse, EQUAL).differences());
+    }
     Ok(Card {
         factor,
         dimension: D,
         rule,
         cost: cost(&left) / cost(&right),
+        statics,
+        verdict: Verdict::of(&apart, EQUAL, rule == Rule::Horizon),
+        kernels: vec![],
         fine: left,
         coarse: right,
         energies,
         gradients,
-        nonlinear: match (D, &a_reference) {
-            (1, Some(_)) => nonlinear_rows(fine, coarse)?,
-            _ => vec![],
-        },
+        nonlinear: nonlinear_rows(&stretched),
         dispersion,
         notes,
     })
@@ -232,20 +243,28 @@ fn optical<const D: usize>(fine: &Crystal<D>, factor: u32) -> Message {
     ]
 }
 
-/// Of both models, where both have a value.
-fn nonlinear_rows(fine: &Spec, coarse: &Spec) -> Result<Vec<NonlinearRow>, UpscaleError> {
+/// A stretch y′ and the nonlinear gradient equations of both models there.
+type Stretched = (f64, Expansion<f64>, Expansion<f64>);
+
+/// Where both have a value.
+fn of_stretches(fine: &Spec, coarse: &Spec) -> Result<Vec<Stretched>, UpscaleError> {
     let [fine, coarse] =
         [fine, coarse].map(|spec| nonlinear::of_spec(spec, &STRETCHES, NONLINEAR_TERMS));
     let coarse = coarse?;
+    let both = fine?.into_iter().filter_map(|(stretch, fine)| {
+        let (_, coarse) = coarse.iter().find(|(s, _)| *s == stretch)?;
+        Some((stretch, fine, coarse.clone()))
+    });
+    Ok(both.collect())
+}
+
+fn nonlinear_rows(stretched: &[Stretched]) -> Vec<NonlinearRow> {
     let mut rows = vec![];
-    for (stretch, fine) in fine? {
-        let Some((_, coarse)) = coarse.iter().find(|(s, _)| *s == stretch) else {
-            continue;
-        };
+    for (stretch, fine, coarse) in stretched {
         for (p, (a, b)) in fine.orders.iter().zip(&coarse.orders).enumerate() {
             let terms: BTreeSet<&Monomial> = a.terms().chain(b.terms()).map(|(m, _)| m).collect();
             rows.extend(terms.into_iter().map(|m| NonlinearRow {
-                stretch,
+                stretch: *stretch,
                 order: 2 * p + 2,
                 term: m.to_string(),
                 fine: a.of(m),
@@ -253,12 +272,7 @@ fn nonlinear_rows(fine: &Spec, coarse: &Spec) -> Result<Vec<NonlinearRow>, Upsca
             }));
         }
     }
-    Ok(rows)
-}
-
-fn unit<const D: usize>(v: &[f64]) -> [f64; D] {
-    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    std::array::from_fn(|a| v[a] / length)
+    rows
 }
 
 fn side<const D: usize>(
@@ -287,6 +301,9 @@ fn side<const D: usize>(
         } else {
             stiffness.cubic(1e-6).map(|c| c.zener())
         },
+        length_scale: crystal
+            .gradient_coefficients(directions::<D>()[0].1, 2)
+            .and_then(|c| length_scale(&[c[0][0][0], c[1][0][0]])),
         unstable: crystal
             .instability(if D == 3 { 8 } else { 64 })
             .map(|i| i.part),

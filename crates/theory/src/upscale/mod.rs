@@ -19,6 +19,8 @@
 mod atoms;
 pub mod card;
 mod equilibrium_spacing;
+pub mod kernels;
+mod verdict;
 
 pub use atoms::has_basis_or_fans;
 pub use equilibrium_spacing::equilibrium_spacing;
@@ -82,6 +84,14 @@ pub enum UpscaleError {
          `bulk` instead"
     )]
     Micromodulus,
+    #[error(
+        "a potential has no influence function: kernels are those of springs and peridynamic solids"
+    )]
+    NoKernels,
+    #[error(
+        "a micromodulus belongs to its influence function: give the law `young` or `bulk` instead, which every kernel fits"
+    )]
+    OneKernel,
     #[error(transparent)]
     Crystal(#[from] CrystalError),
     #[error(transparent)]
@@ -165,8 +175,18 @@ pub fn lattice(spec: &Spec) -> Result<(LatticeKind, f64), UpscaleError> {
 }
 
 fn current(spec: &Spec) -> bool {
-    spec.potential().is_some()
-        && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
+    let own = spec.materials.iter().filter_map(|m| m.law.potential());
+    let all = own.chain(spec.potentials.iter().map(|p| &p.potential));
+    let longest = all.map(PotentialSpec::cut_off).fold(0.0, f64::max);
+    match spec.family {
+        _ if spec.potential().is_none() => false,
+        FamilyChoice::Auto | FamilyChoice::Neighbours => true,
+        // about the reference nobody can tell, if families hold all that feel each other
+        FamilyChoice::Reference => {
+            lattice(spec).is_ok_and(|(_, a)| spec.horizon.length(a) >= longest)
+        }
+        FamilyChoice::Stencil | FamilyChoice::List => false,
+    }
 }
 
 /// Which neighbours of a perfect crystal count.
@@ -293,24 +313,27 @@ pub fn upscale_keeping(
             Rule::Horizon
         }
     };
-    let longer = match spec.dimension {
-        1 => longer::<1>(spec, &coarse)?,
-        2 => longer::<2>(spec, &coarse)?,
-        _ => longer::<3>(spec, &coarse)?,
-    };
-    coarse.schedule = Schedule {
-        // as near to the same end as whole steps are
-        steps: match spec.schedule.steps {
-            0 => 0,
-            steps => ((steps as f64 / longer).round() as u64).max(1),
-        },
-        time_step: match spec.schedule.time_step {
-            TimeStep::Fixed(dt) => TimeStep::Fixed(dt * longer),
-            TimeStep::Fraction(x) => TimeStep::Fraction(x),
-            TimeStep::Auto => TimeStep::Auto,
-        },
-        ..spec.schedule
-    };
+    // increments of a load are not steps in time
+    if spec.schedule.statics().is_none() {
+        let longer = match spec.dimension {
+            1 => longer::<1>(spec, &coarse)?,
+            2 => longer::<2>(spec, &coarse)?,
+            _ => longer::<3>(spec, &coarse)?,
+        };
+        coarse.schedule = Schedule {
+            // as near to the same end as whole steps are
+            steps: match spec.schedule.steps {
+                0 => 0,
+                steps => ((steps as f64 / longer).round() as u64).max(1),
+            },
+            time_step: match spec.schedule.time_step {
+                TimeStep::Fixed(dt) => TimeStep::Fixed(dt * longer),
+                TimeStep::Fraction(x) => TimeStep::Fraction(x),
+                TimeStep::Auto => TimeStep::Auto,
+            },
+            ..spec.schedule
+        };
+    }
     crate::homogenize::surface::renew(&mut coarse)?;
     Ok((coarse, rule))
 }

@@ -1,9 +1,13 @@
 //! Solutions of the local laws, to compare with: along characteristics, by Cole and Hopf, of Riemann's problem, and the viscous shock.
 
 mod cole_hopf;
+mod primitive;
+mod reference;
 mod riemann;
 
 pub use cole_hopf::ColeHopf;
+pub use primitive::Primitive;
+pub use reference::{Reference, Solution};
 pub use riemann::riemann;
 
 use crate::flux::Flux;

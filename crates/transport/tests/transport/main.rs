@@ -7,6 +7,7 @@ mod expressions;
 mod input;
 mod operators;
 mod plane;
+mod reference;
 mod sample;
 mod steps;
 mod threads;

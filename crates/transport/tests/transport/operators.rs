@@ -1,7 +1,8 @@
 //! Operators: both evaluations alike, symbols, Noll's flux, moments.
 
 use crate::sample::{BUMPS, even, line, odd, operator};
-use peridyne_transport::noll::Noll;
+use peridyne_transport::grid::Values;
+use peridyne_transport::noll::{Noll, through_faces};
 use peridyne_transport::quadrature::Gauss;
 use peridyne_transport::weights::Stencil;
 use peridyne_transport::{Boundary, Bump, Direction, Evaluation, Flux, Grid, Law, measure};
@@ -250,6 +251,69 @@ fn the_divergence_of_nolls_flux_is_the_operator() {
             assert!(flow.abs() > 1e-3);
         }
     }
+}
+
+/// On a grid too, of any state: in collars and on a ring, along a field of directions, with what spreads, of fluxes that are functions.
+#[test]
+fn what_flows_through_faces_is_what_changes_between_them() {
+    let n = 40;
+    let field: Values = Arc::new(|x, _| 1.0 + 0.5 * (3.0 * x[0]).sin());
+    let directions = [
+        Direction::Constant([-0.7, 0.0]),
+        Direction::Field([field.clone(), field.clone()]),
+    ];
+    let around: Values = Arc::new(|x, t| (2.0 * x[0] - t).cos());
+    let root = Flux::Function(Arc::new(|u: f64| (1.5 * u).sin()));
+    let grid = Grid::line(-1.0, 1.0, n).unwrap();
+    for flux in fluxes().into_iter().chain([root]) {
+        for direction in &directions {
+            for boundary in [Boundary::Periodic, Boundary::Collars(around.clone())] {
+                let (a, s) = (odd(Bump::Hat, 0.37, 1), even(Bump::Cosine, 0.5, 1));
+                let carried = (flux.clone(), direction.clone(), &a);
+                let law = Law::new(grid, boundary, Some(carried), Some((0.3, &s))).unwrap();
+                let u = grid.sample(|x| (17.0 * x[0]).sin() + x[0]);
+                let faces = through_faces(&law, &u, 0.4);
+                let mut rate = vec![0.0; n];
+                operator(&law, Evaluation::Direct).rate(&u, 0.4, &mut rate);
+                for (rate, f) in rate.iter().zip(faces.windows(2)) {
+                    assert!((rate + (f[1] - f[0]) / grid.spacing).abs() < 1e-11);
+                }
+                if law.periodic() {
+                    assert!((faces[n] - faces[0]).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}
+
+/// The sum over bonds that cross a face tends to the integral (2.0.9a).
+#[test]
+fn flux_through_faces_tends_to_nolls() {
+    let u = |x: f64| (2.0 * x).sin() + 0.4 * (x - 0.3).cos();
+    let flux = Flux::burgers();
+    let kernel = odd(Bump::Smooth, 0.6, 1);
+    let noll = Noll {
+        flux: &flux,
+        kernel: &kernel,
+        u,
+        gauss: Gauss::new(4),
+    };
+    let off = |n: usize| {
+        let law = line(n, Some(flux.clone()), Bump::Smooth, 0.6, 0.0);
+        let own = law.grid.sample(|x| u(x[0]));
+        let faces = through_faces(&law, &own, 0.0);
+        let h = law.grid.spacing;
+        let each = faces.iter().enumerate();
+        each.map(|(k, f)| (f - noll.flux(h * k as f64)).abs())
+            .fold(0.0, f64::max)
+    };
+    let [coarse, fine] = [off(256), off(512)];
+    // the mean of midpoints between the ends of a bond errs as h²
+    assert!(
+        ((coarse / fine).log2() - 2.0).abs() < 0.1,
+        "{coarse} {fine}"
+    );
+    assert!(coarse < 1e-2);
 }
 
 /// A constant state has the local flux: the speed of shocks is that of Rankine and Hugoniot.

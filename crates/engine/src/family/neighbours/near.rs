@@ -8,6 +8,8 @@
 //! Of several kinds there are two ways ([`Lines`]). By kind, the atoms of a tile are all of one, and so are the neighbours of a line, so
 //! that a pair of kinds is known before its numbers are read; lines of a tile come in order of the neighbours' kinds, and each kind fills
 //! up its own last lines. Mixed, atoms stand and are listed as if they were of one kind, and their fourth number says which.
+//!
+//! Families of the reference are the same list, made once and held.
 
 mod build;
 mod cells;
@@ -124,6 +126,8 @@ pub struct NearList<const D: usize> {
     blocks: Vec<Block>,
     moved: PerBlock<f64>,
     valid: bool,
+    /// Once made it stays, wherever atoms go.
+    held: bool,
     builds: u64,
 }
 
@@ -166,7 +170,16 @@ impl<const D: usize> NearList<D> {
             blocks: vec![Block::default(); blocks],
             moved: PerBlock::new(blocks, 0.0),
             valid: false,
+            held: false,
             builds: 0,
+        }
+    }
+
+    /// The families of the reference: who is within `reaches` at the first [update](Self::update) is listed for ever, and nobody else.
+    pub fn of_reference(body: &Body<D>, reaches: Reaches, lines: Lines) -> Self {
+        NearList {
+            held: true,
+            ..Self::of_kinds(body, reaches, 0.0, lines)
         }
     }
 
@@ -198,7 +211,7 @@ impl<const D: usize> NearList<D> {
         };
         let far = self.moved.fold(simd, &kernel, |far, d| *far = far.max(d));
         ghosts::refresh(&self.ghosts, self.first_ghost(), position);
-        far <= 0.25 * self.skin * self.skin
+        self.held || far <= 0.25 * self.skin * self.skin
     }
 
     /// Copy the fourth number of every atom to its ghosts.

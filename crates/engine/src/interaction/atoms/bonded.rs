@@ -113,6 +113,12 @@ impl<const D: usize> BondedAtoms<D> {
         self.sums.sum(self.simd, &kernel)
     }
 
+    /// The terms of two particles.
+    fn of_two(&self) -> impl Iterator<Item = &Term> {
+        let form = |t: &&Term| t.count == 2 && matches!(t.says, Says::Form(_));
+        self.terms.iter().filter(form)
+    }
+
     /// Energies of all points with those of their terms, in equal shares.
     fn share(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         let mut each = vec![0.0; self.terms.len()];
@@ -237,8 +243,24 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
         self.inner.gain(slot)
     }
 
+    /// Of atoms that do not feel each other otherwise those that are bonded.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
         self.inner.each_bond(body, visit);
+        if self.inner.directed_bonds() > 0 {
+            return;
+        }
+        let rest = body.at_rest();
+        for term in self.of_two() {
+            let [mut i, mut j] = [0, 1].map(|n| term.slots[n] as usize);
+            if i > j {
+                std::mem::swap(&mut i, &mut j);
+            }
+            let mut sorted = *term;
+            (sorted.slots[0], sorted.slots[1]) = (i as u32, j as u32);
+            let (at, _) = kernel::places(body, &rest, &sorted);
+            let xi = std::array::from_fn(|a| at[1][a] - at[0][a]);
+            visit(i, j, xi, BondState::Whole);
+        }
     }
 
     fn family(&self) -> &'static str {
@@ -255,11 +277,20 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.inner.directed_bonds()
+        match self.inner.directed_bonds() {
+            0 => 2 * self.of_two().count() as u64,
+            bonds => bonds,
+        }
     }
 
     fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
-        self.inner.family_size(body, slot)
+        match self.inner.directed_bonds() {
+            0 => {
+                let ends = self.of_two().flat_map(|t| &t.slots[..2]);
+                ends.filter(|s| **s as usize == slot).count()
+            }
+            _ => self.inner.family_size(body, slot),
+        }
     }
 
     fn columns(&self) -> Vec<Declaration> {

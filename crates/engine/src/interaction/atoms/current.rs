@@ -1,4 +1,4 @@
-//! A potential between atoms that are near now: molecular dynamics.
+//! A potential between atoms that are near now: molecular dynamics. Or between those that were near in the reference, held for ever.
 
 mod kernel;
 
@@ -20,13 +20,18 @@ use kernel::{Density, Energies, Forces, View};
 /// Margin of the list, in cut-offs.
 const SKIN: f64 = 0.12;
 
-/// A potential on current neighbours.
+/// Cut-offs of held lists in horizons at most: an atom that is nowhere is farther.
+const MOST: f64 = 1e15;
+
+/// A potential on current neighbours, or on those of the reference.
 pub struct CurrentAtoms<const D: usize, P> {
     body: Identity,
     simd: Simd,
     potential: Mixture<P>,
     /// Squared cut-offs of pairs of kinds.
     limits: Vec<f64>,
+    /// Horizon of the families of the reference, if these are held (length).
+    held: Option<f64>,
     /// Constants of these pairs, where they are evaluated side by side.
     table: Option<Table>,
     list: NearList<D>,
@@ -40,18 +45,28 @@ pub struct CurrentAtoms<const D: usize, P> {
 impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
     /// The kinds of the potential are the materials of the body, or there is one.
     pub fn new(body: &Body<D>, potential: Mixture<P>, simd: Simd) -> Self {
+        Self::made(body, potential, None, simd)
+    }
+
+    /// The same between those that are within `horizon` (length) of each other in the reference, and nobody else, wherever they go.
+    pub fn of_reference(body: &Body<D>, potential: Mixture<P>, horizon: f64, simd: Simd) -> Self {
+        Self::made(body, potential, Some(horizon), simd)
+    }
+
+    fn made(body: &Body<D>, potential: Mixture<P>, held: Option<f64>, simd: Simd) -> Self {
         let kinds = potential.kinds();
-        let limits = potential.limits(f64::INFINITY);
+        let limits = potential.limits(held.map_or(f64::INFINITY, |h| MOST * h));
         let of = |i, j| potential.of(i, j);
         let table = potential.is_side_by_side();
         let table = table.then(|| Table::new(kinds, of));
-        let list = list_at(body, &potential, &body.at_rest(), simd);
+        let list = list_at(body, &potential, held, &body.at_rest(), simd);
         let blocks = list.blocks();
         let mut made = CurrentAtoms {
             body: body.identity,
             simd,
             potential,
             limits,
+            held,
             table,
             list,
             faults: PerBlock::new(blocks, None),
@@ -163,20 +178,30 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
     }
 }
 
-/// A list for the displacements `u`.
+/// A list for the displacements `u`, held where there is a horizon.
 fn list_at<const D: usize, P: Potential>(
     body: &Body<D>,
     potential: &Mixture<P>,
+    held: Option<f64>,
     u: &Field<D>,
     simd: Simd,
 ) -> NearList<D> {
-    let reaches = Reaches::new(potential.kinds(), |i, j| potential.cutoff(i, j));
-    let skin = SKIN * reaches.longest();
     let lines = match potential.is_side_by_side() {
         true => Lines::Mixed,
         false => Lines::ByKind,
     };
-    let mut list = NearList::of_kinds(body, reaches, skin, lines);
+    let kinds = potential.kinds();
+    let mut list = match held {
+        Some(horizon) => {
+            let of = |i, j| potential.of(i, j).map_or(0.0, |_| horizon);
+            NearList::of_reference(body, Reaches::new(kinds, of), lines)
+        }
+        None => {
+            let reaches = Reaches::new(kinds, |i, j| potential.cutoff(i, j));
+            let skin = SKIN * reaches.longest();
+            NearList::of_kinds(body, reaches, skin, lines)
+        }
+    };
     list.update(body, u, simd);
     list
 }
@@ -200,7 +225,10 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     }
 
     fn family(&self) -> &'static str {
-        "neighbours"
+        match self.held {
+            Some(_) => "reference",
+            None => "neighbours",
+        }
     }
 
     unsafe fn forces_unchecked(
@@ -235,14 +263,14 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         if let Some(position) = self.list.positions_at(u, self.simd) {
             self.see(body, &self.list, &position, out);
         } else {
-            let list = list_at(body, &self.potential, u, self.simd);
+            let list = list_at(body, &self.potential, self.held, u, self.simd);
             self.see(body, &list, list.positions(), out);
         }
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
         self.check(body, &[]);
-        let list = list_at(body, &self.potential, &body.at_rest(), self.simd);
+        let list = list_at(body, &self.potential, self.held, &body.at_rest(), self.simd);
         let mut position = list.positions().to_vec();
         // what is nowhere stays there
         for x in position.iter_mut().filter(|x| x[0].is_finite()) {

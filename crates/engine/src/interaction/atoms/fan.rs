@@ -1,4 +1,4 @@
-//! A potential of fans between atoms that are near now, in three dimensions.
+//! A potential of fans between atoms that are near now, in three dimensions; or that were near in the reference, held for ever.
 //!
 //! Each atom evaluates its own fan and says how it pulls at the ends; an atom gathers what the fans of its neighbours say of it through
 //! the place of the bond that leads back, which is found when the list is made. No races, and the same bits on any number of threads
@@ -16,7 +16,7 @@ use crate::body::{Body, Field, Identity, Values};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::{Kernel, Simd};
-use crate::family::neighbours::near::NearList;
+use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
@@ -30,11 +30,13 @@ use kernel::{Centres, View};
 /// Margin of the list, in cut-offs.
 const SKIN: f64 = 0.12;
 
-/// A fan on current neighbours.
+/// A fan on current neighbours, or on those of the reference.
 pub struct FanAtoms<F> {
     body: Identity,
     simd: Simd,
     fan: F,
+    /// Horizon of the families of the reference, if these are held (length).
+    held: Option<f64>,
     list: NearList<3>,
     back: Back,
     /// Kind per slot.
@@ -50,6 +52,19 @@ impl<F: Fan> FanAtoms<F> {
     /// # Panics
     /// If the body has more materials than the fan knows kinds.
     pub fn new(body: &Body<3>, fan: F, simd: Simd) -> Self {
+        Self::made(body, fan, None, simd)
+    }
+
+    /// The same on those that are within `horizon` (length) in the reference, and nobody else, wherever they go: force states
+    /// `∂U^(j)/∂x_k` of a peridynamic material (sandia2010 (4.0.122)).
+    ///
+    /// # Panics
+    /// As [`new`](Self::new).
+    pub fn of_reference(body: &Body<3>, fan: F, horizon: f64, simd: Simd) -> Self {
+        Self::made(body, fan, Some(horizon), simd)
+    }
+
+    fn made(body: &Body<3>, fan: F, held: Option<f64>, simd: Simd) -> Self {
         let kinds: Vec<u8> = (0..body.len).map(|s| body.material_of(s) as u8).collect();
         let known = fan.table().kinds();
         let highest = body.slots.iter().map(|s| kinds[*s as usize]).max();
@@ -57,7 +72,7 @@ impl<F: Fan> FanAtoms<F> {
             highest.is_none_or(|k| usize::from(k) < known),
             "a fan of {known} kinds of atom on a body of more"
         );
-        let list = list_at(body, fan.cutoff(), &kinds, &body.at_rest(), simd);
+        let list = list_at(body, fan.cutoff(), held, &kinds, &body.at_rest(), simd);
         let mut made = FanAtoms {
             body: body.identity,
             simd,
@@ -65,6 +80,7 @@ impl<F: Fan> FanAtoms<F> {
             back: Back::of(&list, simd),
             sums: PerBlock::sums(list.blocks()),
             fan,
+            held,
             list,
             kinds,
         };
@@ -164,9 +180,22 @@ impl<F: Fan> FanAtoms<F> {
     }
 }
 
-/// A list for the displacements `u`, with kinds.
-fn list_at(body: &Body<3>, cutoff: f64, kinds: &[u8], u: &Field<3>, simd: Simd) -> NearList<3> {
-    let mut list = NearList::new(body, cutoff, SKIN * cutoff);
+/// A list for the displacements `u`, with kinds; held where there is a horizon.
+fn list_at(
+    body: &Body<3>,
+    cutoff: f64,
+    held: Option<f64>,
+    kinds: &[u8],
+    u: &Field<3>,
+    simd: Simd,
+) -> NearList<3> {
+    let mut list = match held {
+        Some(horizon) => {
+            let reaches = Reaches::new(1, |_, _| horizon);
+            NearList::of_reference(body, reaches, Lines::ByKind)
+        }
+        None => NearList::new(body, cutoff, SKIN * cutoff),
+    };
     list.update(body, u, simd);
     put_kinds(&mut list, kinds);
     list
@@ -188,7 +217,10 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     }
 
     fn family(&self) -> &'static str {
-        "neighbours"
+        match self.held {
+            Some(_) => "reference",
+            None => "neighbours",
+        }
     }
 
     unsafe fn forces_unchecked(
@@ -232,7 +264,8 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         if let Some(position) = self.list.positions_at(u, self.simd) {
             self.see(body, &self.list, &position, out);
         } else {
-            let list = list_at(body, self.fan.cutoff(), &self.kinds, u, self.simd);
+            let cutoff = self.fan.cutoff();
+            let list = list_at(body, cutoff, self.held, &self.kinds, u, self.simd);
             self.see(body, &list, list.positions(), out);
         }
     }
@@ -240,7 +273,8 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     fn observe_gradient(&self, body: &Body<3>, gradient: &[[f64; 3]; 3], out: &mut PointEnergies) {
         self.check(body, &[]);
         let rest = body.at_rest();
-        let list = list_at(body, self.fan.cutoff(), &self.kinds, &rest, self.simd);
+        let cutoff = self.fan.cutoff();
+        let list = list_at(body, cutoff, self.held, &self.kinds, &rest, self.simd);
         let mut position = list.positions().to_vec();
         for x in &mut position {
             let moved = along(gradient, &x[..3]);

@@ -8,6 +8,7 @@ pub mod current;
 pub mod fan;
 pub mod fixed;
 mod line;
+pub mod smoothed;
 pub mod together;
 
 use super::tangent::curvature;

@@ -45,7 +45,7 @@ impl<const D: usize> Interaction<D> for Together<D> {
     }
 
     fn family(&self) -> &'static str {
-        "neighbours"
+        self.parts.first().map_or("neighbours", |p| p.family())
     }
 
     unsafe fn forces_unchecked(

@@ -158,9 +158,9 @@ impl<const D: usize, W: Law> View<'_, D, W> {
                 pair = self.pairs.numbers::<L>(self.materials, rows, partners);
                 self.pairs.law::<L>(&pair).cut
             };
-            self.weight.within(r0, inv_r0, cut) * j.volume
+            self.weight.within(&xi, r0, inv_r0, cut) * j.volume
         } else {
-            self.weight.at(r0, inv_r0) * j.volume
+            self.weight.at(&xi, r0, inv_r0) * j.volume
         };
         let mut eta = j.u;
         for a in 0..D {

@@ -203,8 +203,7 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         square = L::select(L::splat(0.0).lt(square), square, L::splat(1.0));
         let inv_length = lane::inv_sqrt(square);
         let length = square * inv_length;
-        let omega = self.weight.influence(length, inv_length);
-        let (mut omega, mut omega_back) = (omega, omega);
+        let [mut omega, mut omega_back] = self.weight.influence(&xi, length, inv_length);
         if !self.own.is_empty() {
             // SAFETY: a number per slot
             let there = unsafe { ends.one::<L>(self.own.as_ptr()) };

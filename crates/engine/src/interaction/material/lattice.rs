@@ -55,6 +55,7 @@ struct Offset<const D: usize> {
     inv_length: f64,
     two_by_square: f64,
     omega: f64,
+    omega_back: f64,
     weight: f64,
 }
 
@@ -85,12 +86,12 @@ pub struct LatticeFamily<const D: usize> {
 }
 
 impl<const D: usize> LatticeFamily<D> {
-    /// `weight` gives `(ω, ν)` of a bond of a length.
+    /// `weight` gives ω of both ends and ν of a bond ξ of a length.
     pub fn new(
         body: &Body<D>,
         grid: &Grid<D>,
         stencil: &Stencil,
-        weight: &dyn Fn(f64) -> [f64; 2],
+        weight: &dyn Fn(&[f64; D], f64) -> [f64; 3],
     ) -> Self {
         let links = Links::new(body, grid, stencil);
         let volume = body.volume.uniform().unwrap_or(1.0);
@@ -102,7 +103,7 @@ impl<const D: usize> LatticeFamily<D> {
             for (o, link) in list.iter().zip(links) {
                 let square = h * h * (o.squared as f64 / 16.0);
                 let length = square.sqrt();
-                let [omega, fraction] = weight(length);
+                let [omega, omega_back, fraction] = weight(&link.xi, length);
                 let there = |b: &crate::family::stencil::Offset| {
                     b.to == from && (0..3).all(|a| b.cell[a] == -o.cell[a])
                 };
@@ -115,6 +116,7 @@ impl<const D: usize> LatticeFamily<D> {
                     inv_length: 1.0 / length,
                     two_by_square: 2.0 / square,
                     omega,
+                    omega_back,
                     weight: fraction * volume,
                 });
             }
@@ -219,7 +221,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
             inv_length: L::splat(o.inv_length),
             two_by_square: L::splat(o.two_by_square),
             omega: L::splat(o.omega),
-            omega_back: L::splat(o.omega),
+            omega_back: L::splat(o.omega_back),
             weight: L::splat(o.weight).zero_if(dead),
         }
     }

@@ -19,8 +19,8 @@ pub struct StencilParts<'a, const D: usize, W> {
     pub body: &'a Body<D>,
     pub stencil: &'a Stencil,
     pub law: W,
-    /// `ω ν` of a bond of this length.
-    pub weight: &'a dyn Fn(f64) -> f64,
+    /// `ω ν` of a bond ξ of a length.
+    pub weight: &'a dyn Fn(&[f64; D], f64) -> f64,
     pub point_constants: PointConstants,
     pub toughness: Vec<Toughness>,
     pub repulsion: Option<Repulsion>,
@@ -56,13 +56,14 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         let h = grid.lattice.spacing;
         let edges = grid.lattice.kind.edges();
         let of = |from: usize, number: usize, o: &Offset| {
-            let back = std::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
+            let back: [f64; D] =
+                std::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
             let r0_squared = h * h * (o.squared as f64 / 16.0);
             let r0 = r0_squared.sqrt();
             // the range is that of the body, whatever the materials
             let d = repulsion.as_ref().map_or(0.0, |c| c.distance(r0, [0, 0]));
             let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
-            let k = law.constant(r0, 1.0 / r0, weight(r0) * volume);
+            let k = law.constant(r0, 1.0 / r0, weight(&back.map(|x| -x), r0) * volume);
             assert!(
                 grid.holds(cell),
                 "the body was made for shorter bonds: give `on_lattice` the reach of this stencil"

@@ -161,7 +161,7 @@ impl Described for StillingerWeber {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             Self::NAME,
-            "Atoms: pairs A ε [B (σ/r)ᵖ − (σ/r)^q] exp(σ/(r − aσ)) and angles λ ε (cos θ − cos θ₀)² with exp(γσ/(r − aσ)) of both sides. In 3-D, on current neighbours.",
+            "Atoms: pairs A ε [B (σ/r)ᵖ − (σ/r)^q] exp(σ/(r − aσ)) and angles λ ε (cos θ − cos θ₀)² with exp(γσ/(r − aσ)) of both sides. In 3-D, on current neighbours or those of the reference.",
         )
         .source("Stillinger & Weber 1985")
         .example("{ file = \"Si.sw\" }")

@@ -199,7 +199,7 @@ impl Described for Tersoff {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             Self::NAME,
-            "Atoms: f_C(r) [A e^(−λ₁ r) − b B e^(−λ₂ r)], where b falls with the number and the angles of other bonds. In 3-D, on current neighbours.",
+            "Atoms: f_C(r) [A e^(−λ₁ r) − b B e^(−λ₂ r)], where b falls with the number and the angles of other bonds. In 3-D, on current neighbours or those of the reference.",
         )
         .source("Tersoff 1988, 1989")
         .example("{ file = \"Si.tersoff\" }")

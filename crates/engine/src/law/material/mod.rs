@@ -7,6 +7,7 @@
 pub mod bond_rotation;
 pub mod bonds;
 pub mod elastic_plastic;
+pub mod embedded_solid;
 pub mod fibres;
 pub mod lamina;
 pub mod non_ordinary;
@@ -44,6 +45,7 @@ pub fn each(kinds: &mut impl Kinds) {
     kinds.law::<softening::Softening>();
     kinds.law::<bonds::Bonds<Thermoelastic, 0>>();
     kinds.law::<ThermoelasticSolid>();
+    kinds.law::<embedded_solid::EmbeddedSolid>();
 }
 
 /// Who wants to see all of them ([`each`]).

@@ -1,7 +1,7 @@
 //! `kinetic_energy_density`
 
+use super::by_id;
 use super::{Needs, Observable};
-use super::{by_id, square};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::observe::{State, Values};
 
@@ -13,7 +13,7 @@ pub static OBSERVABLE: Observable = Observable {
         "Energy of motion per volume.",
     )
     .derived(),
-    equation: "½ ρ v·v",
+    equation: "½ ρ v·v; where masses couple points ½ v_i·Σ_j M_ij v_j / V_i",
     source: "",
     needs: Needs::Nothing,
     of,
@@ -21,6 +21,6 @@ pub static OBSERVABLE: Observable = Observable {
 
 fn of(state: &mut dyn State) -> Option<Values> {
     Some(Values::Scalars(by_id(state, |s, i| {
-        0.5 * s.density(i) * square(s.velocity(i))
+        s.kinetic_energy_density(i)
     })))
 }

@@ -4,7 +4,7 @@ use super::shelf::{AnyPotentials, Shelf};
 use crate::error::BuildError;
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{AnyLinearBody, LawSpec, PmbStiffness, Spec};
+use crate::spec::{AnyLinearBody, Influence, LawSpec, PmbStiffness, Spec};
 use std::sync::Arc;
 
 /// Constants of all materials.
@@ -25,12 +25,12 @@ pub(super) struct Constants {
     pub contact: Vec<f64>,
 }
 
-/// `moments` are those that stiffnesses are calibrated to, `continuum` those of the full ball of radius `horizon`.
+/// `moments` are those that stiffnesses are calibrated to, `alike` those of the full ball of radius `horizon` whose bonds weigh alike.
 pub(super) fn constants<const D: usize>(
     spec: &Spec,
     horizon: f64,
     moments: Moments,
-    continuum: Moments,
+    alike: Moments,
     shelf: &Shelf,
 ) -> Result<Constants, BuildError> {
     let at = |n: usize, key: &str| format!("materials[{n}].{key}");
@@ -60,12 +60,8 @@ pub(super) fn constants<const D: usize>(
             )
             .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
         }
-        // contact knows no influence function: its c is that of bonds that weigh alike
-        let alike = |moments: Moments| Moments {
-            first: moments.bare,
-            ..moments
-        };
-        let hard = |stiffness| micromodulus(D, spec.plane, stiffness, alike(continuum));
+        // contact knows no influence function
+        let hard = |stiffness| micromodulus(D, spec.plane, stiffness, alike);
         let (value, contact) = match m.law.linear() {
             LawSpec::Pmb(stiffness) => {
                 let stiffness = *stiffness;
@@ -105,6 +101,20 @@ pub(super) fn constants<const D: usize>(
                 ));
             }
         };
+        if let Influence::Formula(formula) = spec.influence
+            && !(moments.first > 0.0 && moments.first.is_finite())
+            && matches!(m.law.linear(), LawSpec::Pmb(s) | LawSpec::Springs(s) if !matches!(s, PmbStiffness::Micromodulus(_)))
+        {
+            return Err(BuildError::invalid(
+                "influence",
+                format!(
+                    "Σ ω |ξ| over the bonds of a point is {} with ω = {}: no micromodulus follows from a modulus",
+                    moments.first,
+                    formula.source()
+                ),
+            )
+            .help("a function whose integral over the ball is finite, or calibration = \"discrete\""));
+        }
         if !(value > 0.0 && value.is_finite()) {
             return Err(
                 BuildError::invalid(at(n, "law"), "stiffness must be positive and finite")

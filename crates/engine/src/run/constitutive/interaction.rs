@@ -1,6 +1,6 @@
 //! Law and family become an interaction on a body.
 
-use super::shelf::Place;
+use super::shelf::{Neighbours, Place};
 use super::{ConstitutiveModel, Laws};
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
@@ -16,11 +16,64 @@ use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
 use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
 use crate::law::solid::dual_horizon::DualHorizon;
 use crate::law::solid::eam_like::{EamLike, Solid};
+use crate::message;
+use crate::quantity::{Dimension, rounded};
+use crate::spec::Influence;
 use std::sync::Arc;
 
 impl ConstitutiveModel {
     /// The interaction on `body`; `only` makes everything of one material.
     pub fn interaction<const D: usize>(
+        &self,
+        body: &Body<D>,
+        only: Option<usize>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let made = self.made(body, only)?;
+        self.weighed(body, made)
+    }
+
+    /// Whether an influence function that somebody wrote is one, on the bonds that there are.
+    fn weighed<const D: usize>(
+        &self,
+        body: &Body<D>,
+        made: Box<dyn Interaction<D>>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let Influence::Formula(formula) = self.influence else {
+            return Ok(made);
+        };
+        let (mut wrong, mut most, mut bonds) = (None, 0.0f64, 0);
+        made.each_bond(body, &mut |_, _, xi, _| {
+            let r = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+            for sign in [1.0, -1.0] {
+                let full = std::array::from_fn(|a| xi.get(a).map_or(0.0, |x| sign * x));
+                let omega = formula.at(full, r, self.horizon);
+                if !(omega >= 0.0 && omega.is_finite()) {
+                    wrong.get_or_insert((r, omega));
+                }
+                most = most.max(omega);
+            }
+            bonds += 1;
+        });
+        let invalid = |message| {
+            Err(BuildError::invalid("influence", message).help(
+                "an influence function is 0 or positive on every bond: r from above 0 to delta",
+            ))
+        };
+        let text = formula.source();
+        match wrong {
+            Some((r, omega)) => invalid(message![
+                format!("ω = {text} is {} at the bond length ", rounded(omega, 4)),
+                Dimension::LENGTH.of(r),
+                ", expected a positive number",
+            ]),
+            None if bonds > 0 && !(most > 0.0) => {
+                invalid(message![format!("ω = {text} is 0 on every bond")])
+            }
+            None => Ok(made),
+        }
+    }
+
+    fn made<const D: usize>(
         &self,
         body: &Body<D>,
         only: Option<usize>,
@@ -62,7 +115,7 @@ impl ConstitutiveModel {
                 let volume = body.volume.uniform().unwrap_or(1.0);
                 let modulus = |xi: [f64; D]| {
                     let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
-                    let k = c * self.weight(r0) * volume / (r0 * r0 * r0);
+                    let k = c * self.weight(&xi, r0) * volume / (r0 * r0 * r0);
                     std::array::from_fn(|a| std::array::from_fn(|b| k * xi[a] * xi[b]))
                 };
                 Ok(Box::new(LinearInteraction::new(links, self.simd, modulus)))
@@ -91,9 +144,14 @@ impl ConstitutiveModel {
             }
             Laws::Atoms(potential) => match (&body.layout, &self.stencil) {
                 (Layout::Grid(_), Some(_)) => {
-                    potential.bind(body, Some(self.links(body)?), self.simd)
+                    let links = Neighbours::Linked(self.links(body)?);
+                    potential.bind(body, links, self.simd)
                 }
-                _ => potential.bind(body, None, self.simd),
+                _ if self.held => {
+                    let family = Neighbours::Reference(self.reach());
+                    potential.bind(body, family, self.simd)
+                }
+                _ => potential.bind(body, Neighbours::Current, self.simd),
             },
             Laws::Bond(c) => {
                 let c: Vec<f64> = c
@@ -146,6 +204,11 @@ impl ConstitutiveModel {
         }
     }
 
+    /// `ω ν` of bonds that weigh alike at both ends.
+    fn bond_weight(&self) -> BondWeight {
+        BondWeight::new(self.influence, self.horizon, self.scaling()).mean()
+    }
+
     /// Length over which volumes fade at the horizon.
     fn scaling(&self) -> Option<f64> {
         self.scaling.then_some(self.spacing)
@@ -166,16 +229,17 @@ impl ConstitutiveModel {
         };
         let reach = self.reach();
         let of = |i: usize, j: usize| if across(i, j) { reach } else { 0.0 };
-        Ok(Box::new(ListInteraction::new(ListParts {
+        let made = Box::new(ListInteraction::new(ListParts {
             body,
             list: HorizonList::within(body, reach, of)?,
             law: BondBased { c: c[0] },
-            weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
+            weight: self.bond_weight(),
             point_constants: PointConstants::None,
             toughness: self.toughness.clone(),
             repulsion: None,
             simd: self.simd,
-        })))
+        }));
+        self.weighed(body, made)
     }
 
     fn links<const D: usize>(&self, body: &Body<D>) -> Result<Links<D>, BuildError> {
@@ -203,7 +267,7 @@ impl ConstitutiveModel {
                     body,
                     stencil,
                     law,
-                    weight: &|r0| self.weight(r0),
+                    weight: &|xi, r0| self.weight(xi, r0),
                     point_constants,
                     toughness,
                     repulsion,
@@ -214,7 +278,7 @@ impl ConstitutiveModel {
                 body,
                 list: HorizonList::new(body, self.reach())?,
                 law,
-                weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
+                weight: self.bond_weight(),
                 point_constants,
                 toughness,
                 repulsion,
@@ -247,7 +311,7 @@ impl ConstitutiveModel {
             law: DualHorizon {
                 rate: self.spacing.recip(),
             },
-            weight: BondWeight::new(self.influence, self.horizon, None),
+            weight: self.bond_weight().whole(),
             point_constants: PointConstants::PerPoint(constants.collect()),
             toughness,
             repulsion,
@@ -307,7 +371,7 @@ impl ConstitutiveModel {
             body,
             list: HorizonList::within(body, self.horizon, horizon)?,
             law,
-            weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
+            weight: self.bond_weight(),
             point_constants,
             toughness,
             repulsion: self.repulsion.clone(),

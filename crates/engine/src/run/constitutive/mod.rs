@@ -15,13 +15,13 @@ use crate::family::volume_fraction;
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::pairs::BondTable;
 use crate::interaction::{PairTable, Repulsion, Toughness};
-use crate::law::influence::influence;
+use crate::law::influence::mean_influence;
 use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
-use crate::spec::{Calibration, Horizon, Influence, InterfaceRule, Spec};
+use crate::spec::{Calibration, FamilyChoice, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
-pub(super) use general::general;
+pub(super) use general::{directed, general};
 pub(super) use pairs::contact_stiffness;
 pub use shelf::Shelf;
 pub(super) use shelf::{AnyPotentials, Softens};
@@ -53,6 +53,8 @@ pub(super) struct ConstitutiveModel {
     pub scaling: bool,
     /// Was the horizon given in spacings?
     pub ratio: bool,
+    /// Do atoms keep the neighbours of the reference?
+    pub held: bool,
     pub rule: InterfaceRule,
     /// Constants of pairs of materials, where they do not follow from the two.
     pub pairs: Option<Arc<BondTable>>,
@@ -158,12 +160,13 @@ impl ConstitutiveModel {
         shelf: &Shelf,
         simd: Simd,
     ) -> Result<ConstitutiveModel, BuildError> {
-        let continuum = Moments::continuum(D, horizon, spec.section, spec.influence);
+        let continuum = |kind| Moments::continuum(D, horizon, spec.section, kind);
         let moments = match spec.calibration {
-            Calibration::Continuum => continuum,
+            Calibration::Continuum => continuum(spec.influence),
             Calibration::Discrete => bulk.moments,
         };
-        let Constants { laws, contact } = constants::<D>(spec, horizon, moments, continuum, shelf)?;
+        let alike = continuum(Influence::Constant);
+        let Constants { laws, contact } = constants::<D>(spec, horizon, moments, alike, shelf)?;
         let toughness = spec
             .materials
             .iter()
@@ -204,6 +207,7 @@ impl ConstitutiveModel {
             influence: spec.influence,
             scaling: spec.volume_scaling,
             ratio: matches!(spec.horizon, Horizon::Ratio(_)),
+            held: spec.family == FamilyChoice::Reference,
             rule: spec.interface,
             pairs,
             named,
@@ -216,13 +220,14 @@ impl ConstitutiveModel {
         self.named.as_ref().is_some_and(shelf::Chosen::varies)
     }
 
-    /// `ω ν` of a bond of length r0.
-    pub fn weight(&self, r0: f64) -> f64 {
+    /// `ω ν` of a bond ξ of length r0, the mean of both ends.
+    pub fn weight(&self, xi: &[f64], r0: f64) -> f64 {
         let nu = if self.scaling {
             volume_fraction(r0, self.horizon, self.spacing)
         } else {
             1.0
         };
-        nu * influence(self.influence, r0, self.horizon)
+        let full: [f64; 3] = std::array::from_fn(|a| xi.get(a).copied().unwrap_or(0.0));
+        nu * mean_influence(self.influence, &full, r0, self.horizon)
     }
 }

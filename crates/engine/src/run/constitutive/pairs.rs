@@ -31,7 +31,7 @@ pub(super) fn bond_table(
     }
     if !matches!(spec.influence, Influence::Constant | Influence::Inverse) {
         return unsupported(
-            "an influence function that ends at the horizon, with horizons of pairs",
+            "an influence function other than constant and inverse, with horizons of pairs",
         );
     }
     let mut pairs = vec![];

@@ -57,15 +57,27 @@ impl<const D: usize> Model<D> {
         }
         let mut unstable = false;
         let reference = self.at_peace() && self.forgets();
-        let swept = !factored && reference && self.contact.is_none();
+        let coupled = inertia.and_then(|m| m.coupled.as_ref());
+        let swept = !factored && reference && self.contact.is_none() && coupled.is_none();
         // conjugate gradients seek the step in the symmetric part of a tangent that has another: forces decide where it ends
-        let body = (!swept).then(|| match self.tangent_now() {
+        let mut body = (!swept).then(|| match self.tangent_now() {
             body if !factored && body.soundness().asymmetry > statics::SYMMETRIC => {
                 body.symmetric()
             }
             body => body,
         });
-        let added = self.added(inertia);
+        let mut added = self.added(inertia);
+        if let (Some(masses), Some(inertia), Some(bonds)) = (coupled, inertia, &mut body) {
+            let (sum, own) = masses.with(bonds, inertia.weight * inertia.acceleration);
+            *bonds = sum;
+            for (added, own) in added.iter_mut().zip(own) {
+                for a in 0..D {
+                    for b in 0..D {
+                        added[a][b] += own[a][b];
+                    }
+                }
+            }
+        }
         // nothing but inertia resists what has lost all that held it
         let resisted = match (&body, inertia) {
             (Some(body), None) => Some(support.resisted(body)),

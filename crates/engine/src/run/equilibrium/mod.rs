@@ -52,7 +52,10 @@ impl<const D: usize> Model<D> {
     /// The linear body about the displacements of now.
     pub(super) fn linear_now(&mut self) -> LinearBody<D> {
         self.refresh_images();
-        statics::linear_body(&self.body, self.interaction.as_mut(), &self.u)
+        LinearBody {
+            mass: self.inertia.as_ref().map(|i| i.masses.matrix().clone()),
+            ..statics::linear_body(&self.body, self.interaction.as_mut(), &self.u)
+        }
     }
 
     /// The linear body about the reference.

@@ -127,7 +127,7 @@ impl<const D: usize> Model<D> {
             let mut f = zeros(self.body.len);
             let v = zeros(self.body.len);
             for load in &mut self.loads {
-                load.add(&self.body, [&u, &v], &mut f, t, 0.0);
+                load.add(&self.body, [&u, &v], &mut f, t, 0.0, None);
             }
             [u, f]
         };

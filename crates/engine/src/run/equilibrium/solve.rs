@@ -40,7 +40,7 @@ impl<const D: usize> Model<D> {
         let mut f = zeros(self.body.len);
         let (v, t) = (zeros(self.body.len), self.time());
         for load in &mut self.loads {
-            load.add(&self.body, [&self.u, &v], &mut f, t, 0.0);
+            load.add(&self.body, [&self.u, &v], &mut f, t, 0.0, None);
         }
         f
     }
@@ -98,7 +98,9 @@ impl<const D: usize> Model<D> {
 
     /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
     pub(super) fn at_peace(&self) -> bool {
-        !matches!(self.constitutive.first().laws, Laws::Atoms(_)) && !self.expands()
+        let mut named = self.constitutive.all().filter_map(|m| m.named.as_ref());
+        let pulls = named.any(|n| n.pulls());
+        !pulls && !matches!(self.constitutive.first().laws, Laws::Atoms(_)) && !self.expands()
     }
 
     /// Has no law forces at the reference, and another stiffness there than here, by what it remembers? What fades has none: it is let back to there.

@@ -2,7 +2,8 @@
 
 use crate::condition::rigid::{NewmarkStep, Wrench};
 use crate::run::model::Model;
-use crate::statics::Support;
+use crate::statics::{Masses, Support};
+use std::sync::Arc;
 
 /// A state on trial, in order of ids.
 #[derive(Debug, Clone)]
@@ -64,9 +65,12 @@ pub(in crate::run) struct Inertia<const D: usize> {
     pub weight: f64,
     /// `[N]` over `1 + α`.
     pub mass: Vec<f64>,
+    /// Masses that couple points, in place of those; not over `1 + α`.
+    pub coupled: Option<Arc<Masses<D>>>,
     /// `[N]` `α f₀/(1 + α)` (force); empty: α is 0.
     pub past: Vec<[f64; D]>,
-    /// `[N]` what it adds to the stiffness (force / length): `m ∂a/∂u/(1 + α) + c ∂v/∂u`, c what damping takes per velocity.
+    /// `[N]` what it adds to the stiffness (force / length): `m ∂a/∂u/(1 + α) + c ∂v/∂u`, c what damping takes per velocity; without
+    /// masses that couple points.
     pub added: Vec<f64>,
     /// `∂v/∂u = γ/(βΔt)`
     pub velocity: f64,
@@ -92,10 +96,15 @@ impl<const D: usize> Inertia<D> {
     /// Takes `m a` from the forces on the free components; how large it and `m v/Δt` are.
     pub fn take(&self, tried: &Tried<D>, r: &mut [[f64; D]], support: &Support<D>) -> f64 {
         let mut size = 0.0;
+        let coupled = self.coupled.as_ref().map(|m| m.times(&tried.a));
         for (n, r) in r.iter_mut().enumerate() {
             let m = self.mass[n];
             for a in (0..D).filter(|a| support.free[n][*a]) {
-                let [inertia, momentum] = [m * tried.a[n][a], m * tried.v[n][a] / self.step];
+                let inertia = match &coupled {
+                    None => m * tried.a[n][a],
+                    Some(force) => self.weight * force[n][a],
+                };
+                let momentum = m * tried.v[n][a] / self.step;
                 r[a] -= inertia + self.past.get(n).map_or(0.0, |f| f[a]);
                 size += inertia * inertia + momentum * momentum;
             }

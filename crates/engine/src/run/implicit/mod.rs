@@ -136,7 +136,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Which components the forces move.
-    fn held(&self) -> Support<D> {
+    pub(in crate::run) fn held(&self) -> Support<D> {
         let mut support = self.support();
         let still = self.still.slots().iter().map(|s| *s as usize);
         let still = still.flat_map(|s| (0..D).map(move |a| (s, a)));
@@ -209,10 +209,9 @@ impl<const D: usize> Model<D> {
             friction.arrive(body, now);
         }
         let end = self.time();
-        for c in &mut self.constraints {
-            c.end(&self.body, &self.u, &self.f, end, dt);
-        }
-        self.numerical += self.taken([&u, &v, &f], &state.held);
+        let change = self.coupled_change(&v);
+        self.account_constraints(end, dt, change.as_ref());
+        self.numerical += self.taken([&u, &v, &f], change.as_ref(), &state.held);
         if state.breaks {
             self.let_go(&mut state);
         }
@@ -222,7 +221,12 @@ impl<const D: usize> Model<D> {
     }
 
     /// `Δu·½(F₀ + F₁) − Δ(½ v·m v)` on free components (energy).
-    fn taken(&self, [u, v, f]: [&Field<D>; 3], support: &Support<D>) -> f64 {
+    fn taken(
+        &self,
+        [u, v, f]: [&Field<D>; 3],
+        change: Option<&Field<D>>,
+        support: &Support<D>,
+    ) -> f64 {
         let mut taken = 0.0;
         for (free, &s) in support.free.iter().zip(&self.body.slots) {
             let i = s as usize;
@@ -231,7 +235,11 @@ impl<const D: usize> Model<D> {
             for a in (0..D).filter(|a| free[*a]) {
                 let work = 0.5 * (f[a][i] + self.f[a][i]) * (self.u[a][i] - u[a][i]);
                 let [before, now] = [v[a][i], self.v[a][i]];
-                each += work - 0.5 * rho * (now - before) * (now + before);
+                let momentum = match change {
+                    None => rho * (now - before),
+                    Some(change) => change[a][i],
+                };
+                each += work - 0.5 * momentum * (now + before);
             }
             taken += each * self.body.volume.at(i);
         }
@@ -262,6 +270,14 @@ impl<const D: usize> Model<D> {
         let (t, dt) = (self.time(), self.dt);
         let alpha = state.options.alpha;
         let f = self.f.clone();
+        let coupled = match self.inertia.take() {
+            None => None,
+            Some(mut inertia) => {
+                let a = self.accelerations(&mut inertia);
+                self.inertia = Some(inertia);
+                Some(a)
+            }
+        };
         for c in &mut self.constraints {
             c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
         }
@@ -283,12 +299,16 @@ impl<const D: usize> Model<D> {
             for axis in (0..D).filter(|axis| support.free[n][*axis]) {
                 let rate = match state.acceleration.get(n) {
                     Some(known) => known[axis],
+                    None if let Some(coupled) = &coupled => coupled[n][axis],
                     None => self.f[axis][i] / self.body.density.at(i),
                 };
                 self.u[axis][i] += dt * (self.v[axis][i] + 0.5 * dt * rate);
                 self.v[axis][i] += dt * rate;
                 a[n][axis] = rate;
             }
+        }
+        if coupled.is_some() {
+            self.prescribed_accelerations(&mut a);
         }
         for c in &self.constraints {
             c.drift(&mut self.u, t, dt);
@@ -358,9 +378,12 @@ impl<const D: usize> Model<D> {
         let free = self.indenters.iter().filter(|i| i.is_free());
         let part = options.alpha * weight;
         let bodies_before = free.map(|i| i.departed_under().map(|f| part * f)).collect();
+        let coupled = self.inertia.as_ref().map(|i| i.masses.clone());
+        let own = if coupled.is_some() { 0.0 } else { acceleration };
         Inertia {
-            added: both.map(|(m, c)| acceleration * m + velocity * c).collect(),
+            added: both.map(|(m, c)| own * m + velocity * c).collect(),
             mass,
+            coupled,
             past,
             weight,
             velocity,

@@ -265,7 +265,11 @@ impl<const D: usize> Model<D> {
             let (rho, volume) = (self.body.density.at(s), self.body.volume.at(s));
             let of = |a: usize| {
                 held[a].map_or(0.0, |acceleration| {
-                    volume * (rho * acceleration - self.f[a][s])
+                    let taken = match &self.inertia {
+                        Some(inertia) if self.statics.is_none() => inertia.taken[0][a][s],
+                        _ => rho * acceleration,
+                    };
+                    volume * (taken - self.f[a][s])
                 })
             };
             if held.iter().any(Option::is_some) {

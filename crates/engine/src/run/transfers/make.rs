@@ -115,7 +115,7 @@ impl<const D: usize> Model<D> {
             .help("take a law of solids (pmb, lps, …)"));
         }
         let of = |slot: usize| &t.materials[body.material_of(slot)];
-        let weight = |slot: usize, r: f64| self.constitutive.at(slot).0.weight(r);
+        let weight = |slot: usize, xi: &[f64], r: f64| self.constitutive.at(slot).0.weight(xi, r);
         let ends_at_points = |f: &&SurfaceFactors| f.ends_at_points();
         let exact = spec.surface.as_ref().filter(ends_at_points);
         let exact = exact.map(|f| (Factors::new(f, body), family(spec, body.spacing)));
@@ -126,10 +126,13 @@ impl<const D: usize> Model<D> {
             })
         };
         let moment = |slot: usize| {
-            exact.as_ref().map_or(0.0, |(factors, lengths)| {
+            exact.as_ref().map_or(0.0, |(factors, bonds)| {
                 let cell = body.volume.at(slot) / factors.part(slot);
-                let terms = lengths.iter().map(|r| weight(slot, *r) * r * r * cell);
-                terms.sum()
+                let term = |xi: &[f64; D]| {
+                    let square: f64 = xi.iter().map(|x| x * x).sum();
+                    weight(slot, xi, square.sqrt()) * square * cell
+                };
+                bonds.iter().map(term).sum()
             })
         };
         let rows = Rows::new(
@@ -137,7 +140,7 @@ impl<const D: usize> Model<D> {
             interaction,
             &Conduction {
                 conductivity: &|slot| of(slot).conductivity,
-                weight: &|i, j, r| 0.5 * (weight(i, r) + weight(j, r)),
+                weight: &|i, j, xi, r| 0.5 * (weight(i, xi, r) + weight(j, xi, r)),
                 place: &self.transfers.place,
                 surface: exact.as_ref().map(|_| Surface {
                     factor: &factor,
@@ -327,14 +330,14 @@ fn steady(made: &Transfer) -> Result<(), BuildError> {
     }
 }
 
-/// Lengths of the bonds of a point inside a lattice body.
-fn family(spec: &Spec, spacing: f64) -> Vec<f64> {
+/// Bonds of a point inside a body on a chain, square or cubic lattice.
+fn family<const D: usize>(spec: &Spec, spacing: f64) -> Vec<[f64; D]> {
     match &spec.body {
         BodySpec::Lattice { kind, .. } | BodySpec::Sites { kind, .. } => {
             let stencil = Stencil::new(*kind, spacing, spec.horizon);
-            let first = stencil.offsets()[0].iter();
-            first
-                .map(|o| spacing * (o.squared as f64).sqrt() / 4.0)
+            let cells = stencil.offsets()[0].iter().map(|o| o.cell);
+            cells
+                .map(|c| std::array::from_fn(|a| spacing * f64::from(c[a])))
                 .collect()
         }
         BodySpec::Cloud(_) | BodySpec::Several(_) => vec![],

@@ -20,8 +20,8 @@ pub struct Material {
 impl Material {
     /// Has it the constants of an isotropic solid?
     pub fn is_isotropic(&self) -> bool {
-        let plies = |law: &LawSpec| matches!(law, LawSpec::Named(law) if ["anisotropic", "lamina"].contains(&law.name.as_str()));
-        !self.laws.iter().any(plies)
+        let plies = |law: &LawSpec| matches!(law, LawSpec::Named(law) if ["anisotropic", "lamina", "embedded_solid"].contains(&law.name.as_str()));
+        !self.laws.iter().any(plies) && !self.influence.is_directed()
     }
 }
 
@@ -132,6 +132,25 @@ pub fn materials() -> Vec<Material> {
     };
     let lps = |young, poisson| LawSpec::Lps(Moduli { young, poisson });
     let young = |e| LawSpec::Pmb(PmbStiffness::Young(e));
+    // x stands for ϑ/ϑ₀
+    let embedded = |energy: &str, pair: f64| {
+        let of = |variables, text: &str| {
+            Parameter::Formula(Expression::of(variables, text, &[("k", pair)]).unwrap())
+        };
+        let energy = energy.replace('x', "(theta/theta0)");
+        let all = Parameters::numbers(&[("bulk", 1.0)])
+            .with("energy", of(&["theta", "theta0"], &energy))
+            .with("weight", of(&["r", "r0", "omega", "delta"], "omega*r0*r"))
+            .with(
+                "pair",
+                of(
+                    &["r", "r0", "omega", "delta", "theta0"],
+                    "k*omega*(r - r0)^2*(1 - (r - r0)/delta)/theta0",
+                ),
+            );
+        LawSpec::named("embedded_solid", all)
+    };
+    let written = |text: &str| Influence::Formula(Formula::parse(text, &[]).unwrap());
     vec![
         one("pmb", young(3.0), Influence::Constant),
         one(
@@ -142,6 +161,17 @@ pub fn materials() -> Vec<Material> {
         two("pmb mixed", young(3.0), young(1.0), Influence::Gaussian),
         one("lps", lps(3.0, 0.2), Influence::Inverse),
         one("lps auxetic", lps(3.0, -0.2), Influence::Constant),
+        two(
+            "lps directed",
+            lps(3.0, 0.2),
+            lps(1.0, 0.4),
+            written("exp(-(r/delta)^2)*(1 + 0.6*xi_x/r)"),
+        ),
+        one(
+            "pmb written",
+            young(3.0),
+            written("r*(1 - 0.5*r/delta)*(2 + xi_x/r)"),
+        ),
         two(
             "lps mixed",
             lps(3.0, 0.2),
@@ -163,6 +193,12 @@ pub fn materials() -> Vec<Material> {
                 volume: 1.0,
             },
             Influence::CubicSpline,
+        ),
+        two(
+            "embedded",
+            embedded("2*(x - 1)^2 + (x - 1)^3", 20.0),
+            embedded("ln(x) + 1/x", 10.0),
+            Influence::Inverse,
         ),
         one("elastic-plastic", plastic(0.2, 0.3), Influence::Inverse),
         two(

@@ -179,6 +179,7 @@ impl Case {
             indenters: vec![],
             transfers: vec![],
             family: FamilyChoice::Auto,
+            smooth: None,
             preload: None,
             own_horizon: None,
             schedule: Schedule {

@@ -224,6 +224,17 @@ pub enum EvaluationName {
     Fourier,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CompareName {
+    /// u = g(x − t f′(u)): without diffusion, from what does not jump, before the first shock.
+    Characteristics,
+    /// The entropy solution of Riemann's problem: without diffusion, from one step between two constants, in collars.
+    Riemann,
+    /// Cole and Hopf's solution: with diffusion, of a flux that is quadratic in u.
+    ColeHopf,
+}
+
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawOutput {
@@ -233,6 +244,11 @@ pub struct LawOutput {
     pub frames: Option<At<u64>>,
     /// Rows of history.csv after the first, at equal times; 100 when left out.
     pub history: Option<At<u64>>,
+    /// The solution of the local law u_t + f(u)_x = ε u_xx, to which the nonlocal one tends, beside u: `exact` in frames.npz, dashed in the profiles, and how far u is from it, over
+    /// it, in the mean, the mean square and at most (`error_l1`, `error_l2`, `error_max` of history.csv, a line at the end). Refused where there is none. On a line.
+    pub compare: Option<At<CompareName>>,
+    /// Noll's flux, what flows through the faces of the cells, in frames.npz: `flux`, of places `faces`; u_t is −1 times its differences over the spacing. On a line; false when left out.
+    pub flux: Option<At<bool>>,
     /// space_time.png (in a plane: last.png) and profiles.png; true when left out.
     pub pictures: Option<bool>,
     /// report.html at the end, the run in one file for browsers; true when left out.

@@ -12,6 +12,7 @@ use crate::deck::value::{At, Number, Or, Written};
 use peridyne::execute::memory::afford;
 use peridyne::expression::Expression;
 use peridyne::quantity::rounded;
+use peridyne_transport::exact::{Reference, Solution};
 use peridyne_transport::grid::Values;
 use peridyne_transport::{
     Boundary, Bump, Direction, Evaluation, Evolution, Flux, Formula, Grid, Kernel, Law, Method,
@@ -81,7 +82,8 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
     )
     .map_err(explained)?;
     let shown = output.pictures.unwrap_or(true) || output.report.unwrap_or(true);
-    let frame_bytes = bytes_of_frames(points as f64, frames as f64, shown);
+    let columns = 1 + usize::from(output.compare.is_some()) + usize::from(flux_asked(output));
+    let frame_bytes = bytes_of_frames(points as f64, frames as f64, columns as f64, shown);
     afford(
         "output.frames",
         &format!("this law on {points} points with {frames} frames, kept until the end,"),
@@ -92,7 +94,8 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
     let place = places(&grid);
     only_names(&context, &document.initial, place, "u at t = 0")?;
     let initial = context.expression(&document.initial, dimension)?;
-    let u = grid.sample(|x| initial.eval(x, 0.0));
+    let initial: Values = Arc::new(move |x, t| initial.eval(x, t));
+    let u = grid.sample(|x| initial(x, 0.0));
     if let Some(n) = u.iter().position(|u| !u.is_finite()) {
         let place = &grid.place(n)[..grid.dimension];
         return Err(context.error(
@@ -155,6 +158,14 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
     if let (Err(e), Some(at)) = (evolution.next_step(duration), &run.time_step) {
         return Err(context.error_with(&at.span, e.to_string(), "or add force_unstable = true"));
     }
+    let reference = reference(&context, output, &evolution, &initial, duration)?;
+    if let (Some(at), true) = (&output.flux, grid.dimension > 1) {
+        return Err(context.error_with(
+            &at.span,
+            "what flows through faces is written on a line: in a plane many fields have one divergence",
+            "leave flux out, or write a domain without y",
+        ));
+    }
     Ok(LawDeck {
         title: String::new(),
         units,
@@ -164,6 +175,8 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         duration,
         frames,
         rows: count(&context, &output.history, "history")?,
+        reference,
+        flux: flux_asked(output),
         pictures: true,
         report: true,
         dir: None,
@@ -173,9 +186,40 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
 }
 
 /// Frames are kept until the end and packed for their file; pictures and the report look at them once more.
-fn bytes_of_frames(points: f64, frames: f64, shown: bool) -> f64 {
+fn bytes_of_frames(points: f64, frames: f64, columns: f64, shown: bool) -> f64 {
     let copies = if shown { 3.0 } else { 2.0 };
-    8.0 * points * (frames + 2.0) * copies + if shown { SHOWN * points } else { 0.0 }
+    8.0 * points * (frames + 2.0) * columns * copies + if shown { SHOWN * points } else { 0.0 }
+}
+
+fn flux_asked(output: &LawOutput) -> bool {
+    output.flux.as_ref().is_some_and(|f| f.value)
+}
+
+/// What the run compares itself with.
+fn reference(
+    context: &Context,
+    output: &LawOutput,
+    evolution: &Evolution,
+    initial: &Values,
+    duration: f64,
+) -> Result<Option<Reference>> {
+    let Some(at) = &output.compare else {
+        return Ok(None);
+    };
+    let solution = match at.value {
+        CompareName::Characteristics => Solution::Characteristics,
+        CompareName::Riemann => Solution::Riemann,
+        CompareName::ColeHopf => Solution::ColeHopf,
+    };
+    let law = evolution.operator.law();
+    let made = Reference::new(solution, law, initial, duration, "output.compare");
+    made.map(Some).map_err(|e| {
+        let said = context.units.tell(&e.message);
+        match &e.help {
+            Some(help) => context.error_with(&at.span, said, context.units.tell(help)),
+            None => context.error(&at.span, said),
+        }
+    })
 }
 
 fn count(context: &Context, written: &Option<At<u64>>, what: &str) -> Result<u64> {

@@ -14,6 +14,7 @@ use super::whole::Whole;
 use super::{Dim, form, locate};
 use crate::write::folder::stays;
 use peridyne::error::BuildError;
+use peridyne_transport::exact::Reference;
 use peridyne_transport::{Evolution, Grid};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -38,6 +39,10 @@ pub struct LawDeck {
     pub frames: u64,
     /// Rows of the history after the first.
     pub rows: u64,
+    /// What the run compares itself with.
+    pub reference: Option<Reference>,
+    /// Noll's flux in the frames.
+    pub flux: bool,
     pub pictures: bool,
     /// `report.html` at the end.
     pub report: bool,

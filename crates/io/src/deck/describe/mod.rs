@@ -9,9 +9,9 @@ use material::{between_atoms, criterion, material, potentials};
 use peridyne::run::Shelf;
 use peridyne::spec::{
     BodySpec, BondFactorSpec, Calibration, Control, Criterion, FamilyChoice, Fold, Horizon,
-    IndenterMotion, LawSpec, Measure, Method, Part, PieceSpec, Plane, PotentialSpec, ProbeSpec,
-    Release, RigidQuantity, Spec, Statics, Stepper, SurfaceFactor, TimeStep, ToughnessFactor,
-    TransferMethod, TransferSpec,
+    IndenterMotion, Influence, LawSpec, Measure, Method, Part, PieceSpec, Plane, PotentialSpec,
+    ProbeSpec, Release, RigidQuantity, Spec, Statics, Stepper, SurfaceFactor, TimeStep,
+    ToughnessFactor, TransferMethod, TransferSpec,
 };
 use shape::{body, rigid};
 
@@ -25,6 +25,13 @@ fn words(choice: &impl std::fmt::Debug) -> String {
         out.extend(c.to_lowercase());
     }
     out
+}
+
+fn influence(chosen: Influence) -> String {
+    match chosen {
+        Influence::Formula(formula) => one_line(formula.source()).into_owned(),
+        word => words(&word),
+    }
 }
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -97,13 +104,13 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
                 if current {
                     "between atoms that are near now".into()
                 } else {
-                    format!("on fixed neighbours within {horizon}")
+                    format!("between those within {horizon} in the reference")
                 }
             )
         }
         None => format!(
             "horizon    {horizon}, influence {}, volume scaling {}, constants {}",
-            words(&spec.influence),
+            influence(spec.influence),
             if spec.volume_scaling { "on" } else { "off" },
             match spec.calibration {
                 Calibration::Continuum => "of the continuum",
@@ -111,6 +118,16 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             }
         ),
     });
+    if let Some(smooth) = &spec.smooth {
+        let nodes = match smooth.spacing {
+            Some(spacing) => format!("every {}", units.write(spacing, Dim::LENGTH)),
+            None => "at the places of the atoms".into(),
+        };
+        lines.push(format!(
+            "smooth     nodes {nodes} carry the atoms, by a kernel of width {}",
+            units.write(smooth.width, Dim::LENGTH)
+        ));
+    }
     if let BodySpec::Several(pieces) = &spec.body {
         let own = |p: &&PieceSpec| {
             p.horizon.is_some_and(|h| h != spec.horizon)
@@ -121,7 +138,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
                 "           of {}: {}, influence {}",
                 p.name,
                 length(p.horizon.unwrap_or(spec.horizon)),
-                words(&p.influence.unwrap_or(spec.influence))
+                influence(p.influence.unwrap_or(spec.influence))
             )
         }));
     }

@@ -6,6 +6,23 @@ use crate::deck::value::{At, Number, Or, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+/// Nodes that carry atoms along: `u(X_j) = Σ_g w_g(X_j) u_g`, w_g of φ about each atom, so that quadratic displacements are exact.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Smooth {
+    /// Localization function φ.
+    pub kernel: At<KernelName>,
+    /// S of it: two to three spacings of nodes or more.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub width: Number,
+    /// Of polynomials, 0 to 7: one derivative less is continuous; 3 when left out.
+    pub smoothness: Option<At<u32>>,
+    /// Of the nodes, on a square or cubic lattice; along periodic axes a whole part of the period. When left out nodes are at the places of the
+    /// atoms.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub spacing: Option<Number>,
+}
+
 /// Density, momentum, stress and heat flux at points that stay where they are, of atoms or of a peridynamic body, as `peridyne fields` makes
 /// them of files; docs/fields.md. Exactly one of grid, points, line, plane says where.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -48,6 +65,9 @@ pub struct Fields {
     /// Write the pressure, too: minus a third of the trace of the Cauchy stress; false when left out.
     #[serde(default)]
     pub pressure: bool,
+    /// Write the material coordinate y, too, its flux and the angular momentum ρ y × v; false when left out.
+    #[serde(default)]
+    pub coordinate: bool,
     /// Whose a term's energy is, of atoms: site when left out, equal, or { centre = 0.5 }.
     pub partition: Option<At<Or<PartitionName, Centre>>>,
     /// Of atoms; distances when left out. A peridynamic body has that of its force states, differences.

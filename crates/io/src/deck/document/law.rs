@@ -191,7 +191,7 @@ impl JsonSchema for Law {
                 let (dimension, bounds) = match k.value {
                     Value::Number(d, b) | Value::List(_, d, b) => (Some(d), b.words()),
                     Value::Formula(variables, d) => {
-                        (Some(d), format!("an expression of {}", variables.join(", ")))
+                        (d, format!("an expression of {}", variables.join(", ")))
                     }
                     Value::Direction => (
                         Some(Dimension::NUMBER),
@@ -202,6 +202,8 @@ impl JsonSchema for Law {
                 };
                 if let Some(dimension) = dimension {
                     value["dimension"] = json!(dimension.to_string());
+                }
+                if dimension.is_some() || !bounds.is_empty() {
                     value["bounds"] = json!(bounds);
                 }
                 if let Value::Word(words) = k.value {

@@ -103,6 +103,8 @@ names! {
         List,
         /// Atoms within the cut-off now.
         Neighbours,
+        /// Atoms within `horizon` in the reference, for ever: a potential as a peridynamic material.
+        Reference,
     }
     /// What says how far an increment goes.
     ControlName {

@@ -1,11 +1,13 @@
 //! What is written.
 
 use crate::deck::units::Dim;
-use crate::deck::value::{At, Number};
-use schemars::JsonSchema;
-use serde::Deserialize;
+use crate::deck::value::{At, Number, Or};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
+use std::borrow::Cow;
+use std::fmt;
 
-#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Default, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
     /// Folder of the results, relative to the deck; when left out, out/NAME in the working folder for the deck NAME.toml.
@@ -39,6 +41,10 @@ pub struct Output {
     /// Pictures of fields of your choice.
     #[serde(default)]
     pub pictures: Vec<At<Picture>>,
+    /// Bodies on a line that move: a field over x of the reference and t, which goes down, as space_time_FIELD.png and .svg, its numbers as
+    /// space_time_FIELD.npz. "density" is 1/y', reference over current distance of the points beside a point; or the name of a field of points.
+    /// Of several a list of tables.
+    pub space_time: Option<At<Or<SpaceTimes, SpaceTime>>>,
     /// report.html at the end, the run in one file for browsers; true when left out.
     pub report: Option<bool>,
     /// Atoms only: one file with all frames, positions, velocities, forces and energies; .extxyz, or .lammpstrj for a
@@ -48,8 +54,71 @@ pub struct Output {
     pub data: Option<At<String>>,
 }
 
+/// One field by name, or tables of several.
+#[derive(Debug)]
+pub enum SpaceTimes {
+    Field(String),
+    All(Vec<At<SpaceTime>>),
+}
+
+impl<'de> Deserialize<'de> for SpaceTimes {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Each;
+        impl<'de> Visitor<'de> for Each {
+            type Value = SpaceTimes;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("the name of a field, or a list of tables { field = \"density\" }")
+            }
+            fn visit_str<E: serde::de::Error>(self, v: &str) -> Result<SpaceTimes, E> {
+                Ok(SpaceTimes::Field(v.to_string()))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<SpaceTimes, A::Error> {
+                let mut all = vec![];
+                while let Some(one) = seq.next_element()? {
+                    all.push(one);
+                }
+                Ok(SpaceTimes::All(all))
+            }
+        }
+        deserializer.deserialize_any(Each)
+    }
+}
+
+impl JsonSchema for SpaceTimes {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "SpaceTimes".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<SpaceTime>();
+        json_schema!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": one }] })
+    }
+}
+
+/// A field of a body on a line over place and time. Of several of one field the second is called space_time_FIELD_2.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpaceTime {
+    /// "density", or the name of a field of points (`peridyne laws` lists them).
+    pub field: At<String>,
+    /// xx, … of a tensor; when left out, of vectors x, of tensors the magnitude.
+    pub component: Option<At<String>>,
+    /// What the ends of the colours mean, in plain numbers of the field; when left out those of its values, of the density as far from 1 on
+    /// either side.
+    #[schemars(extend("dimension" = "that of the field"))]
+    pub range: Option<At<[f64; 2]>>,
+    /// From where to where in the reference; the whole body when left out.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub x: Option<At<[Number; 2]>>,
+    /// From when to when; the whole motion when left out.
+    #[schemars(extend("dimension" = Dim::TIME.name()))]
+    pub t: Option<At<[Number; 2]>>,
+}
+
 /// A PNG of a field at the end, FIELD.png or FIELD_COMPONENT.png, with cracks, indenters, supports and loads.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Picture {
     /// Name of a field of points (`peridyne laws` lists them); when left out what the run is about, as `picture` says.

@@ -153,21 +153,21 @@ pub(super) fn own(
                 })
         };
         let material = materials.iter().find(of_body).or(materials.first());
-        let own = at.value.influence.as_ref().map(|i| i.value);
         piece.influence = Some(influence(
-            own.or(document.influence),
+            context,
+            at.value.influence.as_ref().or(document.influence.as_ref()),
             material.map_or(&[], std::slice::from_ref),
-        ));
+        )?);
         piece.family = match &at.value.family {
             None => None,
             Some(family) => Some(match family.value {
                 FamilyName::Auto => FamilyChoice::Auto,
                 FamilyName::Stencil => FamilyChoice::Stencil,
                 FamilyName::List => FamilyChoice::List,
-                FamilyName::Neighbours => {
+                FamilyName::Neighbours | FamilyName::Reference => {
                     return Err(context.error(
                         &family.span,
-                        "current neighbours belong to atoms, which are a body of their own",
+                        "this family belongs to atoms, which are a body of their own",
                     ));
                 }
             }),

@@ -2,7 +2,7 @@
 
 use crate::deck::error::{DeckError, nearest};
 use crate::deck::source::Source;
-use crate::deck::units::{self, Dim, Dimensions, Kind, UnitSystem};
+use crate::deck::units::{self, Dim, Dimensions, Kind, UnitSystem, Variables};
 use crate::deck::value::{At, Number, Written};
 use crate::read::{AtomsFile, Cells};
 use peridyne::expression::{Expression, ExpressionError};
@@ -165,13 +165,13 @@ impl<'a> Context<'a> {
         self.meaning_of(text, span, dim, None)
     }
 
-    /// The same of other variables, plain numbers, in place of x, y, z and t.
+    /// The same of other variables in place of x, y, z and t.
     fn meaning_of(
         &self,
         text: &str,
         span: &Range<usize>,
         dim: Dim,
-        variables: Option<&'static [&'static str]>,
+        variables: Option<Variables>,
     ) -> Result<Expression> {
         let (expression, kind) = self.compile_of(text, span, variables)?;
         let factor = self.units.plain_factor(dim);
@@ -211,7 +211,7 @@ impl<'a> Context<'a> {
         &self,
         text: &str,
         span: &Range<usize>,
-        variables: Option<&'static [&'static str]>,
+        variables: Option<Variables>,
     ) -> Result<(Expression, Kind)> {
         // infinities, too
         if let Ok(value) = text.trim().parse::<f64>() {
@@ -361,7 +361,31 @@ impl<'a> Context<'a> {
         variables: &'static [&'static str],
         dim: Dim,
     ) -> Result<Expression> {
-        self.meaning_of(&text.value, &text.span, dim, Some(variables))
+        self.meaning_of(&text.value, &text.span, dim, Some((variables, Dim::NUMBER)))
+    }
+
+    /// An expression that may measure anything.
+    ///
+    /// # Errors
+    /// It is none, or names a constant of the deck that a variable hides.
+    pub fn unmeasured(
+        &self,
+        text: &str,
+        span: &Range<usize>,
+        variables: Variables,
+    ) -> Result<Expression> {
+        let (expression, _) = self.compile_of(text, span, Some(variables))?;
+        let mut each = variables.0.iter().enumerate();
+        let hidden =
+            |(n, v): &(usize, &&str)| expression.depends_on(*n) && self.constants.contains_key(**v);
+        match each.find(hidden) {
+            Some((_, v)) => Err(self.error_with(
+                span,
+                format!("`{v}` is a variable here, and the deck has a constant of this name"),
+                "give the constant another name",
+            )),
+            None => Ok(expression),
+        }
     }
 
     /// An expression of x, y, z, t of this dimension.

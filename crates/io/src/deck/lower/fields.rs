@@ -2,16 +2,19 @@
 
 use super::context::{Context, Result};
 use crate::continuum::plan::{Choice, FieldsSpec, Place};
-use crate::deck::document::{AxisName, Centre, Fields, KernelName, PairForceName, PartitionName};
+use crate::deck::document::{
+    AxisName, Centre, Fields, KernelName, PairForceName, PartitionName, Smooth,
+};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Or, Vector};
 use crate::write::folder::{plain, stays};
+use peridyne::spec::{SmoothSpec, Window};
 use peridyne_fields::targets::affordable;
-use peridyne_fields::{PairForce, Partition, Shape, Targets};
+use peridyne_fields::{Kernel, PairForce, Partition, Shape, Targets};
 use std::ops::Range;
 use std::path::Path;
 
-/// `atoms`: a potential between current neighbours, which leaves choices.
+/// `atoms`: a potential between current neighbours or those of the reference, which leaves choices.
 pub(super) fn fields(
     context: &Context,
     written: &[At<Fields>],
@@ -75,7 +78,7 @@ fn one(context: &Context, at: &At<Fields>, atoms: bool) -> Result<FieldsSpec> {
     }
     Ok(FieldsSpec {
         name: name.into(),
-        shape: shape(context, written)?,
+        shape: shape(context, written.kernel.value, written.smoothness.as_ref())?,
         width: context.positive(&written.width, Dim::LENGTH, "the width")?,
         averaged,
         place: place(context, at, averaged)?,
@@ -85,13 +88,30 @@ fn one(context: &Context, at: &At<Fields>, atoms: bool) -> Result<FieldsSpec> {
         each: written.each,
         film: written.film.as_ref().is_some_and(|f| f.value),
         pressure: written.pressure,
+        coordinate: written.coordinate,
         residuals: written.residuals.unwrap_or(16),
     })
 }
 
-fn shape(context: &Context, written: &Fields) -> Result<Shape> {
-    let kernel = written.kernel.value;
-    let smoothness = written.smoothness.as_ref();
+/// Nodes that carry atoms along.
+pub(super) fn smooth(context: &Context, written: &At<Smooth>) -> Result<SmoothSpec> {
+    let at = &written.value;
+    let shape = shape(context, at.kernel.value, at.smoothness.as_ref())?;
+    let width = context.positive(&at.width, Dim::LENGTH, "the width")?;
+    let kernel =
+        Kernel::new(shape, width).map_err(|e| context.error(&written.span, e.to_string()))?;
+    Ok(SmoothSpec {
+        width,
+        reach: kernel.radius(),
+        spacing: { at.spacing.as_ref() }
+            .map(|s| context.positive(s, Dim::LENGTH, "the spacing"))
+            .transpose()?,
+        window: Window::new(move |d| kernel.value(d)),
+    })
+}
+
+/// A localization function.
+fn shape(context: &Context, kernel: KernelName, smoothness: Option<&At<u32>>) -> Result<Shape> {
     if let Some(n) = smoothness {
         if kernel != KernelName::Polynomial {
             return Err(context.error_with(

@@ -70,7 +70,7 @@ pub(super) fn interfaces(
                     return Err(context.error(&at.span, "the interface has no horizon"));
                 }
             },
-            influence: influence(written.influence, &[]),
+            influence: influence(context, written.influence.as_ref(), &[])?,
             fracture: written
                 .fracture
                 .as_ref()

@@ -53,7 +53,14 @@ pub(super) fn read<'a>(
             }
             (Given::Word(name), Value::Table | Value::Entries(_)) => file(name, key)?,
             (Given::Word(text), Value::Formula(variables, dimension)) => {
-                Parameter::Formula(context.formula(text, variables, dimension)?)
+                Parameter::Formula(match dimension {
+                    Some(dimension) => context.formula(text, variables, dimension)?,
+                    None => context.unmeasured(
+                        &text.value,
+                        &text.span,
+                        (variables, Dimension::NUMBER),
+                    )?,
+                })
             }
             (Given::Word(word), _) => Parameter::Word(word.value.clone()),
             (Given::Number(_) | Given::List(_) | Given::Rows(_), _) => {

@@ -32,8 +32,8 @@ pub(super) use warnings::unitless;
 
 use super::OutputSpec;
 use super::document::{
-    CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName, StageName,
-    SurfaceName, UnitName, Units,
+    CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, InfluenceWritten,
+    PlaneName, StageName, SurfaceName, UnitName, Units,
 };
 use super::error::DeckError;
 use super::source::Source;
@@ -44,8 +44,8 @@ use crate::read::Cells;
 use context::{Context, Result};
 use peridyne::run::Shelf;
 use peridyne::spec::{
-    BodySpec, Calibration, FamilyChoice, Horizon, Influence, MaterialSpec, Plane, PreloadSpec,
-    Spec, SurfaceFactors, SurfaceMethod,
+    BodySpec, Calibration, FamilyChoice, Formula, Horizon, Influence, MaterialSpec, Plane,
+    PreloadSpec, Spec, SurfaceFactors, SurfaceMethod,
 };
 pub(super) use stage::Entries;
 use stage::{Staged, Stages};
@@ -98,6 +98,9 @@ pub(super) fn lower(
             document.family,
             None | Some(FamilyName::Auto | FamilyName::Neighbours)
         );
+    // of potentials that a continuum's fields may be made of in several ways
+    let kept = document.family == Some(FamilyName::Reference) && document.smooth.is_none();
+    let chosen = current || kept && !potentials.is_empty();
     if document.family == Some(FamilyName::Neighbours) && !current {
         let shelf = Shelf::standard();
         let all = shelf.descriptors().map(|d| &*d.name);
@@ -203,7 +206,7 @@ pub(super) fn lower(
             Some(CalibrationName::Continuum) => Calibration::Continuum,
             Some(CalibrationName::Discrete) | None => Calibration::Discrete,
         },
-        influence: influence(document.influence, &materials),
+        influence: influence(&context, document.influence.as_ref(), &materials)?,
         periodic,
         surface: None,
         bonds: document
@@ -237,8 +240,12 @@ pub(super) fn lower(
             Some(FamilyName::Stencil) => FamilyChoice::Stencil,
             Some(FamilyName::List) => FamilyChoice::List,
             Some(FamilyName::Neighbours) => FamilyChoice::Neighbours,
+            Some(FamilyName::Reference) => FamilyChoice::Reference,
             Some(FamilyName::Auto) | None => FamilyChoice::Auto,
         },
+        smooth: { document.smooth.as_ref() }
+            .map(|s| fields::smooth(&context, s))
+            .transpose()?,
         schedule: run.schedule,
         fields: written_fields(document),
         probes,
@@ -253,11 +260,13 @@ pub(super) fn lower(
     indenter::of_material(&mut context, document, &mut spec)?;
     let species = potentials.into_values().map(|p| p.element);
     names::folders(&context, &document.output, &document.fields)?;
-    let output = schedule::output(&context, &document.output, spec.potential().is_some())?;
+    let moves = spec.schedule.statics().is_none();
+    let kinds = [spec.potential().is_some(), moves];
+    let output = schedule::output(&context, &document.output, kinds)?;
     Ok(Lowered {
         corner: periods::corner(&context, &document.body.value, &spec.body),
         species: species.collect(),
-        fields: fields::fields(&context, &document.fields, current)?,
+        fields: fields::fields(&context, &document.fields, chosen)?,
         spec,
         output,
         threads: run.threads,
@@ -375,20 +384,41 @@ fn horizon(
 }
 
 /// The customary influence function of the law, unless one is asked for.
-fn influence(named: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influence {
-    match named {
-        Some(InfluenceName::Constant) => Influence::Constant,
-        Some(InfluenceName::Inverse) => Influence::Inverse,
-        Some(InfluenceName::Conical) => Influence::Conical,
-        Some(InfluenceName::Gaussian) => Influence::Gaussian,
-        Some(InfluenceName::CubicSpline) => Influence::CubicSpline,
-        None => {
-            let first = materials.first().map(|m| &m.law);
-            let shelf = Shelf::standard();
-            let written = first.and_then(|law| shelf.written(law));
-            written.map_or(Influence::Constant, |(d, _)| d.influence)
+fn influence(
+    context: &Context,
+    written: Option<&At<InfluenceWritten>>,
+    materials: &[MaterialSpec],
+) -> Result<Influence> {
+    let Some(At { value, span }) = written else {
+        let first = materials.first().map(|m| &m.law);
+        let shelf = Shelf::standard();
+        let written = first.and_then(|law| shelf.written(law));
+        return Ok(written.map_or(Influence::Constant, |(d, _)| d.influence));
+    };
+    Ok(match value {
+        InfluenceWritten::Named(InfluenceName::Constant) => Influence::Constant,
+        InfluenceWritten::Named(InfluenceName::Inverse) => Influence::Inverse,
+        InfluenceWritten::Named(InfluenceName::Conical) => Influence::Conical,
+        InfluenceWritten::Named(InfluenceName::Gaussian) => Influence::Gaussian,
+        InfluenceWritten::Named(InfluenceName::CubicSpline) => Influence::CubicSpline,
+        InfluenceWritten::Formula(text) => {
+            // a word by itself is a name that was meant, or a variable
+            let word = text.trim();
+            let alone = word.chars().all(|c| c.is_ascii_alphabetic() || c == '_');
+            if alone && !Formula::VARIABLES.contains(&word) && !["e", "pi"].contains(&word) {
+                return Err(context.error_with(
+                    span,
+                    format!("there is no influence function `{word}`"),
+                    format!(
+                        "write constant, inverse, conical, gaussian, cubic_spline, or an expression of {}: \"r^-2\"",
+                        Formula::VARIABLES.join(", ")
+                    ),
+                ));
+            }
+            let expression = context.unmeasured(text, span, (Formula::VARIABLES, Dim::LENGTH))?;
+            Influence::Formula(Formula::new(expression))
         }
-    }
+    })
 }
 
 /// Factors of the bonds near the surface that a deck asks for.

@@ -3,13 +3,14 @@
 use super::context::{Context, Result};
 use crate::deck::document::{
     ControlName, Document, IntegratorName, LoadCycles, MethodName, Output, Picture, Run, Safety,
-    SolverName, Statics,
+    SolverName, SpaceTimes, Statics,
 };
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Number, Or, Written};
-use crate::deck::{OutputSpec, PictureSpec};
+use crate::deck::{OutputSpec, PictureSpec, SpaceTimeSpec};
 use crate::drive::refused_threads;
 use crate::write::folder::stays;
+use crate::write::space_time::Window;
 use crate::write::trajectory::Format;
 use peridyne::spec::{Control, Cycles, Method, Newmark, Schedule, Solver, Stepper, TimeStep};
 use std::ops::Range;
@@ -406,7 +407,11 @@ pub(in crate::deck) fn steps(duration: f64, time_step: f64) -> u64 {
     (duration / time_step - 1e-6).ceil().max(1.0) as u64
 }
 
-pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result<OutputSpec> {
+pub(super) fn output(
+    context: &Context,
+    written: &Output,
+    [atoms, moves]: [bool; 2],
+) -> Result<OutputSpec> {
     let positive = |number: &Option<At<u64>>, what: &str| match number {
         Some(n) if n.value == 0 => Err(context.error_with(
             &n.span,
@@ -508,29 +513,94 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
             .map(|n| n.value.clone().into()),
         history: positive(&written.history, "history")?,
         pictures,
+        space_time: space_times(context, written, moves)?,
         report: written.report.unwrap_or(true),
         trajectories,
         data,
     })
 }
 
-fn picture(context: &Context, at: &At<Picture>) -> Result<PictureSpec> {
-    let p = &at.value;
-    let scale = p.scale.as_ref();
-    let scale = scale.map(|s| context.positive(s, Dim::NUMBER, "the scale of displacements"));
-    if let Some(range) = &p.range
+/// Fields over place and time.
+///
+/// # Errors
+/// The body lies on no line, or nothing moves; a range is none.
+fn space_times(context: &Context, written: &Output, moves: bool) -> Result<Vec<SpaceTimeSpec>> {
+    let (mut named, mut given) = (vec![], vec![]);
+    match &written.space_time {
+        None => return Ok(vec![]),
+        Some(at) => {
+            let refused = match (context.dimension, moves) {
+                (1, true) => None,
+                (1, false) => Some((
+                    "space_time is a field over time, and in statics there is none",
+                    "give the deck a [run], or leave space_time out",
+                )),
+                _ => Some((
+                    "space_time is a field over one axis and time, and this body has more axes",
+                    "leave it out: pictures with film = true show a body in the plane or in space over time",
+                )),
+            };
+            if let Some((why, help)) = refused {
+                return Err(context.error_with(&at.span, why, help));
+            }
+            match &at.value {
+                Or::Bare(SpaceTimes::Field(field)) => named.push(field.clone()),
+                Or::Bare(SpaceTimes::All(all)) => given.extend(all.iter().map(|at| &at.value)),
+                Or::Table(one) => given.push(one),
+            }
+        }
+    }
+    let ends = |ends: &Option<At<[Number; 2]>>, dim: Dim, what: &str| -> Result<[f64; 2]> {
+        let Some(at) = ends else {
+            return Ok([f64::NEG_INFINITY, f64::INFINITY]);
+        };
+        let [low, high] = &at.value;
+        let ends = [context.number(low, dim)?, context.number(high, dim)?];
+        match ends[0] < ends[1] {
+            true => Ok(ends),
+            false => Err(context.error(
+                &at.span,
+                format!("{what} of space_time is [from, to], of which the first is lower"),
+            )),
+        }
+    };
+    let mut all: Vec<SpaceTimeSpec> = named.into_iter().map(SpaceTimeSpec::of).collect();
+    for one in given {
+        all.push(SpaceTimeSpec {
+            component: one.component.as_ref().map(|c| c.value.clone()),
+            range: colours(context, one.range.as_ref())?,
+            window: Window {
+                x: ends(&one.x, Dim::LENGTH, "x")?,
+                t: ends(&one.t, Dim::TIME, "t")?,
+            },
+            ..SpaceTimeSpec::of(one.field.value.clone())
+        });
+    }
+    Ok(all)
+}
+
+/// Ends of the colours of a picture.
+fn colours(context: &Context, range: Option<&At<[f64; 2]>>) -> Result<Option<[f64; 2]>> {
+    if let Some(range) = range
         && !(range.value[0] < range.value[1] && range.value.iter().all(|x| x.is_finite()))
     {
         let message =
             "the range of a picture is [low, high], two numbers of which the first is lower";
         return Err(context.error(&range.span, message));
     }
+    Ok(range.map(|r| r.value))
+}
+
+fn picture(context: &Context, at: &At<Picture>) -> Result<PictureSpec> {
+    let p = &at.value;
+    let scale = p.scale.as_ref();
+    let scale = scale.map(|s| context.positive(s, Dim::NUMBER, "the scale of displacements"));
     let text = |t: &Option<At<String>>| t.as_ref().map(|t| t.value.clone());
     Ok(PictureSpec {
         field: text(&p.field),
         component: text(&p.component),
         scale: scale.transpose()?,
-        range: p.range.as_ref().map(|r| r.value),
+        range: colours(context, p.range.as_ref())?,
         arrows: text(&p.arrows),
         film: p.film,
     })

@@ -123,9 +123,12 @@ pub struct Dimensions<'a> {
     pub constants: &'a [(&'a str, Option<Dim>)],
     /// Refuse what does not fit.
     pub strict: bool,
-    /// Plain numbers in place of x, y, z and t.
-    pub variables: Option<&'static [&'static str]>,
+    /// What stands in place of x, y, z and t, and what it measures.
+    pub variables: Option<Variables>,
 }
+
+/// Names of variables, and their dimension.
+pub type Variables = (&'static [&'static str], Dim);
 
 /// What expressions are of where nothing else is said.
 const PLACE: &[&str] = &["x", "y", "z"];
@@ -238,11 +241,12 @@ impl Measure for Dimensions<'_> {
         PURE
     }
     fn variables(&self) -> &'static [&'static str] {
-        self.variables.unwrap_or(PLACE)
+        self.variables.map_or(PLACE, |(names, _)| names)
     }
     fn coordinate(&self) -> Kind {
         match self.variables {
-            Some(_) => PURE,
+            Some((_, dim)) if dim == Dim::NUMBER => PURE,
+            Some((_, dim)) => Kind::variable(dim),
             None => Kind::variable(Dim::LENGTH),
         }
     }

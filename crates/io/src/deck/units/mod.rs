@@ -5,7 +5,7 @@ mod parse;
 mod table;
 mod write;
 
-pub use measure::{Dimensions, Kind, factor_help};
+pub use measure::{Dimensions, Kind, Variables, factor_help};
 pub use parse::{split, unit};
 pub use peridyne::quantity::rounded;
 pub use write::counted;

@@ -43,7 +43,7 @@ pub struct Table {
     pub columns: Vec<Column>,
 }
 
-/// In the order of the table's columns; pressure follows where it is asked for.
+/// In the order of the table's columns; pressure, and those of [`Quantity::PLACES`] follow where they are asked for.
 pub const ORDER: [Quantity; 15] = [
     Quantity::Density,
     Quantity::Momentum,
@@ -62,10 +62,11 @@ pub const ORDER: [Quantity; 15] = [
     Quantity::ChurningSource,
 ];
 
-/// Quantities of a table.
-fn asked(pressure: bool) -> impl Iterator<Item = Quantity> {
+/// Quantities of a table; those of places are made only where they are asked for.
+fn asked(pressure: bool, places: bool) -> impl Iterator<Item = Quantity> {
     let more = pressure.then_some(Quantity::Pressure);
-    ORDER.into_iter().chain(more)
+    let of_places = Quantity::PLACES.into_iter().filter(move |_| places);
+    ORDER.into_iter().chain(more).chain(of_places)
 }
 
 impl Table {
@@ -81,7 +82,8 @@ impl Table {
             let values = values.ok_or_else(|| fields.why_not(quantity));
             of(quantity, units, values, None)
         };
-        let mut columns: Vec<Column> = asked(pressure).map(column).collect();
+        let places = fields.get(Quantity::Coordinate).is_some();
+        let mut columns: Vec<Column> = asked(pressure, places).map(column).collect();
         for part in &fields.parts {
             columns.extend(of_part(part, units));
         }
@@ -106,10 +108,11 @@ impl Table {
             let values = values.ok_or_else(|| average.why_not(quantity));
             of(quantity, units, values, errors)
         };
+        let places = average.mean(Quantity::Coordinate).is_some();
         Table {
             points,
             grid,
-            columns: asked(pressure).map(column).collect(),
+            columns: asked(pressure, places).map(column).collect(),
         }
     }
 }

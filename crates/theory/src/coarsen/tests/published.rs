@@ -105,6 +105,7 @@ fn apart<const D: usize>(body: &LinearBody<D>, every: u32, radius: f64) -> (f64,
         range: body.range(),
         asymmetry: body.soundness().asymmetry,
         loaded: &vec![false; body.points()],
+        shaped: false,
     };
     let made = rows(&task, radius).unwrap();
     let (mut off, mut most) = (0.0f64, 0.0f64);

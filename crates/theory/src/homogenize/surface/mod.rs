@@ -20,7 +20,7 @@ use equations::{Equations, StencilBond, conductances, equations, shares};
 use neighbourhoods::{Bonds, Kinds, Neighbourhoods};
 use peridyne::family::stencil::Stencil;
 use peridyne::family::volume_fraction;
-use peridyne::law::influence::influence;
+use peridyne::law::influence::mean_influence;
 use peridyne::law::solid::eam_like::Solid;
 use peridyne::message;
 use peridyne::quantity::{Message, place, rounded};
@@ -44,6 +44,10 @@ pub enum SurfaceError {
         "a surface correction multiplies what single bonds pull, of pmb, lps and springs: atoms have no horizon to be missing in, and the bonds of laws with memory, tensors or several stiffnesses pull with what their whole family says"
     )]
     Law,
+    #[error(
+        "a surface correction of lps is known where its influence function is the same from both ends of a bond, ω(ξ) = ω(−ξ)"
+    )]
+    Directed,
     #[error(
         "this surface correction is for bond-based laws (pmb or springs); the bonds of a state-based solid do not act alone"
     )]
@@ -85,6 +89,7 @@ impl SurfaceError {
     pub fn help(&self) -> &'static str {
         match self {
             SurfaceError::Law => "leave surface out, or take pmb or lps",
+            SurfaceError::Directed => "leave surface out, or take pmb",
             SurfaceError::Published => "write surface = \"exact\", or take pmb",
             SurfaceError::Lattice => {
                 "take a lattice body without perturbation and without family = \"list\", or leave surface out"
@@ -142,6 +147,9 @@ impl LatticeBody {
         if !state_based && !spec.materials.iter().all(bond_based) {
             return Err(SurfaceError::Law);
         }
+        if state_based && spec.influence.is_directed() {
+            return Err(SurfaceError::Directed);
+        }
         if !matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Stencil) {
             return Err(SurfaceError::Lattice);
         }
@@ -195,7 +203,9 @@ impl LatticeBody {
                     true => volume_fraction(r, horizon, h),
                     false => 1.0,
                 };
-                let (weight, length) = (nu * influence(spec.influence, r, horizon), r / h);
+                let xi = o.cell.map(|c| h * f64::from(c));
+                let omega = mean_influence(spec.influence, &xi, r, horizon);
+                let (weight, length) = (nu * omega, r / h);
                 StencilBond {
                     offset: o.cell,
                     weight: if state_based { weight * length } else { weight },

@@ -206,7 +206,7 @@ impl<const D: usize> Classical<D> for Hyperelastic {
 
 const ENERGY: Key = Key {
     name: "energy",
-    value: Value::Formula(INVARIANTS, Dimension::PRESSURE),
+    value: Value::Formula(INVARIANTS, Some(Dimension::PRESSURE)),
     need: Need::Given,
     doc: "Stored energy ψ per reference volume, an expression of I1 = tr C, I2 = ½ (tr²C − tr C²) and J = det F with + − * / ^ exp ln sqrt, numbers and [constants]: without stress in the reference, with positive moduli there.",
 };

@@ -25,8 +25,18 @@ use std::any::Any;
 use std::sync::Arc;
 
 type Bound<const D: usize> = Result<Box<dyn Interaction<D>>, Wrong>;
-/// Fixed neighbours where there are links.
-type Binder<const D: usize> = fn(&Given, &Body<D>, Option<Links<D>>, Simd) -> Bound<D>;
+type Binder<const D: usize> = fn(&Given, &Body<D>, Neighbours<D>, Simd) -> Bound<D>;
+
+/// Who feels whom.
+#[derive(Clone)]
+pub(crate) enum Neighbours<const D: usize> {
+    /// Those of a lattice, for ever.
+    Linked(Links<D>),
+    /// Those within this horizon in the reference (length), for ever.
+    Reference(f64),
+    /// Those that are near now.
+    Current,
+}
 
 /// What the engine does with a kind of potential.
 pub(super) struct Atoms {
@@ -116,13 +126,16 @@ impl Atoms {
 fn bind<const D: usize, P: Described>(
     given: &Given,
     body: &Body<D>,
-    links: Option<Links<D>>,
+    neighbours: Neighbours<D>,
     simd: Simd,
 ) -> Bound<D> {
     let potential = mixture::<P>(given)?;
-    Ok(match links {
-        Some(links) => Box::new(FixedAtoms::new(body, links, potential, simd)),
-        None => Box::new(CurrentAtoms::new(body, potential, simd)),
+    Ok(match neighbours {
+        Neighbours::Linked(links) => Box::new(FixedAtoms::new(body, links, potential, simd)),
+        Neighbours::Reference(horizon) => {
+            Box::new(CurrentAtoms::of_reference(body, potential, horizon, simd))
+        }
+        Neighbours::Current => Box::new(CurrentAtoms::new(body, potential, simd)),
     })
 }
 
@@ -134,17 +147,21 @@ fn not_of_pairs(name: &str) -> Wrong {
 fn bind_fan<F: fan::Described>(
     given: &Given,
     body: &Body<3>,
-    links: Option<Links<3>>,
+    neighbours: Neighbours<3>,
     simd: Simd,
 ) -> Bound<3> {
     let fan = fan::of_kinds::<F>(given)?;
-    if links.is_some() {
-        let message = format!(
-            "{} lives on current neighbours: remove family = \"stencil\"",
-            F::NAME
-        );
-        return Err((String::new(), message));
-    }
+    let held = match neighbours {
+        Neighbours::Linked(_) => {
+            let message = format!(
+                "{} has no stencil: its terms have pairs that no bond of one atom is; write family = \"reference\"",
+                F::NAME
+            );
+            return Err((String::new(), message));
+        }
+        Neighbours::Reference(horizon) => Some(horizon),
+        Neighbours::Current => None,
+    };
     let known = fan.table().kinds();
     let kinds = body.slots.iter().map(|s| body.material_of(*s as usize));
     let found = kinds.max().map_or(0, |k| k + 1);
@@ -155,14 +172,17 @@ fn bind_fan<F: fan::Described>(
         );
         return Err((String::new(), message));
     }
-    Ok(Box::new(FanAtoms::new(body, fan, simd)))
+    Ok(Box::new(match held {
+        Some(horizon) => FanAtoms::of_reference(body, fan, horizon, simd),
+        None => FanAtoms::new(body, fan, simd),
+    }))
 }
 
 /// Angles between bonds need space.
 fn flat<const D: usize, F: fan::Described>(
     _: &Given,
     _: &Body<D>,
-    _: Option<Links<D>>,
+    _: Neighbours<D>,
     _: Simd,
 ) -> Bound<D> {
     let message = format!(
@@ -408,17 +428,16 @@ impl AnyPotential {
         found.map_err(|(_, message)| BuildError::invalid("materials[0].law", message))
     }
 
-    /// On fixed neighbours where there are links, else on current ones.
     fn bind<const D: usize>(
         &self,
         body: &Body<D>,
-        links: Option<Links<D>>,
+        neighbours: Neighbours<D>,
         simd: Simd,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         self.with(|a| {
             let binder = a.binders.get(D - 1);
             match binder.and_then(|b| b.downcast_ref::<Binder<D>>()) {
-                Some(binder) => binder(&self.given, body, links, simd),
+                Some(binder) => binder(&self.given, body, neighbours, simd),
                 None => Err((String::new(), format!("there are no {D} dimensions"))),
             }
         })
@@ -473,23 +492,31 @@ impl AnyPotentials {
         }))
     }
 
-    /// On fixed neighbours where there are links, else on current ones.
+    /// Is it one potential of pairs and densities, which stencils know?
+    pub fn has_stencil(&self) -> bool {
+        let [one] = &self.parts[..] else {
+            return false;
+        };
+        one.entry.atoms().is_some_and(|a| a.of_pairs || a.embedded)
+    }
+
     pub fn bind<const D: usize>(
         &self,
         body: &Body<D>,
-        links: Option<Links<D>>,
+        neighbours: Neighbours<D>,
         simd: Simd,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         if let [one] = &self.parts[..] {
-            return one.bind(body, links, simd);
+            return one.bind(body, neighbours, simd);
         }
-        if links.is_some() {
+        if let Neighbours::Linked(_) = neighbours {
             return Err(
-                BuildError::unsupported("family", "fixed neighbours know one potential")
-                    .help("leave family out: atoms feel those that are near now"),
+                BuildError::unsupported("family", "a stencil knows one potential")
+                    .help("write family = \"reference\", or leave family out: atoms feel those that are near now"),
             );
         }
-        let parts = self.parts.iter().map(|p| p.bind(body, None, simd));
+        let each = self.parts.iter();
+        let parts = each.map(|p| p.bind(body, neighbours.clone(), simd));
         let parts = parts.collect::<Result<Vec<_>, _>>()?;
         Ok(Box::new(Together::new(body, parts)))
     }

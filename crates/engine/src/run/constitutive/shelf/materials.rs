@@ -56,6 +56,8 @@ pub(super) struct Materials {
     pub turns: bool,
     /// [`Shelved::KINDS`]
     pub kinds: bool,
+    /// [`Shelved::PULLS_AT_REST`]
+    pub pulls: bool,
     /// [`Material::ACROSS`]
     pub across: bool,
     binders: Binders,
@@ -101,6 +103,7 @@ impl Materials {
             fades: M::FADES,
             turns: M::TURNS,
             kinds: M::KINDS,
+            pulls: M::PULLS_AT_REST,
             across: <M as Material<2>>::ACROSS,
             binders: [
                 line,
@@ -254,6 +257,11 @@ impl Chosen {
         matches!(&self.entry.runs, Runs::Material(material) if material.fades)
     }
 
+    /// May its bonds pull in the reference?
+    pub fn pulls(&self) -> bool {
+        matches!(&self.entry.runs, Runs::Material(material) if material.pulls)
+    }
+
     /// What its materials soften by.
     pub fn softens(&self) -> Vec<Softens> {
         let of = |m: &Made| Softens {
@@ -336,6 +344,11 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
         simd,
         ..
     } = place;
+    // a bond that is not of its family's sums has one stiffness
+    let weight = match M::OF_FAMILY {
+        true => weight,
+        false => weight.mean(),
+    };
     able(&law, &criteria)?;
     let held = match D == 2 && chosen.plane == Plane::Strain {
         true => numbers.iter().map(|n| chosen.materials[*n].held).collect(),
@@ -354,7 +367,10 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
     };
     match (&body.layout, stencil) {
         (Layout::Grid(grid), Some(stencil)) => {
-            let of = |r: f64| [weight.influence(r, 1.0 / r), weight.volume_fraction(r)];
+            let of = |xi: &[f64; D], r: f64| {
+                let [own, back] = weight.influence(xi, r, 1.0 / r);
+                [own, back, weight.volume_fraction(r)]
+            };
             let made = MaterialInteraction::new(MaterialParts {
                 body,
                 family: LatticeFamily::new(body, grid, stencil, &of),

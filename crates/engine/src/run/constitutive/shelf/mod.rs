@@ -3,7 +3,7 @@
 mod atoms;
 mod materials;
 
-pub(crate) use atoms::AnyPotentials;
+pub(crate) use atoms::{AnyPotentials, Neighbours};
 pub(super) use materials::chosen;
 pub(crate) use materials::{Chosen, Place, Softens};
 
