@@ -204,6 +204,7 @@ fn plain_fluxes_make_constant_gradients() {
         (SPRINGS, &[17, 14][..], 4),
         (LPS, &[17, 14][..], 3),
         (PMB, &[9, 11, 10][..], 2),
+        (PMB, &[13, 13, 14][..], 3),
         (LPS, &[9, 8, 10][..], 3),
     ] {
         let head = match n.len() {

@@ -267,7 +267,7 @@ impl SpaceTime {
         .map(self.columns, &values)
     }
 
-    /// `x` [columns], their middles; `t` [rows]; the field [rows, columns] by its name.
+    /// `x[columns]`, their middles; `t[rows]`; the field `[rows, columns]` by its name.
     ///
     /// # Errors
     /// The operating system's.

@@ -12,8 +12,8 @@
 //! `Σ_j (v_i η_ij + v_j η_ji) ω ν r n = −(m/D) a`.
 //!
 //! Conduction has a factor ζ of the conductance `2 D k ω ν/m` of a bond between whole cells: a constant gradient along any axis brings in
-//! what leaves through the area if `Σ_j ζ_ij ω ν r n = −(m/2D) a`, m that of a full family. There are such ζ ≥ 0 wherever there are λ ≥ 0: the trace
-//! of their equations is this one for `ζ ∝ λ/r`, of state-based solids for ζ = λ.
+//! what leaves through the area if `Σ_j ζ_ij ω ν r n = −(m/2D) a`, m that of a full family. In a state-based solid
+//! ζ = λ is one solution: the trace of its equations is this one.
 
 use super::neighbourhoods::{Bonds, Kinds, Neighbourhoods};
 use super::sites::Sites;

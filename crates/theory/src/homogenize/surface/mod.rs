@@ -137,6 +137,8 @@ struct LatticeBody {
     bonds: Vec<StencilBond>,
     /// Does the law have a dilatation?
     state_based: bool,
+    /// Does anything spread through the bonds?
+    conducts: bool,
 }
 
 impl LatticeBody {
@@ -223,6 +225,7 @@ impl LatticeBody {
             lattice,
             bonds,
             state_based,
+            conducts: !spec.transfers.is_empty(),
         })
     }
 
@@ -262,8 +265,8 @@ struct Attempt {
     system: Equations,
     /// Of the factors of the dilatation, and these.
     shares: Option<(Equations, Vec<f64>)>,
-    /// Factors of conductances.
-    conductances: Vec<f64>,
+    /// Factors of conductances of bonds with an end in so many layers; none where nothing spreads.
+    conductances: Option<(i32, Vec<f64>)>,
     layers: i32,
 }
 
@@ -277,7 +280,7 @@ impl Attempt {
             kinds,
             system,
             shares: None,
-            conductances: vec![],
+            conductances: None,
             layers,
         }
     }
@@ -294,17 +297,29 @@ impl Attempt {
         exact
     }
 
-    /// Finds the factors of conductances: are they exact?
-    fn conduct(&mut self, body: &LatticeBody) -> Result<bool, SurfaceError> {
-        let around = &mut self.around;
-        let system = conductances(&body.sites, &body.bonds, around, &self.kinds, self.layers);
-        let found = solve::exact(&system).map_err(SurfaceError::Solver)?;
-        let exact = found.is_some();
-        self.conductances = match found {
-            Some(found) => found.factors,
-            None => solve::nearest(&system).map_err(SurfaceError::Solver)?,
-        };
-        Ok(exact)
+    /// Finds the factors of conductances, where they are asked for, with as few layers as go; what they leave of the flux where none are exact.
+    fn conduct(&mut self, body: &LatticeBody) -> Result<Option<f64>, SurfaceError> {
+        if !body.conducts {
+            return Ok(None);
+        }
+        for layers in 1..=self.around.reach() {
+            let (sites, bonds) = (&body.sites, &body.bonds);
+            let system = conductances(sites, bonds, &mut self.around, &self.kinds, layers);
+            if system.unknowns > MOST_UNKNOWNS {
+                break;
+            }
+            if let Some(found) = solve::exact(&system).map_err(SurfaceError::Solver)? {
+                self.conductances = Some((layers, found.factors));
+                return Ok(None);
+            }
+        }
+        let (sites, bonds) = (&body.sites, &body.bonds);
+        let system = conductances(sites, bonds, &mut self.around, &self.kinds, 1);
+        let factors = solve::nearest(&system).map_err(SurfaceError::Solver)?;
+        let largest = |all: &[f64]| all.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let left = largest(&system.residual(&factors)) / largest(&system.right);
+        self.conductances = Some((1, factors));
+        Ok(Some(left))
     }
 
     /// Factors of the bonds of the point at `place`.
@@ -320,10 +335,17 @@ impl Attempt {
                     let mut class = |bonds| self.around.class(bonds, own, other, bond.offset);
                     let mutual = class(Bonds::Mutual);
                     factor.pair = x[mutual];
-                    factor.conductance = self.conductances[mutual];
                     if let Some((_, y)) = &self.shares {
                         factor.share = y[class(Bonds::Directed)];
                     }
+                }
+                if let Some((layers, y)) = &self.conductances
+                    && [own, other]
+                        .iter()
+                        .any(|end| self.around.near(*end, *layers))
+                {
+                    factor.conductance =
+                        y[self.around.class(Bonds::Mutual, own, other, bond.offset)];
                 }
             }
             row.push(factor);
@@ -376,12 +398,17 @@ pub fn correct(
         if !attempt.share(&body) {
             continue;
         }
-        if let Some(found) = solve::exact(&attempt.system).map_err(SurfaceError::Solver)?
-            && attempt.conduct(&body)?
-        {
+        if let Some(found) = solve::exact(&attempt.system).map_err(SurfaceError::Solver)? {
             let report = report(&body, &attempt, &found.factors, Some(found.floor));
+            let warning = attempt.conduct(&body)?.map(|left| {
+                format!(
+                    "surface = \"exact\": no factors without negative ones make every constant gradient of this body steady; those taken leave at most {} of a flux",
+                    rounded(left, 2)
+                )
+                .into()
+            });
             return Ok((
-                finish(&body, &mut attempt, &found.factors, None),
+                finish(&body, &mut attempt, &found.factors, warning),
                 Some(report),
             ));
         }
@@ -391,12 +418,15 @@ pub fn correct(
     }
     let mut attempt = Attempt::new(&body, 1, longest);
     attempt.share(&body);
-    attempt.conduct(&body)?;
+    let also = match attempt.conduct(&body)? {
+        None => "",
+        Some(_) => " (nor every constant gradient steady)",
+    };
     let x = solve::nearest(&attempt.system).map_err(SurfaceError::Solver)?;
     let report = report(&body, &attempt, &x, None);
     let warning = message![
         format!(
-            "surface = \"exact\": no factors without negative ones make every uniform strain of this body exact; those taken leave at most {} of the stiffness, at ",
+            "surface = \"exact\": no factors without negative ones make every uniform strain of this body exact{also}; those taken leave at most {} of the stiffness, at ",
             rounded(report.residual, 2)
         ),
         place(&report.worst),

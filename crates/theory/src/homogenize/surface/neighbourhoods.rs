@@ -153,6 +153,11 @@ impl Neighbourhoods {
         self.of_place[place]
     }
 
+    /// Sites that a name tells of, along each axis.
+    pub fn reach(&self) -> i32 {
+        self.reach
+    }
+
     /// Is a site within `layers` (at most the reach) of such a point empty?
     pub fn near(&self, name: u32, layers: i32) -> bool {
         let pattern = &self.patterns[name as usize];
