@@ -214,3 +214,50 @@ fn fields_of_a_body_are_written_as_those_of_atoms() {
         assert!(left < 1e-3, "{law}: {left:e}");
     }
 }
+
+/// A potential on the families of the reference, in every partition and with both pair forces: σ, q_K, q_U, q_C, z of the run and of its frames.
+#[test]
+fn fields_of_the_reference_are_those_of_its_frames() {
+    let dir = TempDir::new().unwrap();
+    let at = dir.path();
+    std::fs::write(at.join("points.txt"), POINTS).unwrap();
+    let silicon = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good/Si.sw");
+    std::fs::copy(silicon, at.join("Si.sw")).unwrap();
+    for (written, flag) in [
+        ("\"site\"", "site"),
+        ("\"equal\"", "equal"),
+        ("{ centre = 0.5 }", "centre:0.5"),
+    ] {
+        for pair_force in ["distances", "differences"] {
+            let deck = format!(
+                "units = \"metal\"\nperiodic = [\"x\", \"y\", \"z\"]\nfamily = \"reference\"\nhorizon = 5.2\n\
+                 body = {{ lattice = \"diamond\", spacing = 5.43094978, cells = [2, 2, 2] }}\n\
+                 material = {{ mass = 28.0855, law = {{ stillinger_weber = {{ file = \"Si.sw\" }} }} }}\n\
+                 thermal = {{ temperature = 300, seed = 3 }}\n\
+                 run = {{ steps = 20, time_step = 0.001 }}\n\
+                 output = {{ every = 20, vtu = false, trajectory = \"frames.extxyz\" }}\n\
+                 [[fields]]\nkernel = \"polynomial\"\nsmoothness = 5\nwidth = 5\npoints = [{}]\nevery = 20\n\
+                 partition = {written}\npair_force = \"{pair_force}\"\n",
+                inline()
+            );
+            let out = format!("{}-{pair_force}", flag.replace(':', ""));
+            std::fs::write(at.join("deck.toml"), deck).unwrap();
+            let (code, _, error) = peridyne(at, &["run", "deck.toml", "--out", &out]);
+            assert_eq!(code, Some(0), "{error}");
+            let frames = format!("{out}/frames.extxyz");
+            let files = format!("{out}-files");
+            let mut words = vec!["fields", "--frames", &frames, "--out", &files];
+            let flags = "--model deck.toml --kernel polynomial --smoothness 5 --width 5 --points points.txt --partition";
+            words.extend(flags.split_whitespace());
+            words.extend([flag, "--pair-force", pair_force]);
+            let (code, _, error) = peridyne(at, &words);
+            assert_eq!(code, Some(0), "{error}");
+            let [live, files] = [&out, &files].map(|folder| at.join(folder));
+            same(
+                &live.join("fields/points.csv"),
+                &files.join("points.csv"),
+                1e-11,
+            );
+        }
+    }
+}
