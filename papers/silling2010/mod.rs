@@ -8,10 +8,14 @@ mod crystal;
 mod beyond_atoms;
 #[path = "beyond-block/mod.rs"]
 mod beyond_block;
+#[path = "beyond-increments/mod.rs"]
+mod beyond_increments;
 #[path = "beyond-motion/mod.rs"]
 mod beyond_motion;
 #[path = "beyond-plates/mod.rs"]
 mod beyond_plates;
+#[path = "beyond-temperature/mod.rs"]
+mod beyond_temperature;
 #[path = "equations/mod.rs"]
 mod equations;
 #[path = "figure-3/mod.rs"]
@@ -39,5 +43,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &beyond_block::BeyondBlock,
         &beyond_atoms::BeyondAtoms,
         &beyond_motion::BeyondMotion,
+        &beyond_temperature::BeyondTemperature,
+        &beyond_increments::BeyondIncrements,
     ]
 }

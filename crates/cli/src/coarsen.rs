@@ -1,5 +1,7 @@
 //! `peridyne coarsen`: linear bodies level by level.
 
+mod average;
+mod increments;
 mod levels;
 mod report;
 mod way;
@@ -8,6 +10,7 @@ use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
 use crate::run::with_threads;
+use average::averaged;
 use levels::levels;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
@@ -66,9 +69,48 @@ pub struct CoarsenArguments {
     /// thinned: only those of them that are retained anyway.
     #[arg(long, default_value = "kept", value_name = "KEPT|THINNED")]
     pub supports: String,
+    /// Nonlinear bodies, in so many equal increments of the load of a deck of [statics]: the linear body is taken about the state of each, is
+    /// coarsened, and bears what is missing there at the load of the increment's end. Law, supports and loads are those of the deck; bonds may
+    /// break, and laws may remember. Writes increments.csv, the displacements of all points after every increment (points.pvd), and the
+    /// levels about the last state. Into `out/<name of the deck>-increments` if --out is not given.
+    #[arg(long, value_name = "N")]
+    pub increments: Option<usize>,
+    /// With --increments: solutions after the first at most, until what is missing on retained points is `statics.tolerance` of loads and
+    /// reactions. Without, an increment leaves what the next one takes up.
+    #[arg(long, default_value_t = 0, value_name = "M", requires = "increments")]
+    pub corrections: usize,
+    /// With --increments, what removed points do. carried: they move with the shapes of each increment, of first order in it. relaxed: after
+    /// every solution they come to rest between retained ones; with corrections the answer is that of Newton's method on all points.
+    #[arg(
+        long,
+        default_value = "carried",
+        value_name = "CARRIED|RELAXED",
+        requires = "increments"
+    )]
+    pub removed: String,
     /// Largest force under a rigid rotation, relative to the stiffness, that is accepted.
     #[arg(long, default_value_t = 1e-3, value_name = "FRACTION")]
     pub rotation: f64,
+    /// Atoms at a temperature: level 0 is not the Hessian about the sites, but what forces in the frames of a run of this deck say of the bonds, with the
+    /// least-squares fit of forces to displacements from the mean places. Extended XYZ or a LAMMPS dump, of the deck's box; the deck's potential evaluates the forces. Bonds between atoms of the same surroundings
+    /// are alike. Prints temperature, unexplained forces, and of perfect crystals the isothermal elastic constants with their errors; `thermal.json` has them.
+    #[arg(long, value_name = "FRAMES")]
+    pub average: Option<PathBuf>,
+    /// So many frames at the beginning are left out: a run that is not yet in equilibrium.
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "average")]
+    pub average_skip: usize,
+    /// Longest bonds of the fit (in units of the deck), less than half of every period. If not given a quarter longer than those of the Hessian, as motion
+    /// couples atoms that the potential does not, where the box holds them and the frames are enough. Elastic constants are told of bonds that are longer by another quarter, too.
+    #[arg(long, value_name = "LENGTH", requires = "average")]
+    pub average_radius: Option<f64>,
+    /// lattice: where all atoms are alike, bonds are alike that a symmetry of the lattice maps on each other. none: they are not taken to be.
+    #[arg(
+        long,
+        value_name = "SYMMETRY",
+        default_value = "lattice",
+        requires = "average"
+    )]
+    pub average_symmetry: String,
     /// Run the deck and all levels, and measure error and cost. A body that moves and is more than 5 % off is warned of.
     #[arg(long)]
     pub run: bool,
@@ -86,7 +128,10 @@ pub fn coarsen(arguments: &CoarsenArguments) -> Result<(), Failure> {
     }
     let deck = deck::read(&arguments.input)?;
     deck::is_plain(&deck, "coarsen")?;
-    with_threads(arguments.threads, |_| all(arguments, &deck))
+    with_threads(arguments.threads, |_| match arguments.increments {
+        Some(increments) => increments::followed(arguments, &deck, increments),
+        None => all(arguments, &deck),
+    })
 }
 
 fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
@@ -108,33 +153,12 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
             deck.file()
         ))
     })?;
-    let kept = match &arguments.keep {
-        None => None,
-        Some(name) => Some(sim.members(name).ok_or_else(|| {
-            Failure::input(format!("--keep {name}: {} has no such set", deck.file()))
-        })?),
-    };
+    let kept = kept(arguments, deck, sim.as_ref())?;
     let way = Way::of(arguments)?;
-    let traction = |c: &&ConditionSpec| matches!(c.kind, ConditionKind::Traction { .. });
-    if let (false, Some(c)) = (way.condensed, deck.spec.conditions.iter().find(traction)) {
-        return Err(Failure::input(format!(
-            "--loads silling: a body force density acts on retained points, and the traction on `{}` acts on a face, whose points are removed: write body_force in its place, or leave --loads out",
-            c.set
-        )));
-    }
-    let ids = |act: fn(&ConditionKind) -> bool| -> Result<Vec<bool>, Failure> {
-        let mut marked = vec![false; sim.info().points as usize];
-        for c in deck.spec.conditions.iter().filter(|c| act(&c.kind)) {
-            let members = sim
-                .members(&c.set)
-                .ok_or_else(|| Failure::input(format!("{} has no set `{}`", deck.file(), c.set)))?;
-            members.iter().for_each(|i| marked[*i as usize] = true);
-        }
-        Ok(marked)
-    };
+    no_faces(deck, way)?;
     let acting = Acting {
-        loaded: ids(adds_force)?,
-        held: ids(prescribes)?,
+        loaded: marked(deck, sim.as_ref(), adds_force)?,
+        held: marked(deck, sim.as_ref(), prescribes)?,
         spacing: sim.info().spacing,
         way,
     };
@@ -143,9 +167,16 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
         let name = name.map_or("deck".into(), |n| n.to_string_lossy());
         Path::new("out").join(format!("{name}-coarsened"))
     });
-    let relaxed = match spec.potential() {
-        None => None,
-        Some(_) => Some(relaxed(sim.as_mut(), deck)?),
+    let relaxed = match (spec.potential(), &arguments.average) {
+        (None, Some(frames)) => {
+            return Err(Failure::input(format!(
+                "--average {}: frames are of atoms, and {} has no potential: leave it out",
+                frames.display(),
+                deck.file()
+            )));
+        }
+        (None, None) | (Some(_), Some(_)) => None,
+        (Some(_), None) => Some(relaxed(sim.as_mut(), deck)?),
     };
     let began = Instant::now();
     let body = sim.linear_body();
@@ -154,12 +185,91 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
         sim.info().points,
         began.elapsed().as_secs_f64()
     ));
-    drop(sim);
+    let made = Made {
+        arguments,
+        deck,
+        out: &out,
+        sim,
+        relaxed,
+    };
     match body {
-        AnyLinearBody::One(body) => levels(arguments, deck, &out, body, relaxed, kept, acting),
-        AnyLinearBody::Two(body) => levels(arguments, deck, &out, body, relaxed, kept, acting),
-        AnyLinearBody::Three(body) => levels(arguments, deck, &out, body, relaxed, kept, acting),
+        AnyLinearBody::One(body) => made.coarsened(body, kept, acting),
+        AnyLinearBody::Two(body) => made.coarsened(body, kept, acting),
+        AnyLinearBody::Three(body) => made.coarsened(body, kept, acting),
     }
+}
+
+/// What level 0 is made from, whatever its dimension.
+struct Made<'a> {
+    arguments: &'a CoarsenArguments,
+    deck: &'a Deck,
+    out: &'a Path,
+    sim: Box<dyn Simulation>,
+    relaxed: Option<Vec<Point>>,
+}
+
+impl Made<'_> {
+    /// Level 0 of frames, if there are any, and all levels above it.
+    fn coarsened<const D: usize>(
+        mut self,
+        mut body: LinearBody<D>,
+        kept: Option<Vec<u32>>,
+        acting: Acting,
+    ) -> Result<(), Failure> {
+        let (arguments, deck, out) = (self.arguments, self.deck, self.out);
+        if let Some(frames) = &arguments.average {
+            let (made, moved) = averaged(arguments, deck, self.sim.as_mut(), &body, frames, out)?;
+            (body, self.relaxed) = (made, Some(moved));
+        }
+        drop(self.sim);
+        levels(arguments, deck, out, body, self.relaxed, kept, acting)
+    }
+}
+
+/// The set that --keep names.
+fn kept(
+    arguments: &CoarsenArguments,
+    deck: &Deck,
+    sim: &dyn Simulation,
+) -> Result<Option<Vec<u32>>, Failure> {
+    let Some(name) = &arguments.keep else {
+        return Ok(None);
+    };
+    match sim.members(name) {
+        Some(members) => Ok(Some(members)),
+        None => Err(Failure::input(format!(
+            "--keep {name}: {} has no such set",
+            deck.file()
+        ))),
+    }
+}
+
+/// Loads as in the paper are forces per volume.
+fn no_faces(deck: &Deck, way: Way) -> Result<(), Failure> {
+    let traction = |c: &&ConditionSpec| matches!(c.kind, ConditionKind::Traction { .. });
+    match deck.spec.conditions.iter().find(traction) {
+        Some(c) if !way.condensed => Err(Failure::input(format!(
+            "--loads silling: a body force density acts on retained points, and the traction on `{}` acts on a face, whose points are removed: write body_force in its place, or leave --loads out",
+            c.set
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// `[N]`: does a condition that does this act on the point?
+fn marked(
+    deck: &Deck,
+    sim: &dyn Simulation,
+    act: fn(&ConditionKind) -> bool,
+) -> Result<Vec<bool>, Failure> {
+    let mut marked = vec![false; sim.info().points as usize];
+    for c in deck.spec.conditions.iter().filter(|c| act(&c.kind)) {
+        let members = sim
+            .members(&c.set)
+            .ok_or_else(|| Failure::input(format!("{} has no set `{}`", deck.file(), c.set)))?;
+        members.iter().for_each(|i| marked[*i as usize] = true);
+    }
+    Ok(marked)
 }
 
 /// What the conditions of a deck do, point by point.

@@ -3,6 +3,7 @@
 
 use crate::FieldsError;
 use crate::frame::Frame;
+use std::collections::HashSet;
 
 /// A particle near a centre, or an image of one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +58,17 @@ impl Families {
             all.iter().map(whole).collect()
         };
         Ok(Families((0..reference.len()).map(family).collect()))
+    }
+
+    /// Of these the bonds that are whole: pairs of particles, the lower one first.
+    pub fn of_whole(&self, bonds: &[(u32, u32)]) -> Families {
+        let whole: HashSet<(u32, u32)> = bonds.iter().copied().collect();
+        let left = |(i, all): (usize, &Vec<(u32, [i32; 3])>)| {
+            let i = i as u32;
+            let of = |j: u32| whole.contains(&(i.min(j), i.max(j)));
+            all.iter().copied().filter(|(j, _)| of(*j)).collect()
+        };
+        Families(self.0.iter().enumerate().map(left).collect())
     }
 }
 

@@ -1,119 +1,17 @@
 //! A potential as a peridynamic material (sandia2010, chapter 4): families of the reference, and nodes that carry the atoms along.
 
+mod crystals;
+
+use crystals::{
+    EDGE, HORIZON, Random, WEAK, argon, copper, deck, farthest, heat, hexane, largest, model, run,
+    silicon, tersoff,
+};
 use peridyne::run::{Options, Simulation, build};
 use peridyne::spec::BodySpec;
 use peridyne_fields::residuals::Residuals;
 use peridyne_fields::{Fields, PairForce, Partition, Quantity};
 use peridyne_io::continuum::live::Live;
 use peridyne_io::continuum::plan::{Choice, FieldsSpec, Place};
-use peridyne_io::deck::Deck;
-use std::path::Path;
-
-/// Edge of silicon's cell (Å), and a horizon with room to move.
-const EDGE: f64 = 5.43094978;
-const HORIZON: &str = "family = \"reference\"\nhorizon = 5.2\n";
-
-/// A pair potential of hexane.
-const WEAK: &str =
-    "{ lennard_jones = { epsilon = 0.0051, sigma = 3.905, cutoff = 9, end = \"shifted\" } }";
-
-/// The deck of a text; files are those beside the good decks.
-fn deck(text: &str) -> Deck {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good/test.toml");
-    Deck::parse(text, file.to_str().unwrap(), &[]).unwrap()
-}
-
-fn model(text: &str) -> Box<dyn Simulation> {
-    build(&deck(text).spec, Options::default()).unwrap()
-}
-
-/// Atoms in periods, in units of metals.
-fn atoms(body: &str, material: &str, more: &str) -> String {
-    format!(
-        "units = \"metal\"\nperiodic = [\"x\", \"y\", \"z\"]\n{more}\nbody = {body}\nmaterial = {material}\n\
-         run = {{ steps = 1, time_step = 0.0005 }}\n"
-    )
-}
-
-fn silicon(cells: &str, more: &str) -> String {
-    let body = format!("{{ lattice = \"diamond\", spacing = {EDGE}, cells = {cells} }}");
-    let law = "{ mass = 28.0855, law = { stillinger_weber = { file = \"Si.sw\" } } }";
-    atoms(&body, law, more)
-}
-
-fn tersoff(more: &str) -> String {
-    let law =
-        "{ mass = 28.0855, law = { tersoff = { file = \"SiC.tersoff\", element = \"Si\" } } }";
-    atoms(
-        "{ lattice = \"diamond\", spacing = 5.43, cells = [3, 3, 3] }",
-        law,
-        more,
-    )
-}
-
-fn copper(more: &str) -> String {
-    let law = "{ law = { eam = { file = \"copper.eam.alloy\" } } }";
-    atoms(
-        "{ lattice = \"fcc\", spacing = 3.6147, cells = [4, 4, 4] }",
-        law,
-        more,
-    )
-}
-
-fn argon(more: &str) -> String {
-    let law =
-        "{ mass = 39.95, law = { lennard_jones = { epsilon = 0.0104, sigma = 3.4, cutoff = 6 } } }";
-    atoms(
-        "{ lattice = \"fcc\", spacing = 5.3, cells = [4, 4, 4] }",
-        law,
-        more,
-    )
-}
-
-fn hexane(law: &str, more: &str) -> String {
-    atoms(
-        "{ file = \"hexane.data\" }",
-        &format!("{{ law = {law} }}"),
-        &format!("molecules = {{ special = [0, 0, 0.5] }}\n{more}"),
-    )
-}
-
-fn heat(kelvin: f64) -> String {
-    format!("thermal = {{ temperature = {kelvin}, seed = 3 }}\n")
-}
-
-/// Positions after so many steps.
-fn run(text: &str, steps: usize) -> Vec<[f64; 3]> {
-    let mut sim = model(text);
-    sim.start(true);
-    for _ in 0..steps {
-        sim.step().unwrap();
-    }
-    sim.vectors("position")
-}
-
-fn farthest(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
-    let off = a.iter().flatten().zip(b.iter().flatten());
-    off.fold(0.0, |m, (a, b)| m.max((a - b).abs()))
-}
-
-struct Random(u64);
-
-impl Random {
-    /// From −1 to 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vectors(&mut self, count: usize, size: f64) -> Vec<[f64; 3]> {
-        let mut vector = || std::array::from_fn(|_| size * self.next());
-        (0..count).map(|_| vector()).collect()
-    }
-}
 
 /// While nobody changes partners families of the reference are those that are near now; where some do, they are not.
 #[test]
@@ -225,10 +123,6 @@ impl Case {
     }
 }
 
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m, x| m.max(x.abs()))
-}
-
 /// (4.0.53), (4.0.97) with (4.0.126)–(4.0.128), and (4.0.37)–(4.0.40): every partition of the energy and both pair forces, of families of the
 /// reference and of atoms that are near now, where these are the same.
 #[test]
@@ -338,6 +232,28 @@ fn fields_keep_the_families_of_the_reference() {
     for law in [residuals.mass, residuals.momentum, residuals.energy] {
         assert!(law.extrapolated < 1e-3 * law.scale, "{law:?}");
     }
+}
+
+/// Bonds that are broken are left out of fields as they are of the engine's energies.
+#[test]
+fn fields_leave_broken_bonds_out() {
+    let crack = "precrack = [{ segment = { from = [8.15, -99, 0], to = [8.15, 99, 0] } }]";
+    let cracked = format!("{HORIZON}{crack}\n");
+    let mut cut = Case::new(&silicon("[3, 3, 3]", &cracked));
+    let mut whole = Case::new(&silicon("[3, 3, 3]", HORIZON));
+    assert!(cut.sim.info().cut > 0);
+    let mut made = vec![];
+    for case in [&mut cut, &mut whole] {
+        case.stir(0.02, 3.0);
+        let volume = case.sim.scalars("volume");
+        let seen = case.sim.observed().strain;
+        let energy: f64 = seen.iter().zip(&volume).map(|(w, v)| w * v).sum();
+        let points = case.places();
+        let fields = case.fields(&points);
+        assert!((fields.totals.energy / energy - 1.0).abs() < 1e-11);
+        made.push(energy);
+    }
+    assert!(made[0] - made[1] > 1.0, "{made:?}");
 }
 
 /// Nodes on a cubic lattice, or at the places of atoms.

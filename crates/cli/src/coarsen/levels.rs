@@ -13,7 +13,7 @@ use peridyne_io::deck::{Deck, Dim, rounded};
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::linear::write_linear;
 use peridyne_theory::coarsen::waves::{frequencies, stable_step};
-use peridyne_theory::coarsen::{self, Radius, Selection, Stability, Volume};
+use peridyne_theory::coarsen::{self, Mass, Radius, Selection, Stability, Volume};
 use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
@@ -30,7 +30,7 @@ pub(super) fn levels<const D: usize>(
 ) -> Result<(), Failure> {
     let way = acting.way;
     // atoms are where they rest; files, sets and conditions know them by their sites
-    let mut sites = body.position.clone();
+    let sites = body.position.clone();
     for (x, u) in body.position.iter_mut().zip(relaxed.iter().flatten()) {
         for a in 0..D {
             x[a] += u[a];
@@ -47,80 +47,36 @@ pub(super) fn levels<const D: usize>(
         body.carriers = Some(carriers);
     }
     let level0 = relaxed.is_some().then(|| at_sites(&body, &sites));
-    let selection = match (arguments.every, arguments.spacing, kept) {
-        (Some(every), _, _) => Selection::Sublattice { every, through: 0 },
-        (_, Some(spacing), _) => Selection::BlueNoise { spacing, seed: 1 },
-        (_, _, Some(points)) => Selection::Marked(points),
-        _ => {
-            return Err(Failure::input(
-                "say which points to retain: --every K on a lattice, --spacing LENGTH of a cloud, or --keep SET",
-            ));
-        }
-    };
-    if matches!(selection, Selection::Marked(_)) && arguments.levels > 1 {
-        return Err(Failure::input("--keep SET retains one set: --levels 1"));
-    }
+    let selection = selection(arguments, kept)?;
     let mut made: Vec<Level<D>> = vec![];
     let (finest, finest_step) = (body.clone(), stable_step(&body));
-    // of the level below: points among which the next ones are chosen, and points that stay because they are held
-    let mut regular: Vec<u32> = (0..body.points() as u32).collect();
-    let mut held: Vec<u32> = regular.clone();
-    held.retain(|i| way.supports && acting.held[*i as usize]);
+    let held = acting.held.iter().map(|h| way.supports && *h);
+    let mut thinning = Thinning::new(selection, sites, body.period, held.collect());
     for level in 1..=arguments.levels {
         let wrong = |e: coarsen::CoarsenError| {
             let told = deck.units.tell(&e.message());
             Failure::input(format!("{}, level {level}: {told}", deck.file()))
         };
-        let step = arguments.every.unwrap_or(2).pow(level as u32 - 1);
-        let selection = match &selection {
-            Selection::BlueNoise { spacing, seed } => Selection::BlueNoise {
-                spacing: spacing * f64::from(step),
-                seed: *seed,
-            },
-            other => other.clone(),
-        };
+        let step = step(arguments, level);
         let options = coarsen::Options {
-            scheme: way.scheme,
-            symmetrise: way.symmetrise,
-            rotation: arguments.rotation,
             mass: way.mass,
-            volume: match way.condensed {
-                true => Volume::Lumped,
-                false => Volume::Kept,
-            },
-            radius: match arguments.radius {
-                Some(radius) => Radius::Fixed(radius * f64::from(step)),
-                None => Radius::Tolerance(arguments.tolerance),
-            },
+            ..options(arguments, way, level)
         };
         let began = Instant::now();
-        let among = LinearBody {
-            position: regular.iter().map(|i| sites[*i as usize]).collect(),
-            period: body.period,
-            ..LinearBody::nothing()
-        };
-        let chosen = selection.choose(&among).map_err(wrong)?;
-        let chosen: Vec<u32> = chosen.iter().map(|k| regular[*k as usize]).collect();
-        let mut retained = [chosen.as_slice(), &held].concat();
-        retained.sort_unstable();
-        retained.dedup();
-        let place = |i: &u32| retained.partition_point(|r| r < i) as u32;
-        regular = chosen.iter().map(place).collect();
-        held = held.iter().map(place).collect();
+        let retained = thinning.next(step).map_err(wrong)?;
         let (coarse, report) = coarsen::coarsen(&body, &retained, &options).map_err(wrong)?;
         let seconds = began.elapsed().as_secs_f64();
         let name = format!("level{level}");
         let text = coarsened(deck, &format!("{name}.npz"), level).map_err(Failure::input)?;
-        sites = retained.iter().map(|i| sites[*i as usize]).collect();
         let made_of = Level {
             name,
-            body: at_sites(&coarse, &sites),
+            body: at_sites(&coarse, &thinning.sites),
             report,
             frequencies: frequencies(&finest, &coarse),
             steps: [finest_step, stable_step(&coarse)],
             text,
             seconds,
-            supports: retained.len() - regular.len(),
+            supports: retained.len() - thinning.regular.len(),
         };
         say(&told(level, &made_of, way, deck.units));
         say(&card(&made_of, way, deck.units));
@@ -138,9 +94,112 @@ pub(super) fn levels<const D: usize>(
     }
     write_levels(out, deck, level0.as_ref(), &made, way)?;
     if arguments.run {
-        run_levels(out, deck, level0.is_some(), &made)?;
+        run_levels(arguments, out, deck, level0.is_some(), &made)?;
     }
     Ok(())
+}
+
+/// Which points the flags retain.
+pub(super) fn selection<const D: usize>(
+    arguments: &CoarsenArguments,
+    kept: Option<Vec<u32>>,
+) -> Result<Selection<D>, Failure> {
+    let selection = match (arguments.every, arguments.spacing, kept) {
+        (Some(every), _, _) => Selection::Sublattice { every, through: 0 },
+        (_, Some(spacing), _) => Selection::BlueNoise { spacing, seed: 1 },
+        (_, _, Some(points)) => Selection::Marked(points),
+        _ => {
+            return Err(Failure::input(
+                "say which points to retain: --every K on a lattice, --spacing LENGTH of a cloud, or --keep SET",
+            ));
+        }
+    };
+    if matches!(selection, Selection::Marked(_)) && arguments.levels > 1 {
+        return Err(Failure::input("--keep SET retains one set: --levels 1"));
+    }
+    Ok(selection)
+}
+
+/// How much coarser the body below a level is than the first.
+pub(super) fn step(arguments: &CoarsenArguments, level: usize) -> u32 {
+    arguments.every.unwrap_or(2).pow(level as u32 - 1)
+}
+
+/// How a level is made, masses lumped.
+pub(super) fn options(arguments: &CoarsenArguments, way: Way, level: usize) -> coarsen::Options {
+    coarsen::Options {
+        scheme: way.scheme,
+        symmetrise: way.symmetrise,
+        rotation: arguments.rotation,
+        mass: Mass::Lumped,
+        volume: match way.condensed {
+            true => Volume::Lumped,
+            false => Volume::Kept,
+        },
+        radius: match arguments.radius {
+            Some(radius) => Radius::Fixed(radius * f64::from(step(arguments, level))),
+            None => Radius::Tolerance(arguments.tolerance),
+        },
+    }
+}
+
+/// Points become fewer, level by level.
+pub(super) struct Thinning<const D: usize> {
+    selection: Selection<D>,
+    period: [Option<f64>; D],
+    /// Of the points of the level (length).
+    sites: Vec<[f64; D]>,
+    /// Points among which the next ones are chosen, and points that stay because they are held.
+    regular: Vec<u32>,
+    held: Vec<u32>,
+}
+
+impl<const D: usize> Thinning<D> {
+    pub fn new(
+        selection: Selection<D>,
+        sites: Vec<[f64; D]>,
+        period: [Option<f64>; D],
+        held: Vec<bool>,
+    ) -> Self {
+        let all = 0..sites.len() as u32;
+        Thinning {
+            selection,
+            period,
+            regular: all.clone().collect(),
+            held: all.filter(|i| held[*i as usize]).collect(),
+            sites,
+        }
+    }
+
+    /// The points of the next level, by their numbers in the one below, which is so many `step`s coarse.
+    pub fn next(&mut self, step: u32) -> Result<Vec<u32>, coarsen::CoarsenError> {
+        let selection = match &self.selection {
+            Selection::BlueNoise { spacing, seed } => Selection::BlueNoise {
+                spacing: spacing * f64::from(step),
+                seed: *seed,
+            },
+            other => other.clone(),
+        };
+        let among = LinearBody {
+            position: (self.regular.iter())
+                .map(|i| self.sites[*i as usize])
+                .collect(),
+            period: self.period,
+            ..LinearBody::nothing()
+        };
+        let chosen = selection.choose(&among)?;
+        let chosen: Vec<u32> = chosen.iter().map(|k| self.regular[*k as usize]).collect();
+        let mut retained = [chosen.as_slice(), &self.held].concat();
+        retained.sort_unstable();
+        retained.dedup();
+        let place = |i: &u32| retained.partition_point(|r| r < i) as u32;
+        self.regular = chosen.iter().map(place).collect();
+        self.held = self.held.iter().map(place).collect();
+        self.sites = { retained.iter() }
+            .map(|i| self.sites[*i as usize])
+            .collect();
+        Ok(retained)
+    }
 }
 
 /// Decks, linear bodies and records of all levels, in a folder.
@@ -189,12 +248,15 @@ const OFF: f64 = 0.05;
 
 /// Runs all levels and tells how far they are from the finest.
 fn run_levels<const D: usize>(
+    arguments: &CoarsenArguments,
     out: &Path,
     deck: &Deck,
     relaxed: bool,
     made: &[Level<D>],
 ) -> Result<(), Failure> {
-    if relaxed {
+    if arguments.average.is_some() {
+        say("note: level 0 is the linear body about the mean places of the atoms");
+    } else if relaxed {
         say("note: level 0 is the linear body about the relaxed crystal");
     } else if deck
         .spec

@@ -15,7 +15,11 @@ pub const ELONGATION: &str = "critical_elongation";
 pub const NEVER: f64 = f64::MAX;
 /// Column of critical works of bonds, of laws that break by it.
 pub const WORK: &str = "critical_bond_work";
+/// Column of works that are done on bonds.
+pub const DONE: &str = "bond_work";
 const CRITICAL: &str = "critical_stretch";
+/// Energy / volume².
+const OF_BONDS: Dimension = Dimension([-4, 1, -2, 0]);
 
 /// What peridynamic laws of bits remember; `breaks`: do bonds break?
 pub fn columns(breaks: bool) -> Vec<Declaration> {
@@ -36,6 +40,23 @@ pub fn columns(breaks: bool) -> Vec<Declaration> {
         true => vec![whole, elongation, critical.derived()],
         false => vec![whole],
     }
+}
+
+/// What laws remember whose bonds break by the work that is done on them.
+pub fn of_work() -> [Declaration; 2] {
+    [
+        Declaration::of_bonds(
+            DONE,
+            OF_BONDS,
+            "Work ∫ (T_i − T_j)·dη that force states have done on a bond (Foster, Silling & Chen 2011).",
+        ),
+        Declaration::of_points(
+            WORK,
+            Shape::Scalar,
+            OF_BONDS,
+            "Work at which a bond of the point breaks, the lower one of both ends.",
+        ),
+    ]
 }
 
 /// [`read_column`](super::Interaction::read_column) of critical stretches, of critical values of `e` for each slot.

@@ -7,24 +7,37 @@ use crate::law::number::Number;
 /// Most parts that wait for their operator.
 const DEPTH: usize = 12;
 
-/// An operation on the topmost parts.
+/// What is done next with the topmost parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Step {
     Number(f64),
     Variable(usize),
+    One(One),
+    Two(Two),
+    Choice,
+}
+
+/// An operation on one part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum One {
     Negate,
     Exp,
     Log,
     Root,
     Magnitude,
     Not,
+    /// To a whole power, positive or negative, and to any other.
+    Whole(i32),
+    Power(f64),
+}
+
+/// An operation on two parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Two {
     Add,
     Subtract,
     Multiply,
     Divide,
-    /// To a whole power, positive or negative, and to any other.
-    Whole(i32),
-    Power(f64),
     /// To the power of a part.
     Raise,
     Least,
@@ -35,7 +48,6 @@ enum Step {
     AtLeast,
     And,
     Or,
-    Choice,
 }
 
 /// A function of a few variables, ready to be evaluated.
@@ -57,10 +69,10 @@ impl Function {
                 (Op::Coordinate(k), _) => (Step::Variable(k), 0),
                 (Op::Two(Binary::Power), Some(Step::Number(p))) => {
                     steps.pop();
-                    (power(p), 2)
+                    (Step::One(power(p)), 2)
                 }
-                (Op::One(f), _) => (one(f)?, 1),
-                (Op::Two(f), _) => (two(f)?, 2),
+                (Op::One(f), _) => (Step::One(one(f)?), 1),
+                (Op::Two(f), _) => (Step::Two(two(f)?), 2),
                 (Op::Three(Ternary::Select), _) => (Step::Choice, 3),
                 (Op::Three(f), _) => return Err(unknown(&f)),
                 (Op::Time, _) => return Err("it knows no time".into()),
@@ -88,40 +100,40 @@ impl Function {
     }
 }
 
-fn power(p: f64) -> Step {
+fn power(p: f64) -> One {
     match p.fract() == 0.0 && p.abs() <= 64.0 {
-        true => Step::Whole(p as i32),
-        false => Step::Power(p),
+        true => One::Whole(p as i32),
+        false => One::Power(p),
     }
 }
 
-fn one(f: Unary) -> Result<Step, String> {
+fn one(f: Unary) -> Result<One, String> {
     match f {
-        Unary::Negate => Ok(Step::Negate),
-        Unary::Exp => Ok(Step::Exp),
-        Unary::Log => Ok(Step::Log),
-        Unary::Sqrt => Ok(Step::Root),
-        Unary::Abs => Ok(Step::Magnitude),
-        Unary::Not => Ok(Step::Not),
+        Unary::Negate => Ok(One::Negate),
+        Unary::Exp => Ok(One::Exp),
+        Unary::Log => Ok(One::Log),
+        Unary::Sqrt => Ok(One::Root),
+        Unary::Abs => Ok(One::Magnitude),
+        Unary::Not => Ok(One::Not),
         other => Err(unknown(&other)),
     }
 }
 
-fn two(f: Binary) -> Result<Step, String> {
+fn two(f: Binary) -> Result<Two, String> {
     match f {
-        Binary::Add => Ok(Step::Add),
-        Binary::Subtract => Ok(Step::Subtract),
-        Binary::Multiply => Ok(Step::Multiply),
-        Binary::Divide => Ok(Step::Divide),
-        Binary::Power => Ok(Step::Raise),
-        Binary::Min => Ok(Step::Least),
-        Binary::Max => Ok(Step::Most),
-        Binary::Less => Ok(Step::Below),
-        Binary::LessEqual => Ok(Step::AtMost),
-        Binary::Greater => Ok(Step::Above),
-        Binary::GreaterEqual => Ok(Step::AtLeast),
-        Binary::And => Ok(Step::And),
-        Binary::Or => Ok(Step::Or),
+        Binary::Add => Ok(Two::Add),
+        Binary::Subtract => Ok(Two::Subtract),
+        Binary::Multiply => Ok(Two::Multiply),
+        Binary::Divide => Ok(Two::Divide),
+        Binary::Power => Ok(Two::Raise),
+        Binary::Min => Ok(Two::Least),
+        Binary::Max => Ok(Two::Most),
+        Binary::Less => Ok(Two::Below),
+        Binary::LessEqual => Ok(Two::AtMost),
+        Binary::Greater => Ok(Two::Above),
+        Binary::GreaterEqual => Ok(Two::AtLeast),
+        Binary::And => Ok(Two::And),
+        Binary::Or => Ok(Two::Or),
         other => Err(unknown(&other)),
     }
 }
@@ -165,29 +177,10 @@ impl<N: Number, const V: usize> Piece for Evaluated<'_, N, V> {
                     let truth = c * c;
                     stack[n - 1] = [zero.choose(truth, a, b), zero.choose(truth, da, db)];
                 }
-                Step::Negate
-                | Step::Exp
-                | Step::Log
-                | Step::Root
-                | Step::Magnitude
-                | Step::Not
-                | Step::Whole(_)
-                | Step::Power(_) => stack[n - 1] = of_one(*step, stack[n - 1]),
-                Step::Add
-                | Step::Subtract
-                | Step::Multiply
-                | Step::Divide
-                | Step::Raise
-                | Step::Least
-                | Step::Most
-                | Step::Below
-                | Step::AtMost
-                | Step::Above
-                | Step::AtLeast
-                | Step::And
-                | Step::Or => {
+                Step::One(of) => stack[n - 1] = of_one(of, stack[n - 1]),
+                Step::Two(of) => {
                     n -= 1;
-                    stack[n - 1] = of_two(*step, stack[n - 1], stack[n]);
+                    stack[n - 1] = of_two(of, stack[n - 1], stack[n]);
                 }
             }
         }
@@ -196,26 +189,26 @@ impl<N: Number, const V: usize> Piece for Evaluated<'_, N, V> {
 }
 
 #[inline(always)]
-fn of_one<N: Number>(step: Step, [a, slope]: [N; 2]) -> [N; 2] {
+fn of_one<N: Number>(of: One, [a, slope]: [N; 2]) -> [N; 2] {
     let (zero, unit) = (N::constant(0.0), N::constant(1.0));
-    match step {
-        Step::Negate => [zero - a, zero - slope],
-        Step::Exp => {
+    match of {
+        One::Negate => [zero - a, zero - slope],
+        One::Exp => {
             let value = a.exp();
             [value, value * slope]
         }
-        Step::Log => [a.ln(), slope.div(a)],
-        Step::Root => {
+        One::Log => [a.ln(), slope.div(a)],
+        One::Root => {
             let value = a.sqrt();
             [value, slope.div(value + value)]
         }
-        Step::Magnitude => [
+        One::Magnitude => [
             a.choose(zero, zero - a, a),
             a.choose(zero, zero - slope, slope),
         ],
-        Step::Not => [zero.choose(a * a, zero, unit), zero],
-        Step::Whole(0) => [unit, zero],
-        Step::Whole(p) => {
+        One::Not => [zero.choose(a * a, zero, unit), zero],
+        One::Whole(0) => [unit, zero],
+        One::Whole(p) => {
             let below = a.power(p.unsigned_abs() - 1);
             let value = below * a;
             if p > 0 {
@@ -224,39 +217,37 @@ fn of_one<N: Number>(step: Step, [a, slope]: [N; 2]) -> [N; 2] {
             let value = value.recip();
             [value, (value * slope).times(f64::from(p)).div(a)]
         }
-        Step::Power(p) => {
+        One::Power(p) => {
             let value = a.ln().times(p).exp();
             [value, (value * slope).times(p).div(a)]
         }
-        _ => [a, slope],
     }
 }
 
 #[inline(always)]
-fn of_two<N: Number>(step: Step, [a, da]: [N; 2], [b, db]: [N; 2]) -> [N; 2] {
+fn of_two<N: Number>(of: Two, [a, da]: [N; 2], [b, db]: [N; 2]) -> [N; 2] {
     let (zero, unit) = (N::constant(0.0), N::constant(1.0));
-    match step {
-        Step::Add => [a + b, da + db],
-        Step::Subtract => [a - b, da - db],
-        Step::Multiply => [a * b, a.fma(db, b * da)],
-        Step::Divide => {
+    match of {
+        Two::Add => [a + b, da + db],
+        Two::Subtract => [a - b, da - db],
+        Two::Multiply => [a * b, a.fma(db, b * da)],
+        Two::Divide => {
             let value = a.div(b);
             [value, (da - value * db).div(b)]
         }
-        Step::Raise => {
+        Two::Raise => {
             let log = a.ln();
             let value = (b * log).exp();
             [value, value * log.fma(db, (b * da).div(a))]
         }
-        Step::Least => [b.choose(a, b, a), b.choose(a, db, da)],
-        Step::Most => [a.choose(b, b, a), a.choose(b, db, da)],
-        Step::Below => [a.choose(b, unit, zero), zero],
-        Step::AtMost => [b.choose(a, zero, unit), zero],
-        Step::Above => [b.choose(a, unit, zero), zero],
-        Step::AtLeast => [a.choose(b, zero, unit), zero],
-        Step::And => [zero.choose(a * a * b * b, unit, zero), zero],
-        Step::Or => [zero.choose(a * a + b * b, unit, zero), zero],
-        _ => [a, da],
+        Two::Least => [b.choose(a, b, a), b.choose(a, db, da)],
+        Two::Most => [a.choose(b, b, a), a.choose(b, db, da)],
+        Two::Below => [a.choose(b, unit, zero), zero],
+        Two::AtMost => [b.choose(a, zero, unit), zero],
+        Two::Above => [b.choose(a, unit, zero), zero],
+        Two::AtLeast => [a.choose(b, zero, unit), zero],
+        Two::And => [zero.choose(a * a * b * b, unit, zero), zero],
+        Two::Or => [zero.choose(a * a + b * b, unit, zero), zero],
     }
 }
 

@@ -1,6 +1,6 @@
 //! What atoms need beyond peridynamic points: their crystal looked at before it runs, and a temperature.
 
-use super::constitutive::AnyPotentials;
+use super::constitutive::{AnyPotentials, breaking, breaks};
 use super::model::Model;
 use super::reference::{SplitMix, current_neighbours};
 use crate::error::BuildError;
@@ -28,17 +28,32 @@ pub(super) fn resolve_family(
             "family = \"reference\" belongs to interatomic potentials: the families of this law are always those of the reference",
             "leave family out",
         ),
+        (FamilyChoice::Auto | FamilyChoice::Neighbours, Some(_))
+            if let Some(path) = breaking(spec) =>
+        {
+            Err(BuildError::unsupported(
+                path,
+                "atoms feel those that are near now, and who comes near again is a neighbour again: no bond can break or be cut",
+            )
+            .help("write family = \"reference\" with a horizon, or remove fracture and pre-cracks"))
+        }
+        // bonds of lists can be taken out one by one
+        (FamilyChoice::Stencil, Some(_)) if breaks(spec) => {
+            spec.family = FamilyChoice::Reference;
+            Ok(())
+        }
         (FamilyChoice::Reference, Some(potentials)) => {
             let lattice = matches!(
                 spec.body,
                 BodySpec::Lattice { perturb: None, .. } | BodySpec::Sites { .. }
             );
-            if lattice && potentials.has_stencil() && spec.bonded.is_none() {
+            if lattice && potentials.has_stencil() && spec.bonded.is_none() && !breaks(spec) {
                 spec.family = FamilyChoice::Stencil;
             }
             Ok(())
         }
-        _ => Ok(()),
+        (FamilyChoice::Auto | FamilyChoice::Stencil | FamilyChoice::Neighbours, _)
+        | (FamilyChoice::List, None) => Ok(()),
     }
 }
 
@@ -70,6 +85,18 @@ pub(super) fn check_smooth(spec: &Spec, atoms: bool) -> Result<(), BuildError> {
             "atoms that are carried along have no thermal motion of their own",
             "remove thermal, or smooth",
         );
+    }
+    for (path, there) in [
+        ("toughness[0]", !spec.toughness.is_empty()),
+        ("healing", spec.healing.is_some()),
+    ] {
+        if there {
+            return refused(
+                path,
+                "the points of this body are nodes, and what breaks are bonds between the atoms that they carry",
+                "leave it out, or smooth",
+            );
+        }
     }
     if matches!(&spec.body, BodySpec::Cloud(cloud) if !cloud.velocity.is_empty()) {
         return refused(

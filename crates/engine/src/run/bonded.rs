@@ -1,6 +1,6 @@
 //! Molecules: bonded terms beside the potential of a body of atoms.
 
-use super::constitutive::Shelf;
+use super::constitutive::{Shelf, breaking};
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
@@ -44,6 +44,11 @@ pub(super) fn around<const D: usize>(
             "molecules leave out pairs of one potential, and several materials have several",
             "give the atoms one material",
         );
+    }
+    if let Some(path) = breaking(spec) {
+        let message =
+            "the bonds of a molecule are terms of its force field, which hold at any length";
+        return Err(BuildError::unsupported(path, message).help("remove fracture and pre-cracks"));
     }
     fits(bonded, body.points())?;
     let pair = potentials.pair()?;

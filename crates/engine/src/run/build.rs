@@ -3,7 +3,7 @@
 use super::atoms;
 use super::bind::{bind, names};
 use super::clouds::{own_densities, own_velocities};
-use super::constitutive::{Shelf, criteria, directed};
+use super::constitutive::{Shelf, breaks, criteria, directed};
 use super::equilibrium::state::StaticState;
 use super::faces::Faces;
 use super::feasible::{consistent, enough_memory, possible};
@@ -144,7 +144,7 @@ pub fn build_in<const D: usize>(
         Some((mut atoms, carried)) => {
             let (constitutive, inner) =
                 bind(spec, &mut parts, &mut atoms, shelf, simd, &mut warnings)?;
-            let made = Smoothed::new(&body, atoms, inner, carried);
+            let made = Smoothed::new(&body, atoms, inner, carried, breaks(spec));
             let made: Box<dyn Interaction<D>> = Box::new(made);
             (constitutive, made)
         }
@@ -184,6 +184,11 @@ pub fn build_in<const D: usize>(
     let cut = precracks::cut(spec, &body, interaction.as_mut(), &mut warnings)?;
     if solid {
         warnings.extend(gaps::bridged(&body, interaction.as_ref()));
+    }
+    if potentials.is_some() && breaks(spec) {
+        warnings.push(
+            "atoms feel those of their family in the reference whose bonds are whole, and nobody else: parts that come apart and meet again go through each other",
+        );
     }
     warnings.extend(meant::regions(spec, &body));
     warnings.extend(meant::periods(spec, &body)?);

@@ -39,6 +39,8 @@ pub struct Live {
     corner: [f64; 3],
     periodic: [Option<f64>; 3],
     resting: bool,
+    /// Do bonds break, or are some cut?
+    breaks: bool,
     /// Of the body at the start, with half a spacing around it.
     bounds: [[f64; 3]; 2],
 }
@@ -96,6 +98,8 @@ impl Live {
             corner,
             periodic: spec.periodic,
             resting: spec.schedule.statics().is_some(),
+            breaks: !spec.precracks.is_empty()
+                || spec.materials.iter().any(|m| m.fracture.is_some()),
             bounds,
         };
         if spec.family == FamilyChoice::Reference && atoms {
@@ -245,6 +249,18 @@ impl Live {
         method: &Method,
     ) -> Result<Fields, FieldsError> {
         let mut fields = match &self.forces {
+            Forces::Sites {
+                sites,
+                families: Some(families),
+                ..
+            } if self.breaks => {
+                let bonds = sim.snapshot(&[], true).bonds.unwrap_or_default();
+                let method = Method {
+                    families: Some(Arc::new(families.of_whole(&bonds))),
+                    ..method.clone()
+                };
+                peridyne_fields::evaluate(frame, sites.as_ref(), targets, &method)?
+            }
             Forces::Sites { sites, .. } => {
                 peridyne_fields::evaluate(frame, sites.as_ref(), targets, method)?
             }

@@ -15,10 +15,12 @@
 //! `b_q + Σ_e K_qe K_ee⁻¹ b_e`. Without, a load acts on the retained points alone, as in the paper, which has none on removed ones
 //! (5); with [`Volume::Kept`] the same force density is then the same force at every level.
 //!
-//! In motion removed points are carried by the shapes: [`Mass`].
+//! In motion removed points are carried by the shapes: [`Mass`]. Nonlinear bodies go on in [`increments`].
 //!
 //! The balls' radius can be chosen by the effective modulus: [`Radius::Tolerance`]. Interior points of lattices share one ball.
 //! The result is a [`LinearBody`] again: it runs, and it can be coarsened further.
+//!
+//! Of atoms at a temperature [`thermal`] makes level 0 from the frames of a run.
 
 mod ball;
 mod balls;
@@ -28,6 +30,7 @@ mod coupling;
 mod energy;
 mod error;
 pub mod exact;
+pub mod increments;
 pub mod lattice;
 mod mass;
 mod mass_lumping;
@@ -42,6 +45,7 @@ mod solve;
 mod sublattice;
 #[cfg(test)]
 mod tests;
+pub mod thermal;
 pub mod waves;
 
 pub use balls::Work;
@@ -158,6 +162,29 @@ pub fn coarsen<const D: usize>(
     retained: &[u32],
     options: &Options,
 ) -> Result<(LinearBody<D>, Report), CoarsenError> {
+    let (coarse, report, _) = made(body, retained, options, options.mass != Mass::Lumped, false)?;
+    Ok((coarse, report))
+}
+
+/// The coarse body, and the shapes that its points carry.
+fn shaped<const D: usize>(
+    body: &LinearBody<D>,
+    retained: &[u32],
+    options: &Options,
+) -> Result<(LinearBody<D>, Report, shapes::Shapes<D>), CoarsenError> {
+    let (coarse, report, shapes) = made(body, retained, options, true, true)?;
+    let shapes = shapes.unwrap_or(shapes::Shapes { rows: vec![] });
+    Ok((coarse, report, shapes))
+}
+
+/// Are shapes wanted, and are they `kept` beside the body?
+fn made<const D: usize>(
+    body: &LinearBody<D>,
+    retained: &[u32],
+    options: &Options,
+    wanted: bool,
+    kept: bool,
+) -> Result<(LinearBody<D>, Report, Option<shapes::Shapes<D>>), CoarsenError> {
     let mut retained = retained.to_vec();
     retained.sort_unstable();
     select::check(&retained, body.points())?;
@@ -180,7 +207,7 @@ pub fn coarsen<const D: usize>(
         range: body.range(),
         asymmetry: below.asymmetry,
         loaded: &loaded,
-        shaped: options.mass != Mass::Lumped,
+        shaped: wanted,
     };
     let plan = Plan {
         task,
@@ -188,6 +215,10 @@ pub fn coarsen<const D: usize>(
         lumped: mass_lumping::lump_mass(body, &retained, &marked, spacing(body, retained.len())),
     };
     let (mut made, radius, convergence) = plan.converged()?;
+    let shapes = match kept {
+        true => made.shapes.clone(),
+        false => None,
+    };
     made.body.mass = mass::matrix(&plan.task, made.shapes.take(), &made.body, options.mass);
     made.body.carriers = body.carriers.clone().map(|c| c.passed(&made.pass));
     check::connected(&made.coupling, &retained, &parts, radius)?;
@@ -232,7 +263,7 @@ pub fn coarsen<const D: usize>(
         range: made.body.range(),
         retained,
     };
-    Ok((made.body, report))
+    Ok((made.body, report, shapes))
 }
 
 /// The exact coarse body: [`coarsen`] with [`Scheme::Schur`].

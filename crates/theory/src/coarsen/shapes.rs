@@ -4,6 +4,7 @@ use super::block::{Block, add, add_product, largest, scaled, transposed, unit, z
 use rayon::prelude::*;
 
 /// Shapes, by point of the body below: retained points (by number in the coarse body, ascending) and `S_pq`, `u_p = Σ_q S_pq u_q`.
+#[derive(Clone)]
 pub(super) struct Shapes<const D: usize> {
     pub rows: Vec<Vec<(u32, Block<D>)>>,
 }

@@ -1,31 +1,64 @@
 //! Symmetric systems of a few unknowns that may be singular.
 
-/// Solves `g x = b` for a positive semidefinite `g` (row by row); what the matrix does not hold is 0.
-pub(super) fn solve_semidefinite(mut g: Vec<f64>, b: &[f64]) -> Vec<f64> {
-    let n = b.len();
-    let trace: f64 = (0..n).map(|k| g[k * n + k]).sum();
-    let mut held = vec![false; n];
-    // Cholesky in place, rows whose pivot vanishes left out
-    for k in 0..n {
-        let pivot = (0..k).fold(g[k * n + k], |d, m| d - g[k * n + m] * g[k * n + m]);
-        held[k] = pivot > 1e-10 * trace;
-        let root = if held[k] { pivot.sqrt() } else { 0.0 };
-        g[k * n + k] = root;
-        for i in k + 1..n {
-            let sum = (0..k).fold(g[i * n + k], |s, m| s - g[i * n + m] * g[k * n + m]);
-            g[i * n + k] = if held[k] { sum / root } else { 0.0 };
+/// Cholesky's factor of a positive semidefinite matrix; rows whose pivot vanishes are left out.
+pub(super) struct Semidefinite {
+    /// Row by row, below the diagonal.
+    l: Vec<f64>,
+    held: Vec<bool>,
+}
+
+impl Semidefinite {
+    /// Of an n×n matrix, row by row.
+    pub fn new(mut g: Vec<f64>, n: usize) -> Semidefinite {
+        let trace: f64 = (0..n).map(|k| g[k * n + k]).sum();
+        let mut held = vec![false; n];
+        for i in 0..n {
+            // what lies above row i is finished
+            let (above, row) = g.split_at_mut(i * n);
+            for k in 0..i {
+                let other = &above[k * n..k * n + k];
+                let sum = (row[..k].iter().zip(other)).fold(row[k], |s, (x, y)| s - x * y);
+                row[k] = if held[k] { sum / above[k * n + k] } else { 0.0 };
+            }
+            let pivot = row[..i].iter().fold(row[i], |d, x| d - x * x);
+            held[i] = pivot > 1e-10 * trace;
+            row[i] = if held[i] { pivot.sqrt() } else { 0.0 };
         }
+        Semidefinite { l: g, held }
     }
-    let mut x = b.to_vec();
-    for k in 0..n {
-        let sum = (0..k).fold(x[k], |s, m| s - g[k * n + m] * x[m]);
-        x[k] = if held[k] { sum / g[k * n + k] } else { 0.0 };
+
+    /// Are all rows held?
+    pub fn definite(&self) -> bool {
+        self.held.iter().all(|held| *held)
     }
-    for k in (0..n).rev() {
-        let sum = (k + 1..n).fold(x[k], |s, m| s - g[m * n + k] * x[m]);
-        x[k] = if held[k] { sum / g[k * n + k] } else { 0.0 };
+
+    /// Solves `g x = b`; what the matrix does not hold is 0.
+    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let (n, l) = (b.len(), &self.l);
+        let mut x = b.to_vec();
+        for k in 0..n {
+            let sum = (0..k).fold(x[k], |s, m| s - l[k * n + m] * x[m]);
+            x[k] = if self.held[k] {
+                sum / l[k * n + k]
+            } else {
+                0.0
+            };
+        }
+        for k in (0..n).rev() {
+            let sum = (k + 1..n).fold(x[k], |s, m| s - l[m * n + k] * x[m]);
+            x[k] = if self.held[k] {
+                sum / l[k * n + k]
+            } else {
+                0.0
+            };
+        }
+        x
     }
-    x
+}
+
+/// Solves `g x = b` for a positive semidefinite `g` (row by row); what the matrix does not hold is 0.
+pub(super) fn solve_semidefinite(g: Vec<f64>, b: &[f64]) -> Vec<f64> {
+    Semidefinite::new(g, b.len()).solve(b)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 mod bodies;
 mod errors;
 mod exactness;
+mod increments;
 mod loads;
 mod motion;
 mod published;

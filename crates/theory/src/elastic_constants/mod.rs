@@ -93,6 +93,27 @@ impl Stiffness {
         self
     }
 
+    /// `C` from how a body of equal points under the stress `s` answers long waves (Born & Huang 1954): brackets
+    /// `[ik,jl] = (1/2V) Σ_bonds K_ik ξ_j ξ_l`, given as `[i][j][k][l]`, are `½ (C_ijkl + C_ilkj) + δ_ik σ_jl`, so that with `{ik,jl}` = those less the last term
+    /// `C_ijkl = {ik,jl} + {jk,il} − {ij,kl}`. What is not symmetric in the pairs ij and kl, as no energy has it, is left out.
+    pub(crate) fn of_waves<const D: usize>(bracket: &[f64], s: &[[f64; D]; D]) -> Stiffness {
+        let brace = |i: usize, k: usize, j: usize, l: usize| {
+            let own = if i == k { s[j][l] } else { 0.0 };
+            bracket[((i * D + j) * D + k) * D + l] - own
+        };
+        let at = |v: usize, w: usize| {
+            let ((i, j), (k, l)) = (axes(D, v), axes(D, w));
+            brace(i, k, j, l) + brace(j, k, i, l) - brace(i, j, k, l)
+        };
+        let mut c = [[0.0; 6]; 6];
+        for v in 0..components(D) {
+            for w in 0..components(D) {
+                c[v][w] = 0.5 * (at(v, w) + at(w, v));
+            }
+        }
+        Stiffness { dimension: D, c }
+    }
+
     /// The three constants of a square or cubic crystal along its axes, or `None` if some component differs by more than
     /// `tolerance` of the largest.
     pub fn cubic(&self, tolerance: f64) -> Option<Cubic> {

@@ -41,12 +41,20 @@ pub struct Kernel {
 /// # Errors
 /// The law has no influence function, or constants that belong to one.
 pub fn kernels(fine: &Spec, coarse: &Spec) -> Result<Vec<Kernel>, UpscaleError> {
-    match &fine.materials[0].law {
-        LawSpec::Atoms(_) => return Err(UpscaleError::NoKernels),
-        LawSpec::Pmb(c) | LawSpec::Springs(c) if matches!(c, PmbStiffness::Micromodulus(_)) => {
-            return Err(UpscaleError::OneKernel);
+    for material in &fine.materials {
+        match &material.law {
+            LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => return Err(UpscaleError::NoKernels),
+            LawSpec::Pmb(PmbStiffness::Micromodulus(_))
+            | LawSpec::Springs(PmbStiffness::Micromodulus(_)) => {
+                return Err(UpscaleError::OneKernel);
+            }
+            LawSpec::Pmb(_)
+            | LawSpec::Springs(_)
+            | LawSpec::Lps(_)
+            | LawSpec::LpsAsTyped { .. }
+            | LawSpec::EamLike { .. }
+            | LawSpec::Named(_) => {}
         }
-        _ => {}
     }
     match fine.dimension {
         1 => kernels_in::<1>(fine, coarse),

@@ -261,6 +261,19 @@ impl<const D: usize> NearList<D> {
         self.blocks[tile / BLOCK].tile(tile % BLOCK, self.groups())
     }
 
+    /// The same, to take somebody out: in its place [`nowhere`](Self::nowhere). Lists that are not held name everybody again when they are
+    /// made anew.
+    pub fn lines_mut(&mut self, tile: usize) -> &mut [[u32; TILE]] {
+        let groups = self.groups();
+        self.blocks[tile / BLOCK].tile_mut(tile % BLOCK, groups)
+    }
+
+    /// The listed atom that is nobody.
+    #[inline(always)]
+    pub fn nowhere(&self) -> u32 {
+        (self.position.len() - 1) as u32
+    }
+
     /// Slots of a tile's atoms.
     #[inline(always)]
     pub fn slots(&self, tile: usize) -> &[u32] {

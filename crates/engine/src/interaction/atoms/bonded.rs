@@ -33,6 +33,8 @@ pub struct BondedAtoms<const D: usize> {
     first: Vec<u32>,
     of: Vec<u32>,
     sums: PerBlock<[f64; 7]>,
+    /// By slot, how many are bonded to it, where the potential between all atoms has no families; else empty.
+    bonded: Vec<u32>,
 }
 
 impl<const D: usize> BondedAtoms<D> {
@@ -81,7 +83,18 @@ impl<const D: usize> BondedAtoms<D> {
         for list in &lists {
             first.push(first.last().map_or(0, |f| f + list.len() as u32));
         }
+        let mut bonded = vec![];
+        if inner.directed_bonds() == 0 {
+            bonded.resize(body.len, 0);
+            for end in { terms.iter() }
+                .filter(|t| t.is_bond())
+                .flat_map(Term::ends)
+            {
+                bonded[end] += 1;
+            }
+        }
         BondedAtoms {
+            bonded,
             inner,
             simd,
             spec,
@@ -111,12 +124,6 @@ impl<const D: usize> BondedAtoms<D> {
             energy,
         };
         self.sums.sum(self.simd, &kernel)
-    }
-
-    /// The terms of two particles.
-    fn of_two(&self) -> impl Iterator<Item = &Term> {
-        let form = |t: &&Term| t.count == 2 && matches!(t.says, Says::Form(_));
-        self.terms.iter().filter(form)
     }
 
     /// Energies of all points with those of their terms, in equal shares.
@@ -246,12 +253,12 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     /// Of atoms that do not feel each other otherwise those that are bonded.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
         self.inner.each_bond(body, visit);
-        if self.inner.directed_bonds() > 0 {
+        if self.bonded.is_empty() {
             return;
         }
         let rest = body.at_rest();
-        for term in self.of_two() {
-            let [mut i, mut j] = [0, 1].map(|n| term.slots[n] as usize);
+        for term in self.terms.iter().filter(|t| t.is_bond()) {
+            let [mut i, mut j] = term.ends();
             if i > j {
                 std::mem::swap(&mut i, &mut j);
             }
@@ -277,19 +284,16 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        match self.inner.directed_bonds() {
-            0 => 2 * self.of_two().count() as u64,
-            bonds => bonds,
+        match self.bonded.is_empty() {
+            true => self.inner.directed_bonds(),
+            false => self.bonded.iter().map(|n| u64::from(*n)).sum(),
         }
     }
 
     fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
-        match self.inner.directed_bonds() {
-            0 => {
-                let ends = self.of_two().flat_map(|t| &t.slots[..2]);
-                ends.filter(|s| **s as usize == slot).count()
-            }
-            _ => self.inner.family_size(body, slot),
+        match self.bonded.get(slot) {
+            None => self.inner.family_size(body, slot),
+            Some(count) => *count as usize,
         }
     }
 
@@ -311,7 +315,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
         self.inner.bytes()
             + size_of::<Term>() * self.terms.capacity()
             + size_of::<[[f64; D]; 4]>() * self.force.capacity()
-            + 4 * (self.first.capacity() + self.of.capacity())
+            + 4 * (self.first.capacity() + self.of.capacity() + self.bonded.capacity())
     }
 }
 

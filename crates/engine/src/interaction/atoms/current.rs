@@ -2,6 +2,7 @@
 
 mod kernel;
 
+use super::breaking::Held;
 use super::line::Table;
 use super::{Curvatures, Faults, find_fault};
 use crate::body::{Body, Field, Identity, Values};
@@ -91,7 +92,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             for (l, &slot) in self.list.slots(tile.number).iter().enumerate() {
                 let own = self.list.kind(tile.number * TILE + l);
                 let x = at[tile.number * TILE + l];
-                for line in tile.lines() {
+                for (n, line) in tile.lines().iter().enumerate() {
                     let z = at[line[l] as usize];
                     let y: [f64; D] = std::array::from_fn(|a| z[a] - x[a]);
                     let q: f64 = y.iter().map(|c| c * c).sum();
@@ -108,6 +109,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
                     visit(NearPair {
                         potential,
                         unlike: own != kind,
+                        bond: [tile.number, n, l],
                         slot: slot as usize,
                         other,
                         y,
@@ -210,6 +212,8 @@ fn list_at<const D: usize, P: Potential>(
 struct NearPair<'a, const D: usize, P> {
     potential: &'a P,
     unlike: bool,
+    /// Tile, line and lane.
+    bond: [usize; 3],
     slot: usize,
     other: usize,
     /// From the first to the second (length), and its square.
@@ -217,6 +221,34 @@ struct NearPair<'a, const D: usize, P> {
     q: f64,
     /// The fourth numbers of both.
     slopes: [f64; 2],
+}
+
+impl<const D: usize, P: Potential> NearPair<'_, D, P> {
+    /// Its tangent, times `scale`.
+    fn tangent(&self, scale: f64) -> BondTangent<D> {
+        let slopes = if P::EMBEDDED { self.slopes } else { [0.0; 2] };
+        let ends = [self.slot, self.other];
+        BondTangent::of_potential(self.potential, ends, self.y, slopes, scale, self.unlike)
+    }
+}
+
+impl<const D: usize, P: Potential> Held<D> for CurrentAtoms<D, P> {
+    fn list(&self) -> &NearList<D> {
+        &self.list
+    }
+
+    fn list_mut(&mut self) -> &mut NearList<D> {
+        &mut self.list
+    }
+
+    fn pulls(&self, first: &[u32], out: &mut [[f64; D]]) {
+        out.fill([0.0; D]);
+        self.each_near(|near| {
+            let [tile, line, lane] = near.bond;
+            let place = (first[tile] as usize + line) * TILE + lane;
+            out[place] = near.tangent(2.0).force().force;
+        });
+    }
 }
 
 impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
@@ -270,16 +302,25 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
         self.check(body, &[]);
-        let list = list_at(body, &self.potential, self.held, &body.at_rest(), self.simd);
-        let mut position = list.positions().to_vec();
-        // what is nowhere stays there
-        for x in position.iter_mut().filter(|x| x[0].is_finite()) {
-            let moved = along(gradient, &x[..D]);
-            for a in 0..D {
-                x[a] += moved[a];
+        let rest = body.at_rest();
+        let strain = |mut position: Vec<[f64; 4]>| {
+            // what is nowhere stays there
+            for x in position.iter_mut().filter(|x| x[0].is_finite()) {
+                let moved = along(gradient, &x[..D]);
+                for a in 0..D {
+                    x[a] += moved[a];
+                }
             }
+            position
+        };
+        // of a list that is held some may have been taken out
+        let held = self.held.and(self.list.positions_at(&rest, self.simd));
+        if let Some(position) = held {
+            self.see(body, &self.list, &strain(position), out);
+        } else {
+            let list = list_at(body, &self.potential, self.held, &rest, self.simd);
+            self.see(body, &list, &strain(list.positions().to_vec()), out);
         }
-        self.see(body, &list, &position, out);
     }
 
     fn each_force(
@@ -308,14 +349,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
             if P::EMBEDDED {
                 density[near.slot] += near.potential.density(near.q);
             }
-            visit(BondTangent::of_potential(
-                near.potential,
-                [near.slot, near.other],
-                near.y,
-                if P::EMBEDDED { near.slopes } else { [0.0; 2] },
-                2.0 / body.volume.at(near.slot),
-                near.unlike,
-            ));
+            visit(near.tangent(2.0 / body.volume.at(near.slot)));
         });
         let kind = |slot| match self.potential.kinds() {
             1 => 0,

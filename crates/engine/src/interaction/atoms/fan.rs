@@ -12,6 +12,7 @@ mod back;
 mod gather;
 mod kernel;
 
+use super::breaking::Held;
 use crate::body::{Body, Field, Identity, Values};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
@@ -211,6 +212,27 @@ fn put_kinds(list: &mut NearList<3>, kinds: &[u8]) {
     }
 }
 
+impl<F: Fan> Held<3> for FanAtoms<F> {
+    fn list(&self) -> &NearList<3> {
+        &self.list
+    }
+
+    fn list_mut(&mut self) -> &mut NearList<3> {
+        &mut self.list
+    }
+
+    fn pulls(&self, first: &[u32], out: &mut [[f64; 3]]) {
+        for (tile, first) in first.iter().enumerate() {
+            let lines = self.list.lines(tile).len();
+            let place = self.back.place(tile);
+            let out = &mut out[*first as usize * TILE..][..lines * TILE];
+            for (n, out) in out.iter_mut().enumerate() {
+                *out = self.back.pull(place + n);
+            }
+        }
+    }
+}
+
 impl<F: Fan> Interaction<3> for FanAtoms<F> {
     fn made_for(&self) -> Identity {
         self.body
@@ -273,16 +295,24 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     fn observe_gradient(&self, body: &Body<3>, gradient: &[[f64; 3]; 3], out: &mut PointEnergies) {
         self.check(body, &[]);
         let rest = body.at_rest();
-        let cutoff = self.fan.cutoff();
-        let list = list_at(body, cutoff, self.held, &self.kinds, &rest, self.simd);
-        let mut position = list.positions().to_vec();
-        for x in &mut position {
-            let moved = along(gradient, &x[..3]);
-            for a in 0..3 {
-                x[a] += moved[a];
+        let strain = |mut position: Vec<[f64; 4]>| {
+            for x in &mut position {
+                let moved = along(gradient, &x[..3]);
+                for a in 0..3 {
+                    x[a] += moved[a];
+                }
             }
+            position
+        };
+        // of a list that is held some may have been taken out
+        let held = self.held.and(self.list.positions_at(&rest, self.simd));
+        if let Some(position) = held {
+            self.see(body, &self.list, &strain(position), out);
+        } else {
+            let cutoff = self.fan.cutoff();
+            let list = list_at(body, cutoff, self.held, &self.kinds, &rest, self.simd);
+            self.see(body, &list, &strain(list.positions().to_vec()), out);
         }
-        self.see(body, &list, &position, out);
     }
 
     /// Pairs of the same fan as well as bonds: forces are central between them.

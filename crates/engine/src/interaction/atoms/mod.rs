@@ -4,6 +4,7 @@
 //! (seleson2014 (2.3)); force densities are that over the atom's volume.
 
 pub mod bonded;
+pub mod breaking;
 pub mod current;
 pub mod fan;
 pub mod fixed;

@@ -18,6 +18,7 @@ use crate::family::nodes::Nodes;
 use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
+use crate::spec::CrackKind;
 use std::collections::BTreeMap;
 
 /// An interaction of atoms that nodes carry along.
@@ -26,6 +27,8 @@ pub struct Smoothed<const D: usize> {
     atoms: Body<D>,
     inner: Box<dyn Interaction<D>>,
     carried: Nodes,
+    /// Do bonds between atoms break?
+    breaks: bool,
     /// Displacements and force densities of atoms.
     u: Field<D>,
     f: Field<D>,
@@ -36,15 +39,16 @@ pub struct Smoothed<const D: usize> {
 }
 
 impl<const D: usize> Smoothed<D> {
-    /// `inner` is made for `atoms`, `carried` says how much each of the `nodes` counts for them.
+    /// `inner` is made for `atoms`, `carried` says how much each of the `nodes` counts for them, `breaks` whether bonds of atoms do.
     pub fn new(
         nodes: &Body<D>,
         atoms: Body<D>,
         inner: Box<dyn Interaction<D>>,
         carried: Nodes,
+        breaks: bool,
     ) -> Self {
         let u = atoms.at_rest();
-        let family = family(&atoms, inner.as_ref(), &carried);
+        let family = family(&atoms, inner.as_ref(), &carried, |_| true);
         let mut sizes = vec![0; nodes.len];
         for (g, others) in family.iter().enumerate() {
             sizes[g] += others.len() as u32;
@@ -54,6 +58,7 @@ impl<const D: usize> Smoothed<D> {
             nodes: nodes.identity,
             f: u.clone(),
             u,
+            breaks,
             atoms,
             inner,
             carried,
@@ -82,7 +87,7 @@ impl<const D: usize> Smoothed<D> {
     }
 
     fn carried(&self, u: &Field<D>) -> Field<D> {
-        let mut of_atoms = self.u.clone();
+        let mut of_atoms = self.atoms.at_rest();
         self.carry(u, &mut of_atoms);
         of_atoms
     }
@@ -119,22 +124,24 @@ impl<const D: usize> Smoothed<D> {
     }
 }
 
-/// Nodes with an atom in common, or with atoms that have a bond.
+/// Nodes that atoms with such a bond tie to each other: those of one atom or of both.
 fn family<const D: usize>(
     atoms: &Body<D>,
     inner: &dyn Interaction<D>,
     carried: &Nodes,
+    such: impl Fn(BondState) -> bool,
 ) -> Vec<Vec<u32>> {
     let mut place = vec![u32::MAX; atoms.len];
     for (n, (slot, _)) in carried.points.iter().enumerate() {
         place[*slot as usize] = n as u32;
     }
-    // an atom's own and those that it is bonded to
-    let mut near: Vec<Vec<u32>> = (0..carried.points.len() as u32).map(|n| vec![n]).collect();
-    inner.each_bond(atoms, &mut |i, j, _, _| {
-        let (i, j) = (place[i], place[j]);
-        near[i as usize].push(j);
-        near[j as usize].push(i);
+    // an atom's own, if it is bonded to any, and those
+    let mut near: Vec<Vec<u32>> = vec![vec![]; carried.points.len()];
+    inner.each_bond(atoms, &mut |i, j, _, state| {
+        if such(state) {
+            let ends = [place[i], place[j]];
+            ends.iter().for_each(|end| near[*end as usize].extend(ends));
+        }
     });
     let mut family = vec![vec![]; carried.of.len()];
     for_each_piece(&mut family, |first, piece| {
@@ -177,16 +184,25 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         body: &Body<D>,
         u: &Field<D>,
         f: &mut Field<D>,
-        _: Sweep<D>,
+        sweep: Sweep<D>,
         seen: Option<&mut PointEnergies>,
     ) -> Tally {
         let [mut moved, mut own] = [&mut self.u, &mut self.f].map(taken);
         self.carry(u, &mut moved);
         let mut energies = seen.is_some().then(PointEnergies::default);
         let of_atoms = energies.as_mut();
+        let velocity;
+        let sweep = match sweep {
+            Sweep::Evolve { v, steps, release } if self.breaks => {
+                velocity = self.carried(v);
+                let v = &velocity;
+                Sweep::Evolve { v, steps, release }
+            }
+            Sweep::Evolve { .. } | Sweep::Hold => Sweep::Hold,
+        };
         let tally = self
             .inner
-            .forces(&self.atoms, &moved, &mut own, Sweep::Hold, of_atoms);
+            .forces(&self.atoms, &moved, &mut own, sweep, of_atoms);
         for (f, own) in f.iter_mut().zip(&own) {
             self.gather(body, own, f);
         }
@@ -299,14 +315,41 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         }
     }
 
-    /// Nodes that feel each other: a bond is as long as that to the nearest image.
+    /// Nodes that feel each other: a bond is as long as that to the nearest image, and whole as long as a whole bond of atoms ties them.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        let whole = |state| state == BondState::Whole;
+        let tied = self
+            .breaks
+            .then(|| family(&self.atoms, self.inner.as_ref(), &self.carried, whole));
         for (g, others) in self.family.iter().enumerate() {
             for &h in others {
+                let tied = tied.as_ref().is_none_or(|t| t[g].binary_search(&h).is_ok());
+                let state = match tied {
+                    true => BondState::Whole,
+                    false => BondState::Broken,
+                };
                 let h = h as usize;
-                visit(g, h, between(body, g, h), BondState::Whole);
+                visit(g, h, between(body, g, h), state);
             }
         }
+    }
+
+    /// The mean of the atoms, by how much each counts for a node; some count less than nothing, so that it is held between 0 and 1.
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        let mut of_atoms = vec![0.0; self.atoms.len];
+        self.inner.damage(&self.atoms, &mut of_atoms);
+        self.gather(body, &of_atoms, out);
+        out.iter_mut().for_each(|d| *d = d.clamp(0.0, 1.0));
+    }
+
+    /// Bonds between atoms are what is cut.
+    fn cut(
+        &mut self,
+        _: &Body<D>,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        self.inner.cut(&self.atoms, kind, crosses)
     }
 
     /// `T̄[x_g]⟨x_h − x_g⟩ − T̄[x_h]⟨x_g − x_h⟩ = Σ_ij w_g(X_i) w_h(X_j) f_ij` between nodes and images of nodes.

@@ -1,9 +1,11 @@
 //! A sum of potentials on one body of atoms, each with the atoms that it acts on.
 
 use crate::body::{Body, Field, Identity, zeros};
+use crate::interaction::history::damage;
 use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
+use crate::spec::CrackKind;
 
 /// Potentials whose energies are added.
 pub struct Together<const D: usize> {
@@ -13,6 +15,8 @@ pub struct Together<const D: usize> {
     own: Field<D>,
     /// Partners of every slot in the reference.
     family: Vec<u16>,
+    /// Directed bonds that are broken.
+    broken: u64,
 }
 
 impl<const D: usize> Together<D> {
@@ -23,6 +27,7 @@ impl<const D: usize> Together<D> {
             parts,
             own: zeros(body.len),
             family: vec![],
+            broken: 0,
         };
         let mut family = vec![0u16; body.len];
         made.each_bond(body, &mut |i, j, _, _| {
@@ -31,6 +36,16 @@ impl<const D: usize> Together<D> {
         });
         made.family = family;
         made
+    }
+
+    /// Broken bonds, of which a part may know each, since the last time that they were counted.
+    fn count_broken(&mut self, body: &Body<D>) -> u64 {
+        let mut broken = 0;
+        self.each_bond(body, &mut |_, _, _, state| {
+            broken += 2 * u64::from(state == BondState::Broken);
+        });
+        let before = std::mem::replace(&mut self.broken, broken);
+        broken.saturating_sub(before)
     }
 }
 
@@ -72,6 +87,9 @@ impl<const D: usize> Interaction<D> for Together<D> {
             if let (Some(seen), Some(energies)) = (seen.as_deref_mut(), energies) {
                 add(&mut seen.strain, &energies.strain);
             }
+        }
+        if tally.broken > 0 {
+            tally.broken = self.count_broken(body);
         }
         tally
     }
@@ -148,6 +166,48 @@ impl<const D: usize> Interaction<D> for Together<D> {
             all &= part.each_force(body, u, visit);
         }
         all
+    }
+
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        let mut family = vec![0.0; body.len];
+        out.fill(0.0);
+        self.each_bond(body, &mut |i, j, _, state| {
+            for [i, j] in [[i, j], [j, i]] {
+                let volume = body.volume.at(j);
+                family[i] += volume;
+                out[i] += if state == BondState::Whole {
+                    volume
+                } else {
+                    0.0
+                };
+            }
+        });
+        for (out, family) in out.iter_mut().zip(family) {
+            *out = damage(*out, family);
+        }
+    }
+
+    fn cut(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        let count = |all: &Self| {
+            let (mut all_of, mut whole) = (0, 0);
+            all.each_bond(body, &mut |_, _, _, state| {
+                all_of += 2;
+                whole += 2 * u64::from(state == BondState::Whole);
+            });
+            [all_of, whole]
+        };
+        let [_, before] = count(self);
+        for part in &mut self.parts {
+            part.cut(body, kind, crosses);
+        }
+        let [family, left] = count(self);
+        self.broken = family - left;
+        before - left
     }
 
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {

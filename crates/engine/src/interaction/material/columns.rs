@@ -10,12 +10,9 @@ use crate::interaction::history;
 use crate::law::material::{Columns, Material, Numbers};
 
 /// Columns of criteria.
-const WORK: &str = "bond_work";
 const LIFE: &str = "remaining_life";
 /// What breaking has left of points.
 const INTEGRITY: &str = "integrity";
-/// Energy / volume².
-const OF_BONDS: Dimension = Dimension([-4, 1, -2, 0]);
 
 /// Where a column lies among the numbers of a law.
 enum Place {
@@ -35,17 +32,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         } = self.law.columns();
         let mut breaks = history::columns(!self.critical.is_empty() && self.work.is_empty());
         if !self.work.is_empty() {
-            breaks.push(Declaration::of_bonds(
-                WORK,
-                OF_BONDS,
-                "Work ∫ (T_i − T_j)·dη that force states have done on a bond (Foster, Silling & Chen 2011).",
-            ));
-            breaks.push(Declaration::of_points(
-                history::WORK,
-                Shape::Scalar,
-                OF_BONDS,
-                "Work at which a bond of the point breaks, the lower one of both ends.",
-            ));
+            breaks.extend(history::of_work());
         }
         if !self.life.is_empty() {
             breaks.push(Declaration::of_bonds(
@@ -76,7 +63,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     /// What a directed bond has beside the law's memory.
     fn beside(&self, name: &str) -> Option<&Vec<f64>> {
         let found = match name {
-            WORK => &self.work,
+            history::DONE => &self.work,
             LIFE => &self.life,
             _ => return None,
         };

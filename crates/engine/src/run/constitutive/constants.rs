@@ -49,16 +49,20 @@ pub(super) fn constants<const D: usize>(
             ));
         }
         let c = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
-        let plain = matches!(
-            m.law,
-            LawSpec::Springs(_) | LawSpec::Atoms(_) | LawSpec::Micromoduli(_)
-        );
-        if plain && (m.fracture.is_some() || spec.contact.is_some() || !spec.precracks.is_empty()) {
+        let linear = matches!(m.law, LawSpec::Springs(_) | LawSpec::Micromoduli(_));
+        if linear && (spec.contact.is_some() || super::breaks(spec)) {
             return Err(BuildError::unsupported(
                 at(n, "law"),
-                "springs, micromoduli and potentials have no bonds that break and no contact of their own",
+                "springs and micromoduli have no bonds that break and no contact of their own",
             )
             .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
+        }
+        if matches!(m.law, LawSpec::Atoms(_)) && spec.contact.is_some() {
+            return Err(BuildError::unsupported(
+                at(n, "law"),
+                "how atoms repel each other is what their potential says, and no stiffness of contact follows from it",
+            )
+            .help("remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps"));
         }
         // contact knows no influence function
         let hard = |stiffness| micromodulus(D, spec.plane, stiffness, alike);

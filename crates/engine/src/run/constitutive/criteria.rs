@@ -49,7 +49,22 @@ pub(in crate::run) fn remembering(spec: &mut Spec) -> Result<bool, BuildError> {
                 )
                 .help("take lps with the same moduli, or give critical_stretch without rate and fatigue"));
             }
-            LawSpec::Springs(_) | LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
+            LawSpec::Atoms(_) => {
+                let works = |f: FractureSpec| {
+                    matches!(f.criterion, Criterion::BondEnergy(_))
+                        && f.rate.is_none()
+                        && f.fatigue.is_none()
+                };
+                if !m.fracture.is_none_or(works) {
+                    return Err(unsupported(
+                        n,
+                        "fracture",
+                        "the bonds of a potential know how far they are stretched and the work that was done on them, and no stress, rate or age",
+                    )
+                    .help("give critical_stretch, or energy with criterion = \"bond_energy\""));
+                }
+            }
+            LawSpec::Springs(_) | LawSpec::Micromoduli(_) => {
                 return Err(unsupported(n, "law", "bonds of this law never break")
                     .help("remove fracture, or take pmb or lps"));
             }

@@ -6,6 +6,7 @@ use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::family::horizon::HorizonList;
 use crate::family::links::Links;
+use crate::interaction::atoms::breaking::Breaks;
 use crate::interaction::linear::LinearInteraction;
 use crate::interaction::list::{ListInteraction, ListParts};
 use crate::interaction::micromoduli::MicromoduliInteraction;
@@ -148,8 +149,12 @@ impl ConstitutiveModel {
                     potential.bind(body, links, self.simd)
                 }
                 _ if self.held => {
-                    let family = Neighbours::Reference(self.reach());
-                    potential.bind(body, family, self.simd)
+                    let breaks = self.breaks.then(|| Breaks {
+                        toughness,
+                        measure: self.criteria.measure.clone(),
+                    });
+                    let horizon = self.reach();
+                    potential.bind(body, Neighbours::Reference { horizon, breaks }, self.simd)
                 }
                 _ => potential.bind(body, Neighbours::Current, self.simd),
             },

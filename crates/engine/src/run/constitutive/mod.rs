@@ -55,6 +55,8 @@ pub(super) struct ConstitutiveModel {
     pub ratio: bool,
     /// Do atoms keep the neighbours of the reference?
     pub held: bool,
+    /// Do bonds break, or are some cut?
+    pub breaks: bool,
     pub rule: InterfaceRule,
     /// Constants of pairs of materials, where they do not follow from the two.
     pub pairs: Option<Arc<BondTable>>,
@@ -67,6 +69,20 @@ pub(super) struct ConstitutiveModel {
 pub(super) struct ConstitutiveModels {
     /// First slot, places of the materials in the spec, model.
     of: Vec<(usize, Vec<usize>, ConstitutiveModel)>,
+}
+
+/// Do bonds break, or are some cut? Where the spec says so.
+pub(super) fn breaking(spec: &Spec) -> Option<String> {
+    let material = { spec.materials.iter() }.position(|m| m.fracture.is_some());
+    let crack = (!spec.precracks.is_empty()).then(|| "precracks[0]".to_string());
+    material
+        .map(|n| format!("materials[{n}].fracture"))
+        .or(crack)
+}
+
+/// Do bonds break, or are some cut?
+pub(super) fn breaks(spec: &Spec) -> bool {
+    breaking(spec).is_some()
 }
 
 impl ConstitutiveModels {
@@ -188,7 +204,8 @@ impl ConstitutiveModel {
         };
         let pairs = pairs::bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
         let named = shelf::chosen::<D>(spec, shelf, (horizon, moments, bulk.family), &toughness)?;
-        if named.is_none() && !criteria.is_plain() {
+        let atoms = matches!(laws, Laws::Atoms(_));
+        if named.is_none() && !atoms && !criteria.is_plain() {
             return Err(BuildError::unsupported(
                 "materials[0].fracture",
                 "these bonds break by their critical stretch alone",
@@ -208,6 +225,7 @@ impl ConstitutiveModel {
             scaling: spec.volume_scaling,
             ratio: matches!(spec.horizon, Horizon::Ratio(_)),
             held: spec.family == FamilyChoice::Reference,
+            breaks: breaks(spec),
             rule: spec.interface,
             pairs,
             named,

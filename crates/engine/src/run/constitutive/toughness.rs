@@ -60,10 +60,16 @@ pub(super) fn toughness<const D: usize>(
                 LawSpec::Lps(m) => {
                     fracture_energy::state_based(D, spec.plane, m, horizon, spec.influence)
                 }
+                LawSpec::Atoms(_) => {
+                    return Err(BuildError::unsupported(
+                        path,
+                        "the energy of a stretched bond of a potential is no square of its stretch: a fracture energy gives no critical stretch",
+                    )
+                    .help("write criterion = \"bond_energy\" beside energy, or give critical_stretch"));
+                }
                 LawSpec::LpsAsTyped { .. }
                 | LawSpec::EamLike { .. }
                 | LawSpec::Springs(_)
-                | LawSpec::Atoms(_)
                 | LawSpec::Micromoduli(_)
                 | LawSpec::Named(_) => {
                     return Err(BuildError::unsupported(

@@ -28,7 +28,9 @@ pub fn contact(
         None => {
             let touches = bodies::several(document);
             let breaks = materials.iter().any(|m| m.fracture.is_some());
-            Ok((touches || breaks).then_some(standard))
+            // how atoms repel each other their potential says
+            let atoms = materials.iter().all(|m| m.law.potential().is_some());
+            Ok((touches || breaks && !atoms).then_some(standard))
         }
         Some(Or::Table(c)) => {
             let get = |n: &Option<_>, or: f64, what: &str| {

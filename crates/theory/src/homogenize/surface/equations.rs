@@ -111,36 +111,23 @@ pub fn equations(
     let d = sites.dimension;
     let triples = triples(d);
     let c = stiffness(bonds);
-    let tiny = 1e-12 * c[0][0][0][0];
-    let mut made = Collected::new(tiny);
-    for place in kinds.examples() {
-        let own = around.of(place);
-        let own_near = around.near(own, layers);
-        let (_, area) = sites.cell_share(place);
-        let mut left = vec![BTreeMap::<usize, f64>::new(); triples.len()];
-        let mut right: Vec<f64> = triples
-            .iter()
-            .map(|[i, j, k]| -(0..d).map(|l| c[*i][*j][*k][l] * area[l]).sum::<f64>())
-            .collect();
-        for bond in bonds {
-            let Some(to) = sites.step(place, bond.offset) else {
-                continue;
-            };
-            let other = around.of(to);
-            let unknown = own_near || around.near(other, layers);
-            let class = unknown.then(|| around.class(Bonds::Mutual, own, other, bond.offset));
-            let (_, n) = bond.direction();
-            for (e, [i, j, k]) in triples.iter().enumerate() {
-                let pull = bond.weight * n[*i] * n[*j] * n[*k];
-                match class {
-                    Some(class) => *left[e].entry(class).or_default() += pull,
-                    None => right[e] -= pull,
-                }
-            }
-        }
-        made.add(place, left, right);
-    }
-    made.finish(around.classes(Bonds::Mutual))
+    let mutual = Mutual {
+        sites,
+        bonds,
+        kinds,
+        layers,
+        tiny: 1e-12 * c[0][0][0][0],
+    };
+    let pull = |bond: &StencilBond, e: usize| {
+        let (_, n) = bond.direction();
+        let [i, j, k] = triples[e];
+        bond.weight * n[i] * n[j] * n[k]
+    };
+    let right = |area: &[f64; 3], e: usize| {
+        let [i, j, k] = triples[e];
+        -(0..d).map(|l| c[i][j][k][l] * area[l]).sum::<f64>()
+    };
+    mutual.equations(around, triples.len(), pull, right)
 }
 
 /// The equations of the factors ζ of conductances.
@@ -154,31 +141,62 @@ pub fn conductances(
     let d = sites.dimension;
     let half: f64 = bonds.iter().map(|b| b.share * b.direction().0).sum();
     let half = half / (2 * d) as f64;
-    let mut made = Collected::new(1e-12 * half);
-    for place in kinds.examples() {
-        let own = around.of(place);
-        let own_near = around.near(own, layers);
-        let (_, area) = sites.cell_share(place);
-        let mut left = vec![BTreeMap::<usize, f64>::new(); d];
-        let mut right: Vec<f64> = area[..d].iter().map(|a| -half * a).collect();
-        for bond in bonds {
-            let Some(to) = sites.step(place, bond.offset) else {
-                continue;
-            };
-            let other = around.of(to);
-            let unknown = own_near || around.near(other, layers);
-            let class = unknown.then(|| around.class(Bonds::Mutual, own, other, bond.offset));
-            let (_, n) = bond.direction();
-            for a in 0..d {
-                match class {
-                    Some(class) => *left[a].entry(class).or_default() += bond.share * n[a],
-                    None => right[a] -= bond.share * n[a],
+    let mutual = Mutual {
+        sites,
+        bonds,
+        kinds,
+        layers,
+        tiny: 1e-12 * half,
+    };
+    let flow = |bond: &StencilBond, a: usize| bond.share * bond.direction().1[a];
+    mutual.equations(around, d, flow, |area, a| -half * area[a])
+}
+
+/// Equations of factors that both directions of a bond share.
+struct Mutual<'a> {
+    sites: &'a Sites,
+    bonds: &'a [StencilBond],
+    kinds: &'a Kinds,
+    layers: i32,
+    /// What is 0 but for round-off.
+    tiny: f64,
+}
+
+impl Mutual<'_> {
+    /// `Σ factor · term(bond, e) = right(area, e)` for e below `count`; bonds whose factor is known to be 1 go to the right.
+    fn equations(
+        &self,
+        around: &mut Neighbourhoods,
+        count: usize,
+        term: impl Fn(&StencilBond, usize) -> f64,
+        right: impl Fn(&[f64; 3], usize) -> f64,
+    ) -> Equations {
+        let mut made = Collected::new(self.tiny);
+        for place in self.kinds.examples() {
+            let own = around.of(place);
+            let own_near = around.near(own, self.layers);
+            let (_, area) = self.sites.cell_share(place);
+            let mut left = vec![BTreeMap::<usize, f64>::new(); count];
+            let mut right: Vec<f64> = (0..count).map(|e| right(&area, e)).collect();
+            for bond in self.bonds {
+                let Some(to) = self.sites.step(place, bond.offset) else {
+                    continue;
+                };
+                let other = around.of(to);
+                let unknown = own_near || around.near(other, self.layers);
+                let class = unknown.then(|| around.class(Bonds::Mutual, own, other, bond.offset));
+                for e in 0..count {
+                    let x = term(bond, e);
+                    match class {
+                        Some(class) => *left[e].entry(class).or_default() += x,
+                        None => right[e] -= x,
+                    }
                 }
             }
+            made.add(place, left, right);
         }
-        made.add(place, left, right);
+        made.finish(around.classes(Bonds::Mutual))
     }
-    made.finish(around.classes(Bonds::Mutual))
 }
 
 /// The equations of the factors η of the dilatation.

@@ -46,11 +46,21 @@ impl Block {
     /// The lines of one of them.
     #[inline(always)]
     pub fn tile(&self, n: usize, groups: usize) -> &[[u32; TILE]] {
+        &self.lines[self.range(n, groups)]
+    }
+
+    pub fn tile_mut(&mut self, n: usize, groups: usize) -> &mut [[u32; TILE]] {
+        let range = self.range(n, groups);
+        &mut self.lines[range]
+    }
+
+    #[inline(always)]
+    fn range(&self, n: usize, groups: usize) -> std::ops::Range<usize> {
         let first = match n {
             0 => 0,
             n => self.ends[n * groups - 1] as usize,
         };
-        &self.lines[first..self.ends[(n + 1) * groups - 1] as usize]
+        first..self.ends[(n + 1) * groups - 1] as usize
     }
 
     pub fn bytes(&self) -> usize {

@@ -28,6 +28,16 @@ pub(super) struct Term {
 }
 
 impl Term {
+    /// Is it a bond between two atoms, and not what is taken of the potential?
+    pub fn is_bond(&self) -> bool {
+        self.count == 2 && matches!(self.says, Says::Form(_))
+    }
+
+    /// Slots of the first two particles.
+    pub fn ends(&self) -> [usize; 2] {
+        [0, 1].map(|n| self.slots[n] as usize)
+    }
+
     pub fn pairs(&self) -> usize {
         self.count * (self.count - 1) / 2
     }

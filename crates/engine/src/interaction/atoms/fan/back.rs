@@ -77,6 +77,20 @@ impl Back {
         &self.force
     }
 
+    /// `T_i − T_j` (force) of the bond at a place: what its partner's fan says of its atom, less what its atom's fan says of its end.
+    pub fn pull(&self, place: usize) -> [f64; 3] {
+        let of = |place: u32| match self.before[place as usize] {
+            FAR => [0.0; 4],
+            lines => self.force[place as usize - TILE * usize::from(lines)],
+        };
+        let own = of(place as u32);
+        let other = match self.back[place] {
+            NONE => [0.0; 4],
+            back => of(back),
+        };
+        std::array::from_fn(|a| other[a] - own[a])
+    }
+
     pub fn bytes(&self) -> usize {
         4 * self.first.capacity()
             + 4 * self.back.capacity()

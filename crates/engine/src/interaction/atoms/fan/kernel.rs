@@ -85,7 +85,7 @@ impl<F: Fan> View<'_, F> {
         i: &[L; 4],
         near: &mut Vec<[u32; TILE]>,
     ) {
-        let nowhere = self.list.positions().len() as u32 - 1;
+        let nowhere = self.list.nowhere();
         // lanes without an atom have neighbours at no distance
         let own_lanes = (1u32 << self.list.slots(tile).len()) - 1;
         let mut count = [0usize; TILE];

@@ -8,10 +8,12 @@ use crate::family::links::Links;
 use crate::family::stencil::Stencil;
 use crate::interaction::Interaction;
 use crate::interaction::atoms::bonded::PairEnergy;
+use crate::interaction::atoms::breaking::{Breaking, Breaks, Held};
 use crate::interaction::atoms::current::CurrentAtoms;
 use crate::interaction::atoms::fan::FanAtoms;
 use crate::interaction::atoms::fixed::FixedAtoms;
 use crate::interaction::atoms::together::Together;
+use crate::interaction::criterion::Measure;
 use crate::law::descriptor::Wrong;
 use crate::law::fan::{self, sites::FanSites};
 use crate::law::jet::Jet;
@@ -32,8 +34,11 @@ type Binder<const D: usize> = fn(&Given, &Body<D>, Neighbours<D>, Simd) -> Bound
 pub(crate) enum Neighbours<const D: usize> {
     /// Those of a lattice, for ever.
     Linked(Links<D>),
-    /// Those within this horizon in the reference (length), for ever.
-    Reference(f64),
+    /// Those within this horizon in the reference (length), for ever or until bonds break.
+    Reference {
+        horizon: f64,
+        breaks: Option<Breaks>,
+    },
     /// Those that are near now.
     Current,
 }
@@ -132,11 +137,25 @@ fn bind<const D: usize, P: Described>(
     let potential = mixture::<P>(given)?;
     Ok(match neighbours {
         Neighbours::Linked(links) => Box::new(FixedAtoms::new(body, links, potential, simd)),
-        Neighbours::Reference(horizon) => {
-            Box::new(CurrentAtoms::of_reference(body, potential, horizon, simd))
+        Neighbours::Reference { horizon, breaks } => {
+            let held = CurrentAtoms::of_reference(body, potential, horizon, simd);
+            breaking(body, held, breaks, simd)
         }
         Neighbours::Current => Box::new(CurrentAtoms::new(body, potential, simd)),
     })
+}
+
+/// A held potential, with bonds that break if any do.
+fn breaking<const D: usize>(
+    body: &Body<D>,
+    held: impl Held<D> + 'static,
+    breaks: Option<Breaks>,
+    simd: Simd,
+) -> Box<dyn Interaction<D>> {
+    match breaks {
+        None => Box::new(held),
+        Some(breaks) => Box::new(Breaking::new(body, Box::new(held), breaks, simd)),
+    }
 }
 
 fn not_of_pairs(name: &str) -> Wrong {
@@ -151,17 +170,6 @@ fn bind_fan<F: fan::Described>(
     simd: Simd,
 ) -> Bound<3> {
     let fan = fan::of_kinds::<F>(given)?;
-    let held = match neighbours {
-        Neighbours::Linked(_) => {
-            let message = format!(
-                "{} has no stencil: its terms have pairs that no bond of one atom is; write family = \"reference\"",
-                F::NAME
-            );
-            return Err((String::new(), message));
-        }
-        Neighbours::Reference(horizon) => Some(horizon),
-        Neighbours::Current => None,
-    };
     let known = fan.table().kinds();
     let kinds = body.slots.iter().map(|s| body.material_of(*s as usize));
     let found = kinds.max().map_or(0, |k| k + 1);
@@ -172,10 +180,20 @@ fn bind_fan<F: fan::Described>(
         );
         return Err((String::new(), message));
     }
-    Ok(Box::new(match held {
-        Some(horizon) => FanAtoms::of_reference(body, fan, horizon, simd),
-        None => FanAtoms::new(body, fan, simd),
-    }))
+    Ok(match neighbours {
+        Neighbours::Linked(_) => {
+            let message = format!(
+                "{} has no stencil: its terms have pairs that no bond of one atom is; write family = \"reference\"",
+                F::NAME
+            );
+            return Err((String::new(), message));
+        }
+        Neighbours::Reference { horizon, breaks } => {
+            let held = FanAtoms::of_reference(body, fan, horizon, simd);
+            breaking(body, held, breaks, simd)
+        }
+        Neighbours::Current => Box::new(FanAtoms::new(body, fan, simd)),
+    })
 }
 
 /// Angles between bonds need space.
@@ -514,6 +532,18 @@ impl AnyPotentials {
                 BuildError::unsupported("family", "a stencil knows one potential")
                     .help("write family = \"reference\", or leave family out: atoms feel those that are near now"),
             );
+        }
+        if let Neighbours::Reference {
+            breaks: Some(breaks),
+            ..
+        } = &neighbours
+            && matches!(breaks.measure, Measure::Work(_))
+        {
+            return Err(BuildError::unsupported(
+                "materials[0].fracture",
+                "between these atoms act several potentials, and the work on a bond is that of all",
+            )
+            .help("give critical_stretch"));
         }
         let each = self.parts.iter();
         let parts = each.map(|p| p.bind(body, neighbours.clone(), simd));

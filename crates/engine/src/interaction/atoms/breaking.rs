@@ -1,0 +1,559 @@
+//! Potentials on families of the reference whose bonds break: who is taken out of a family is never felt again.
+//!
+//! What is held is a list of neighbours; a broken bond is an entry of it, and of that of its partner, that names nobody. The energy of an
+//! atom is then that of the neighbours that are left: of pairs one term less, of densities, angles and bond orders what they say without
+//! this neighbour. Bonds break by their stretch, or by the work that the force states `∂U^(i)/∂y_ij` (sandia2010 (4.0.122)) of both
+//! ends have done on them, `∫ (T_i − T_j)·dη` (Foster, Silling & Chen 2011), by the trapezoidal rule from step to step.
+//!
+//! What breaking does to the energy is the difference of all energy before and after. A potential that holds atoms together is lowest at
+//! the reference: there breaking a bond gives energy to the atoms (it is booked as made), and it takes the more the farther it was stretched.
+
+mod kernel;
+
+use crate::body::{Body, Field, Identity, zeros};
+use crate::columns::Declaration;
+use crate::execute::blocks::{Shared, run_blocks};
+use crate::execute::lane::TILE;
+use crate::execute::simd::Simd;
+use crate::family::neighbours::near::NearList;
+use crate::interaction::criterion::Measure;
+use crate::interaction::history::{self, crossed, damage};
+use crate::interaction::{
+    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+};
+use crate::interaction::{Motion, Released, Toughness};
+use crate::spec::{CrackKind, Release};
+use kernel::{Add, Test};
+
+/// What bonds of potentials break by.
+#[derive(Debug, Clone)]
+pub struct Breaks {
+    /// Per material.
+    pub toughness: Vec<Toughness>,
+    /// [`Measure::Stretch`] or [`Measure::Work`].
+    pub measure: Measure,
+}
+
+/// A potential on a held list of neighbours.
+pub trait Held<const D: usize>: Interaction<D> {
+    fn list(&self) -> &NearList<D>;
+
+    fn list_mut(&mut self) -> &mut NearList<D>;
+
+    /// `T_i − T_j` (force) of each bond, towards its partner where it pulls, by place: `8 (first[tile] + line) + lane`; 0 where nobody is. Of the
+    /// displacements of the last [`forces`](Interaction::forces).
+    fn pulls(&self, first: &[u32], out: &mut [[f64; D]]);
+}
+
+/// Such a potential with bonds that break.
+pub struct Breaking<const D: usize> {
+    inner: Box<dyn Held<D>>,
+    simd: Simd,
+    toughness: Vec<Toughness>,
+    /// First line of each tile.
+    first: Vec<u32>,
+    /// `[lines]`: the families of the reference.
+    family: Vec<[u32; TILE]>,
+    /// `[listed][4]`: places in the reference, and critical values: of `e`, or works (energy / volume²).
+    reference: Vec<[f64; 4]>,
+    /// By slot: place among own atoms.
+    own: Vec<u32>,
+    work: Option<Work<D>>,
+    found: Vec<Vec<u32>>,
+    next: Vec<f64>,
+    /// Forces without the bonds that just broke.
+    after: Field<D>,
+}
+
+/// What is known of the work on bonds.
+struct Work<const D: usize> {
+    /// By place (energy / volume²).
+    done: Vec<f64>,
+    /// Positions and forces of bonds at the step before.
+    at: Vec<[f64; 4]>,
+    before: Vec<[f64; D]>,
+    pulls: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Work<D> {
+    /// None, of a body at rest whose list has so many lines.
+    fn new(body: &Body<D>, inner: &mut dyn Held<D>, first: &[u32], lines: usize) -> Self {
+        let mut f = zeros(body.len);
+        inner.forces(body, &body.at_rest(), &mut f, Sweep::Hold, None);
+        let mut before = vec![[0.0; D]; lines * TILE];
+        inner.pulls(first, &mut before);
+        Work {
+            done: vec![0.0; before.len()],
+            at: inner.list().positions().to_vec(),
+            pulls: before.clone(),
+            before,
+        }
+    }
+}
+
+impl<const D: usize> Breaking<D> {
+    /// `inner` holds the families of the reference of this body, which is at rest.
+    pub fn new(body: &Body<D>, mut inner: Box<dyn Held<D>>, breaks: Breaks, simd: Simd) -> Self {
+        let list = inner.list();
+        let (mut first, mut family) = (vec![], vec![]);
+        for (_, lines) in (0..list.blocks()).flat_map(|b| list.tiles(b)) {
+            first.push(family.len() as u32);
+            family.extend_from_slice(lines);
+        }
+        let mut own = vec![u32::MAX; body.len];
+        for t in 0..first.len() {
+            for (l, slot) in list.slots(t).iter().enumerate() {
+                own[*slot as usize] = (t * TILE + l) as u32;
+            }
+        }
+        let mut reference = list.positions().to_vec();
+        let critical = |slot: Option<usize>| match (&breaks.measure, slot) {
+            (Measure::Work(limit), Some(slot)) => limit[body.material_of(slot)],
+            // critical stretches are known after the first evaluation
+            _ => f64::INFINITY,
+        };
+        for (n, x) in reference.iter_mut().enumerate() {
+            x[3] = critical(list.original(n));
+        }
+        let (blocks, tiles) = (list.blocks(), first.len());
+        let work = match breaks.measure {
+            Measure::Work(_) => Some(Work::new(body, inner.as_mut(), &first, family.len())),
+            Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => None,
+        };
+        Breaking {
+            inner,
+            simd,
+            toughness: breaks.toughness,
+            first,
+            family,
+            reference,
+            own,
+            work,
+            found: vec![vec![]; blocks],
+            next: vec![0.0; tiles * TILE],
+            after: zeros(body.len),
+        }
+    }
+
+    /// The work of the step that ends here, by the forces that were just found.
+    fn add_work(&mut self, body: &Body<D>) {
+        let Some(work) = &mut self.work else {
+            return;
+        };
+        self.inner.pulls(&self.first, &mut work.pulls);
+        let list = self.inner.list();
+        let kernel = Add {
+            body,
+            list,
+            first: &self.first,
+            then: &work.at,
+            before: &work.before,
+            pulls: &work.pulls,
+            work: Shared(work.done.as_mut_ptr()),
+        };
+        run_blocks(self.simd, &kernel, list.blocks());
+        work.at.copy_from_slice(list.positions());
+        std::mem::swap(&mut work.before, &mut work.pulls);
+    }
+
+    /// Bonds that go, of which both directions know: they are found by one or by both.
+    fn test(&mut self, body: &Body<D>) -> Vec<usize> {
+        let list = self.inner.list();
+        let kernel = Test {
+            body,
+            list,
+            reference: &self.reference,
+            first: &self.first,
+            work: self.work.as_ref().map_or(&[], |w| &w.done),
+            toughness: &self.toughness,
+            next: Shared(self.next.as_mut_ptr()),
+            found: Shared(self.found.as_mut_ptr()),
+        };
+        run_blocks(self.simd, &kernel, list.blocks());
+        self.found.iter().flatten().map(|p| *p as usize).collect()
+    }
+
+    /// What points bear from now on, where bonds break by their stretch.
+    fn strengthen(&mut self) {
+        if self.work.is_some() {
+            return;
+        }
+        let list = self.inner.list();
+        for (n, x) in self.reference.iter_mut().enumerate() {
+            if let Some(home) = list.home(n) {
+                x[3] = self.next[home];
+            }
+        }
+    }
+
+    /// Line and lane of a place in the list.
+    fn entry(&mut self, place: usize) -> &mut u32 {
+        let (tile, line) = self.line(place);
+        &mut self.inner.list_mut().lines_mut(tile)[line][place % TILE]
+    }
+
+    fn is_whole(&self, place: usize) -> bool {
+        let (tile, line) = self.line(place);
+        let list = self.inner.list();
+        list.lines(tile)[line][place % TILE] != list.nowhere()
+    }
+
+    /// Tile of a place, and its line there.
+    fn line(&self, place: usize) -> (usize, usize) {
+        let line = place / TILE;
+        let tile = self.first.partition_point(|f| *f as usize <= line) - 1;
+        (tile, line - self.first[tile] as usize)
+    }
+
+    /// Places of the family of an own atom, broken bonds too, with the listed atoms that they name.
+    fn bonds(&self, own: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let tile = own / TILE;
+        let end = { self.first.get(tile + 1) }.map_or(self.family.len(), |f| *f as usize);
+        let nowhere = self.inner.list().nowhere();
+        (self.first[tile] as usize..end)
+            .map(move |line| (line * TILE + own % TILE, self.family[line][own % TILE]))
+            .filter(move |(_, other)| *other != nowhere)
+            .map(|(place, other)| (place, other as usize))
+    }
+
+    /// ξ of an own atom and a listed one.
+    fn xi(&self, own: usize, other: usize) -> [f64; D] {
+        let (x, z) = (&self.reference[own], &self.reference[other]);
+        std::array::from_fn(|a| z[a] - x[a])
+    }
+
+    /// The place of the same bond from its other end.
+    fn opposite(&self, place: usize) -> Option<usize> {
+        let (tile, _) = self.line(place);
+        let own = tile * TILE + place % TILE;
+        let other = self.family[place / TILE][place % TILE] as usize;
+        let list = self.inner.list();
+        let xi = self.xi(own, other);
+        let size = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+        let near = 1e-12 * size(&xi);
+        self.bonds(list.home(other)?).find_map(|(back, n)| {
+            let of = self.xi(list.home(other)?, n);
+            let sum: [f64; D] = std::array::from_fn(|a| of[a] + xi[a]);
+            (list.home(n)? == own && size(&sum) < near).then_some(back)
+        })
+    }
+
+    /// Takes these bonds out, from both ends. Directed ones that were whole.
+    fn tear(&mut self, places: &[usize]) -> u64 {
+        let nowhere = self.inner.list().nowhere();
+        let mut torn = 0;
+        for &place in places {
+            for end in [Some(place), self.opposite(place)].into_iter().flatten() {
+                let entry = self.entry(end);
+                torn += u64::from(*entry != nowhere);
+                *entry = nowhere;
+            }
+        }
+        torn
+    }
+
+    /// All directed bonds of the reference, in order of slots: slots, ξ and place.
+    fn each_directed(&self, body: &Body<D>, mut visit: impl FnMut(usize, usize, [f64; D], usize)) {
+        let list = self.inner.list();
+        for &slot in &body.slots {
+            let own = self.own[slot as usize] as usize;
+            for (place, other) in self.bonds(own) {
+                if let Some(j) = list.original(other) {
+                    visit(slot as usize, j, self.xi(own, other), place);
+                }
+            }
+        }
+    }
+
+    /// Is there anything that breaks by itself?
+    fn breaks(&self) -> bool {
+        self.work.is_some() || self.toughness.iter().any(|t| t.s00.is_finite())
+    }
+
+    /// What goes in this step goes, and what that does to the energy: `f` are the forces with all bonds, and those without where bonds let
+    /// go at once.
+    fn evolve(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        motion: Motion<D>,
+    ) -> Tally {
+        self.add_work(body);
+        let found = self.test(body);
+        let mut tally = Tally::default();
+        if !found.is_empty() {
+            let [before, _] = self.inner.energy(body, u);
+            tally.broken = self.tear(&found);
+            let mut after = std::mem::replace(&mut self.after, zeros(0));
+            let without = self.inner.forces(body, u, &mut after, Sweep::Hold, None);
+            tally += without;
+            let [left, _] = self.inner.energy(body, u);
+            // over half a step these bonds pulled too long, or not at all
+            let half = match motion.release {
+                Release::AtOnce => 0.5 * motion.steps[0],
+                Release::AfterForce => -0.5 * motion.steps[1],
+            };
+            let power: f64 = { body.slots.iter() }
+                .map(|&s| {
+                    let s = s as usize;
+                    let of = |a: usize| (f[a][s] - after[a][s]) * motion.v[a][s];
+                    body.volume.at(s) * (0..D).map(of).sum::<f64>()
+                })
+                .sum();
+            let mut released = Released::default();
+            released.book(before - left + half * power);
+            tally.released = released;
+            if motion.release == Release::AtOnce {
+                std::mem::swap(f, &mut after);
+            }
+            self.after = after;
+        }
+        self.strengthen();
+        tally
+    }
+}
+
+impl<const D: usize> Interaction<D> for Breaking<D> {
+    fn made_for(&self) -> Identity {
+        self.inner.made_for()
+    }
+
+    fn family(&self) -> &'static str {
+        self.inner.family()
+    }
+
+    unsafe fn forces_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        let mut tally = self.inner.forces(body, u, f, Sweep::Hold, seen);
+        if let Some(motion) = sweep.motion().filter(|_| self.breaks()) {
+            tally += self.evolve(body, u, f, motion);
+        }
+        tally
+    }
+
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        self.inner.energy(body, u)
+    }
+
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        self.inner.observe(body, u, out);
+    }
+
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.inner.observe_gradient(body, gradient, out);
+    }
+
+    fn is_potential(&self) -> bool {
+        true
+    }
+
+    fn has_fans(&self) -> bool {
+        self.inner.has_fans()
+    }
+
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        self.inner.tangents(body, u, visit);
+    }
+
+    fn gain(&self, slot: usize) -> f64 {
+        self.inner.gain(slot)
+    }
+
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        self.inner.each_force(body, u, visit)
+    }
+
+    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        self.inner.virial(body, u)
+    }
+
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        self.each_directed(body, |i, j, xi, place| {
+            if i < j {
+                let state = match self.is_whole(place) {
+                    true => BondState::Whole,
+                    false => BondState::Broken,
+                };
+                visit(i, j, xi, state);
+            }
+        });
+    }
+
+    fn mend(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> Option<u64> {
+        self.check(body, &[u]);
+        let position = self.inner.list().positions_at(u, self.simd)?;
+        let mut places = vec![];
+        for &slot in &body.slots {
+            let own = self.own[slot as usize] as usize;
+            for (place, other) in self.bonds(own).filter(|(place, _)| !self.is_whole(*place)) {
+                let xi = self.xi(own, other);
+                let eta = std::array::from_fn(|a| position[other][a] - position[own][a] - xi[a]);
+                let partner = self.inner.list().original(other);
+                let e = history::relative(&xi, eta);
+                if partner.is_some_and(|j| heals(slot as usize, j, e)) {
+                    places.push(place);
+                }
+            }
+        }
+        let mut whole = 0;
+        for place in places {
+            for end in [Some(place), self.opposite(place)].into_iter().flatten() {
+                whole += u64::from(!self.is_whole(end));
+                let named = self.family[end / TILE][end % TILE];
+                *self.entry(end) = named;
+            }
+        }
+        Some(whole)
+    }
+
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        let mut family = vec![0.0; body.len];
+        out.fill(0.0);
+        self.each_directed(body, |i, j, _, place| {
+            let volume = body.volume.at(j);
+            family[i] += volume;
+            out[i] += if self.is_whole(place) { volume } else { 0.0 };
+        });
+        for (out, family) in out.iter_mut().zip(family) {
+            *out = damage(*out, family);
+        }
+    }
+
+    fn cut(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        let mut places = vec![];
+        self.each_directed(body, |i, j, xi, place| {
+            let [from, to] = [i, j].map(|slot| {
+                let x = body.position(slot);
+                std::array::from_fn(|a| x[a])
+            });
+            if self.is_whole(place) && crossed(crosses, from, xi, Some(to)) {
+                places.push(place);
+            }
+        });
+        let cut = self.tear(&places);
+        if kind == CrackKind::Absent {
+            // they were never there
+            let nowhere = self.inner.list().nowhere();
+            for place in places {
+                self.family[place / TILE][place % TILE] = nowhere;
+            }
+        }
+        cut
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        let nowhere = self.inner.list().nowhere();
+        let named = |line: &[u32; TILE]| line.iter().filter(|n| **n != nowhere).count() as u64;
+        self.family.iter().map(named).sum()
+    }
+
+    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
+        self.bonds(self.own[slot] as usize).count()
+    }
+
+    fn columns(&self) -> Vec<Declaration> {
+        let mut all = history::columns(self.work.is_none());
+        if self.work.is_some() {
+            all.extend(history::of_work());
+        }
+        all
+    }
+
+    fn read_column(&self, body: &Body<D>, _: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+        out.clear();
+        match (name, &self.work) {
+            (history::WHOLE, _) => self.each_directed(body, |_, _, _, place| {
+                out.push(f64::from(u8::from(self.is_whole(place))));
+            }),
+            (history::DONE, Some(work)) => {
+                self.each_directed(body, |_, _, _, place| out.push(work.done[place]));
+            }
+            _ => {
+                let mut critical = vec![0.0; body.len];
+                for &s in &body.slots {
+                    critical[s as usize] = self.reference[self.own[s as usize] as usize][3];
+                }
+                return history::read_critical(body, &critical, name, out);
+            }
+        }
+        true
+    }
+
+    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        let mut places = vec![];
+        match name {
+            history::WHOLE | history::DONE => {
+                self.each_directed(body, |_, _, _, place| places.push(place));
+                if values.len() != places.len() {
+                    return false;
+                }
+            }
+            _ => {}
+        }
+        match (name, &mut self.work) {
+            (history::WHOLE, _) => {
+                for (place, whole) in places.into_iter().zip(values) {
+                    let named = self.family[place / TILE][place % TILE];
+                    let nowhere = self.inner.list().nowhere();
+                    *self.entry(place) = if *whole != 0.0 { named } else { nowhere };
+                }
+            }
+            (history::DONE, Some(work)) => {
+                for (place, value) in places.into_iter().zip(values) {
+                    work.done[place] = *value;
+                }
+            }
+            (history::ELONGATION, None) | (history::WORK, Some(_)) => {
+                if values.len() != body.len {
+                    return false;
+                }
+                let list = self.inner.list();
+                for (n, x) in self.reference.iter_mut().enumerate() {
+                    if let Some(slot) = list.original(n) {
+                        x[3] = values[slot];
+                    }
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn bytes(&self) -> usize {
+        let work = self.work.as_ref().map_or(0, |w| {
+            8 * w.done.len() + 32 * w.at.len() + 16 * D * w.before.len()
+        });
+        self.inner.bytes()
+            + 4 * (self.first.len() + TILE * self.family.len() + self.own.len())
+            + 32 * self.reference.len()
+            + 8 * (self.next.len() + D * self.after[0].len())
+            + work
+    }
+}
