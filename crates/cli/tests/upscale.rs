@@ -489,3 +489,40 @@ fn reproduce_alone_says_what_there_is_and_runs_nothing() {
     );
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
 }
+
+/// A critical stretch under a longer horizon is another fracture energy, of pmb and of potentials; where the horizon is kept nothing is to say.
+#[test]
+fn cards_say_what_a_kept_critical_stretch_means() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("deck.toml");
+    let text = |law: &str, family: &str| {
+        format!(
+            "units = \"lj\"\n{family}horizon = 2.5\nperiodic = [\"x\", \"y\"]\nbody = {{ lattice = \"triangular\", spacing = 1.1, cells = [24, 20] }}\n\
+             material = {{ density = 1, law = {{ {law} }}, fracture = {{ critical_stretch = 0.1 }} }}\nrun = {{ steps = 10, time_step = 0.001 }}\n"
+        )
+    };
+    let atoms = text(
+        "lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5, end = \"smooth\" }",
+        "family = \"reference\"\n",
+    );
+    let solid = text("pmb = { young = 1 }", "");
+    for (deck, keep, longer) in [
+        (&atoms, "shells", true),
+        (&solid, "shells", true),
+        (&solid, "horizon", false),
+    ] {
+        std::fs::write(&file, deck).unwrap();
+        let out = dir.path().join(keep);
+        let keep = match longer {
+            true => vec!["--keep", "shells"],
+            false => vec![],
+        };
+        let files = [file.to_str().unwrap(), "--out", out.to_str().unwrap()];
+        let arguments = [&["upscale"][..], &files, &["--factor", "2"], &keep].concat();
+        peridyne(&arguments, 0);
+        let said = std::fs::read_to_string(out.join("h2/card.md")).unwrap();
+        let told = said.contains("a crack takes 2 times the energy")
+            && said.contains("critical_stretch = 0.07071");
+        assert_eq!(told, longer, "{said}");
+    }
+}

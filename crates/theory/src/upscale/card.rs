@@ -10,9 +10,9 @@ use crate::gradient::comparison::{Verdict, compare};
 use crate::gradient::{Expansion, length_scale, nonlinear};
 use crate::lattice_dynamics::{NONLINEAR_TERMS, STRETCHES};
 use peridyne::message;
-use peridyne::quantity::{Dimension, Message};
+use peridyne::quantity::{Dimension, Message, rounded};
 use peridyne::run::{Options, build};
-use peridyne::spec::{BodySpec, FamilyChoice, Horizon, Spec, TimeStep};
+use peridyne::spec::{BodySpec, Criterion, FamilyChoice, Horizon, MaterialSpec, Spec, TimeStep};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
@@ -118,6 +118,37 @@ pub fn card(fine: &Spec, coarse: &Spec, factor: u32, rule: Rule) -> Result<Card,
     }
 }
 
+/// A critical stretch that is kept means another fracture energy where the horizon δ is another one: `G0 ~ s0² δ` of equal moduli (Silling &
+/// Askari 2005).
+fn toughness(coarse: &Spec, rule: Rule, spacings: [f64; 2]) -> Option<Message> {
+    let ratio = match rule {
+        Rule::Horizon => return None,
+        // all lengths of a family grow with the spacing
+        Rule::Shells | Rule::Reduced => spacings[1] / spacings[0],
+    };
+    let stretch = |m: &MaterialSpec| match m.fracture.map(|f| f.criterion) {
+        Some(Criterion::Stretch(s)) => Some(s),
+        Some(
+            Criterion::Energy(_)
+            | Criterion::BondEnergy(_)
+            | Criterion::VonMises(_)
+            | Criterion::PlasticStrain(_),
+        )
+        | None => None,
+    };
+    let kept: Vec<f64> = coarse.materials.iter().filter_map(stretch).collect();
+    if kept.is_empty() {
+        return None;
+    }
+    let give = kept.iter().map(|s| rounded(s / ratio.sqrt(), 4));
+    Some(Message::from(format!(
+        "The critical stretch is kept, and with a horizon {} times as long a crack takes {} times the energy: for the same fracture energy give critical_stretch = {}.",
+        rounded(ratio, 4),
+        rounded(ratio, 4),
+        give.collect::<Vec<_>>().join(", ")
+    )))
+}
+
 fn card_in<const D: usize>(
     fine: &Spec,
     coarse: &Spec,
@@ -168,6 +199,7 @@ fn card_in<const D: usize>(
     if rule == Rule::Shells && a_reference.is_some() && !current {
         notes.push("Neighbours are those of the reference: beyond a compression of a tenth some that would enter are missing; bonds never change partners (no diffusion, melting, slip).".into());
     }
+    notes.extend(toughness(coarse, rule, [left.spacing, right.spacing]));
     let energies = energies(fine, coarse, &mut notes);
     let directions = directions::<D>();
     let end = shortest(coarse)?;
