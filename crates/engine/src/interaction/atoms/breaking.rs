@@ -107,13 +107,16 @@ impl<const D: usize> Breaking<D> {
             }
         }
         let mut reference = list.positions().to_vec();
-        let critical = |slot: Option<usize>| match (&breaks.measure, slot) {
-            (Measure::Work(limit), Some(slot)) => limit[body.material_of(slot)],
-            // critical stretches are known after the first evaluation
-            _ => f64::INFINITY,
+        let limits = match &breaks.measure {
+            Measure::Work(limits) => limits.as_slice(),
+            // critical stretches are known after the first evaluation; other measures potentials do not have
+            Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => &[],
         };
         for (n, x) in reference.iter_mut().enumerate() {
-            x[3] = critical(list.original(n));
+            let limit = list
+                .original(n)
+                .and_then(|s| limits.get(body.material_of(s)));
+            x[3] = limit.copied().unwrap_or(f64::INFINITY);
         }
         let (blocks, tiles) = (list.blocks(), first.len());
         let work = match breaks.measure {
