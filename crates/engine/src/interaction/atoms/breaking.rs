@@ -291,6 +291,10 @@ impl<const D: usize> Breaking<D> {
             let mut after = std::mem::replace(&mut self.after, zeros(0));
             let without = self.inner.forces(body, u, &mut after, Sweep::Hold, None);
             tally += without;
+            if let Some(work) = &mut self.work {
+                // the next step begins with the pulls of the bonds that are left
+                self.inner.pulls(&self.first, &mut work.before);
+            }
             let [left, _] = self.inner.energy(body, u);
             // over half a step these bonds pulled too long, or not at all
             let half = match motion.release {
