@@ -1,26 +1,15 @@
-//! Long runs in parts: after each part the state is kept, and a run that was cut off goes on from there, bit for bit.
-//!
-//! A state is `.parts/NAME.state`, little-endian: the eight bytes `pdynpart`, version and dimension (u32), points and step
-//! (u64), time step and seconds spent (f64), the hash of the inputs (length as u32, text), rows of energies (number as u64;
-//! step, kinetic, strain, scheme), all displacements, then all velocities, one axis after the other (f64), and the CRC-32 of
-//! everything before it. It is written whole or not at all.
+//! Long runs in parts: after each part the state is kept, and a run that was cut off goes on from there, bit for bit. States are those of
+//! `peridyne resume` ([`peridyne_io::write::checkpoint`]), in the folder `.parts/NAME`.
 
-use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
-use crc32fast::Hasher;
 use peridyne::run::Simulation;
-use peridyne_io::write::atomic::{create_directory, write_file};
+use peridyne::state::{Archive, Owner, words};
+use peridyne_io::write::checkpoint::{Asked, Checkpoint, CheckpointSchedule, Checkpoints};
 
 use crate::experiment::{Context, Failure};
 use crate::measure::{change, stepper_energy};
-
-const MAGIC: &[u8; 8] = b"pdynpart";
-const VERSION: u32 = 2;
-/// Points that are read or written at once.
-const BLOCK: usize = 8192;
 
 /// How a run is cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +31,8 @@ pub struct Row {
     pub scheme: f64,
 }
 
+words!([] Row { step: u64, kinetic: f64, strain: f64, scheme: f64 });
+
 impl Row {
     pub fn total(&self) -> f64 {
         self.kinetic + self.strain
@@ -54,6 +45,13 @@ pub struct Record {
     pub rows: Vec<Row>,
     /// Time spent in steps alone, over all parts.
     pub seconds: f64,
+}
+
+impl Owner for Record {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.list("rows", &mut self.rows);
+        archive.one("seconds", &mut self.seconds);
+    }
 }
 
 impl Record {
@@ -83,21 +81,29 @@ pub fn run(
     sim: &mut dyn Simulation,
     plan: Plan,
 ) -> Result<Record, Failure> {
-    let folder = context.out.join(".parts");
-    let path = folder.join(format!("{name}.state"));
+    let folder = context.out.join(".parts").join(name);
     let mut record = Record::default();
-    // a state that cannot be read, or of other inputs, is as none
-    match load(&path, &context.inputs, sim) {
-        Ok(kept) => {
+    let of = identity(&context.inputs, sim);
+    let state = kept(&folder, &of);
+    let goes_on = state.is_some();
+    match state {
+        Some(mut state) => {
+            state
+                .load(|archive| pass(sim, &mut record, archive))
+                .map_err(|e| Failure::new(format!("{e}; remove {}", folder.display())))?;
             context.say(&format!("{name}: goes on at step {}", sim.step_number()));
-            record = kept;
-            sim.start(true);
         }
-        Err(_) => {
+        None => {
             sim.start(true);
             record.rows.push(row(sim)?);
         }
     }
+    // they are large
+    let schedule = CheckpointSchedule {
+        keep: 1,
+        ..CheckpointSchedule::default()
+    };
+    let mut states = Checkpoints::new(&folder, Some(schedule), goes_on)?;
     while sim.step_number() < plan.steps {
         let begin = Instant::now();
         sim.step().map_err(|e| Failure::new(e.to_string()))?;
@@ -107,8 +113,15 @@ pub fn run(
             record.rows.push(row(sim)?);
         }
         if plan.part > 0 && (step.is_multiple_of(plan.part) || step == plan.steps) {
-            create_directory(&folder)?;
-            save(&path, &context.inputs, sim, &record)?;
+            let mut asked = Asked {
+                version: env!("CARGO_PKG_VERSION").into(),
+                name: name.into(),
+                text: of.clone(),
+                step,
+                steps: plan.steps,
+                ..Asked::default()
+            };
+            states.write(&mut asked, |archive| pass(sim, &mut record, archive))?;
             context.say(&format!(
                 "{name}: step {step} of {}, {:.0} s",
                 plan.steps, record.seconds
@@ -116,6 +129,24 @@ pub fn run(
         }
     }
     Ok(record)
+}
+
+/// What tells runs of one name apart: their inputs, points and time step.
+fn identity(inputs: &str, sim: &dyn Simulation) -> String {
+    let info = sim.info();
+    let (points, step) = (info.points, info.time_step.to_bits());
+    format!("{inputs} {} {points} {step:016x}", info.dimension)
+}
+
+/// The last state of such a run; one that cannot be read, or of another, is as none.
+fn kept(folder: &Path, of: &str) -> Option<Checkpoint> {
+    let state = Checkpoint::newest(folder).ok()?;
+    (state.asked.text == of).then_some(state)
+}
+
+fn pass(sim: &mut dyn Simulation, record: &mut Record, archive: &mut Archive<'_>) {
+    archive.part("model", sim);
+    archive.part("record", record);
 }
 
 fn row(sim: &mut dyn Simulation) -> Result<Row, Failure> {
@@ -126,177 +157,6 @@ fn row(sim: &mut dyn Simulation) -> Result<Row, Failure> {
         strain: ledger.strain,
         scheme: stepper_energy(sim),
     })
-}
-
-/// Writes or reads, and sums what passes.
-struct Summed<T> {
-    inner: T,
-    sum: Hasher,
-}
-
-impl<T> Summed<T> {
-    fn new(inner: T) -> Summed<T> {
-        Summed {
-            inner,
-            sum: Hasher::new(),
-        }
-    }
-}
-
-impl<W: Write> Summed<W> {
-    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.sum.update(bytes);
-        self.inner.write_all(bytes)
-    }
-
-    fn numbers(&mut self, values: &[f64]) -> io::Result<()> {
-        let bytes: Vec<u8> = values.iter().flat_map(|x| x.to_le_bytes()).collect();
-        self.put(&bytes)
-    }
-}
-
-impl<R: Read> Summed<R> {
-    fn get<const N: usize>(&mut self) -> io::Result<[u8; N]> {
-        let mut bytes = [0; N];
-        self.inner.read_exact(&mut bytes)?;
-        self.sum.update(&bytes);
-        Ok(bytes)
-    }
-
-    fn bytes(&mut self, n: usize) -> io::Result<Vec<u8>> {
-        let mut bytes = vec![0; n];
-        self.inner.read_exact(&mut bytes)?;
-        self.sum.update(&bytes);
-        Ok(bytes)
-    }
-
-    fn word(&mut self) -> io::Result<u32> {
-        self.get().map(u32::from_le_bytes)
-    }
-
-    fn long(&mut self) -> io::Result<u64> {
-        self.get().map(u64::from_le_bytes)
-    }
-
-    fn number(&mut self) -> io::Result<f64> {
-        self.get().map(f64::from_le_bytes)
-    }
-}
-
-/// Displacements, then velocities, axis by axis.
-fn fields(dimension: usize) -> Vec<(&'static str, usize)> {
-    let of = |name| (0..dimension).map(move |axis| (name, axis));
-    of("displacement").chain(of("velocity")).collect()
-}
-
-fn save(
-    path: &Path,
-    inputs: &str,
-    sim: &mut dyn Simulation,
-    record: &Record,
-) -> Result<(), Failure> {
-    let info = sim.info();
-    let (dimension, points, dt) = (info.dimension, info.points as usize, info.time_step);
-    write_file(path, |w| {
-        let mut out = Summed::new(w);
-        out.put(MAGIC)?;
-        out.put(&VERSION.to_le_bytes())?;
-        out.put(&(dimension as u32).to_le_bytes())?;
-        out.put(&(points as u64).to_le_bytes())?;
-        out.put(&sim.step_number().to_le_bytes())?;
-        out.numbers(&[dt, record.seconds])?;
-        out.put(&(inputs.len() as u32).to_le_bytes())?;
-        out.put(inputs.as_bytes())?;
-        out.put(&(record.rows.len() as u64).to_le_bytes())?;
-        for row in &record.rows {
-            out.put(&row.step.to_le_bytes())?;
-            out.numbers(&[row.kinetic, row.strain, row.scheme])?;
-        }
-        let mut block = vec![0.0; BLOCK];
-        for field in fields(dimension) {
-            for first in (0..points).step_by(BLOCK) {
-                let n = BLOCK.min(points - first);
-                sim.read(field.0, field.1, first, &mut block[..n]);
-                out.numbers(&block[..n])?;
-            }
-        }
-        let sum = out.sum.finalize();
-        out.inner.write_all(&sum.to_le_bytes())
-    })?;
-    Ok(())
-}
-
-fn other(what: &str) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, what.to_string())
-}
-
-/// Is the sum at the end that of all before it?
-fn check(path: &Path) -> io::Result<()> {
-    let file = File::open(path)?;
-    let mut left = file
-        .metadata()?
-        .len()
-        .checked_sub(4)
-        .ok_or_else(|| other("too short"))?;
-    let mut reader = Summed::new(BufReader::new(file));
-    while left > 0 {
-        let n = left.min(1 << 16);
-        reader.bytes(n as usize)?;
-        left -= n;
-    }
-    let sum = std::mem::take(&mut reader.sum).finalize();
-    match reader.word()? == sum {
-        true => Ok(()),
-        false => Err(other("the sum does not fit")),
-    }
-}
-
-/// Sets the state of a model; on an error the model is as it was.
-fn load(path: &PathBuf, inputs: &str, sim: &mut dyn Simulation) -> io::Result<Record> {
-    check(path)?;
-    let info = sim.info();
-    let (dimension, points, dt) = (info.dimension, info.points as usize, info.time_step);
-    let mut reader = Summed::new(BufReader::new(File::open(path)?));
-    let same = reader.get::<8>()? == *MAGIC
-        && reader.word()? == VERSION
-        && reader.word()? as usize == dimension
-        && reader.long()? as usize == points;
-    if !same {
-        return Err(other("another body"));
-    }
-    let step = reader.long()?;
-    if reader.number()?.to_bits() != dt.to_bits() {
-        return Err(other("another time step"));
-    }
-    let seconds = reader.number()?;
-    let length = reader.word()? as usize;
-    if length != inputs.len() || reader.bytes(length)? != inputs.as_bytes() {
-        return Err(other("other inputs"));
-    }
-    let mut rows = vec![];
-    for _ in 0..reader.long()? {
-        rows.push(Row {
-            step: reader.long()?,
-            kinetic: reader.number()?,
-            strain: reader.number()?,
-            scheme: reader.number()?,
-        });
-    }
-    for field in fields(dimension) {
-        for first in (0..points).step_by(BLOCK) {
-            let n = BLOCK.min(points - first);
-            let bytes = reader.bytes(8 * n)?;
-            let values: Vec<f64> = bytes
-                .as_chunks()
-                .0
-                .iter()
-                .map(|b| f64::from_le_bytes(*b))
-                .collect();
-            sim.write(field.0, field.1, first, &values);
-        }
-    }
-    sim.set_time(step, step as f64 * dt);
-    Ok(Record { rows, seconds })
 }
 
 #[cfg(test)]
@@ -371,29 +231,22 @@ run = { steps = 60, time_step = { safety = 0.7 } }
     }
 
     #[test]
-    fn a_state_that_does_not_fit_is_left_alone() {
+    fn a_state_of_other_inputs_or_of_another_model_is_as_none() {
         let dir = tempfile::tempdir().unwrap();
         run(&context(dir.path(), "a"), "p", sim().as_mut(), plan(10, 10)).unwrap();
-        let path = dir.path().join(".parts/p.state");
-        let told = |inputs: &str| load(&path, inputs, sim().as_mut()).unwrap_err().to_string();
-        assert!(load(&path, "a", sim().as_mut()).is_ok());
-        assert_eq!(told("b"), "other inputs");
-        let mut fresh = sim();
-        fresh.set_time_step(0.01);
-        assert_eq!(
-            load(&path, "a", fresh.as_mut()).unwrap_err().to_string(),
-            "another time step"
-        );
-        let mut bytes = std::fs::read(&path).unwrap();
-        bytes[200] ^= 1;
-        std::fs::write(&path, &bytes).unwrap();
-        assert_eq!(told("a"), "the sum does not fit");
-        std::fs::write(&path, &bytes[..90]).unwrap();
-        assert_eq!(told("a"), "the sum does not fit");
-        // the run begins anew
-        let mut again = sim();
-        let record = run(&context(dir.path(), "a"), "p", again.as_mut(), plan(10, 10)).unwrap();
-        assert_eq!(record.rows[0].step, 0);
-        assert!(load(&path, "a", sim().as_mut()).is_ok());
+        let folder = dir.path().join(".parts/p");
+        let there = |inputs: &str, sim: &dyn Simulation| {
+            kept(&folder, &identity(inputs, sim)).map(|state| state.asked.step)
+        };
+        let mut other = sim();
+        other.set_time_step(0.01);
+        assert_eq!(there("a", sim().as_ref()), Some(10));
+        assert_eq!(there("b", sim().as_ref()), None);
+        assert_eq!(there("a", other.as_ref()), None);
+        // that run begins anew, and its states take the place of the others
+        let record = run(&context(dir.path(), "a"), "p", other.as_mut(), plan(7, 7)).unwrap();
+        assert_eq!((record.rows[0].step, record.rows.len()), (0, 2));
+        assert_eq!(there("a", other.as_ref()), Some(7));
+        assert_eq!(there("a", sim().as_ref()), None);
     }
 }

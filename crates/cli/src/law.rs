@@ -2,14 +2,16 @@
 
 use crate::Input;
 use crate::deck;
+use crate::early::{Early, asked, same_files};
 use crate::failure::{Failure, json_text, note, say};
 use crate::report;
 use crate::signals;
-use peridyne_io::conservation::{self, Listener, Told, evaluation_name, method_name};
+use peridyne_io::conservation::{self, LawError, Listener, Told, evaluation_name, method_name};
 use peridyne_io::deck::conservation::LawDeck;
 use peridyne_io::deck::{Dim, counted, rounded};
 use peridyne_io::drive::default_dir;
 use peridyne_io::excerpt::one_line;
+use peridyne_io::write::checkpoint::Checkpoint;
 use peridyne_transport::{RunError, StepSize, Stop, exact, measure};
 use serde_json::json;
 use std::path::Path;
@@ -42,11 +44,15 @@ pub fn read(input: &Input) -> Result<Option<LawDeck>, Failure> {
 }
 
 struct Terminal {
+    begun: Instant,
     spoken: Instant,
+    steps: u64,
+    early: Early,
 }
 
 impl Listener for Terminal {
     fn step(&mut self, part: f64, steps: u64) {
+        self.steps = steps;
         if self.spoken.elapsed() >= INTERVAL {
             self.spoken = Instant::now();
             note(&format!("{:.1} % of the time, step {steps}", 100.0 * part));
@@ -54,35 +60,66 @@ impl Listener for Terminal {
     }
 
     fn ended(&mut self) -> Option<String> {
-        signals::received().map(|s| s.to_string())
+        let signal = signals::received().map(|s| s.to_string());
+        signal.or_else(|| self.early.reached(self.steps, self.begun))
+    }
+
+    fn wants_checkpoint(&mut self) -> bool {
+        signals::asked_for_checkpoint()
+    }
+
+    fn warning(&mut self, text: &str) {
+        note(&format!("warning: {text}"));
     }
 }
 
-/// Runs the law of a deck; results go to `out`, else to where the deck says, which `outside` lets be anywhere.
-pub fn run(
-    input: &Input,
-    mut deck: LawDeck,
-    out: Option<&Path>,
-    outside: bool,
-) -> Result<(), Failure> {
-    if !outside && out.is_none() {
+/// What is run, where its results go, and when it ends.
+pub struct Place<'a> {
+    pub input: &'a Input,
+    pub out: Option<&'a Path>,
+    pub allow_outside: bool,
+    pub early: &'a Early,
+}
+
+/// Runs the law of a deck, or goes on with it; results go to where the arguments say, else to where the deck does.
+pub fn run(place: &Place<'_>, mut deck: LawDeck, from: Option<Checkpoint>) -> Result<(), Failure> {
+    let (input, out) = (place.input, place.out);
+    if !place.allow_outside && out.is_none() {
         deck.stays_inside().map_err(|e| Failure::Input(e.into()))?;
     }
     let dir = out.map(Path::to_path_buf).or(deck.dir.clone());
     let dir = dir.unwrap_or_else(|| default_dir(&input.file));
-    let told = Told {
-        command: deck::command(input),
+    let name = deck.file().to_string();
+    let (command, text) = (deck::command(input), deck.text().to_string());
+    let mut told = Told {
+        asked: asked(input, [command.clone(), name, text]),
+        command,
         understood: headline(&deck),
     };
+    if let Some(from) = &from {
+        same_files(&from.asked.files, &told.asked.files)?;
+        // records are those of the run that began
+        told.command.clone_from(&from.asked.command);
+        told.asked.command.clone_from(&from.asked.command);
+        told.asked.name.clone_from(&from.asked.name);
+    }
     say(&(told.understood.clone() + &deck::remarks(&[], &deck.warnings)));
     say(&format!("results in {}", dir.display()));
     let mut terminal = Terminal {
+        begun: Instant::now(),
         spoken: Instant::now(),
+        steps: from.as_ref().map_or(0, |f| f.asked.step),
+        early: place.early.clone(),
     };
     let asked = Stop::new(|| signals::received().is_some());
     deck.evolution.operator.stop_when(asked);
-    let done = conservation::run(&mut deck, &dir, told, &mut terminal)
-        .map_err(|e| Failure::Run(e.to_string()))?;
+    let done = conservation::run(&mut deck, &dir, told, &mut terminal, from);
+    let done = done.map_err(|e| match e {
+        LawError::Resume(e) => Failure::input(e.to_string()),
+        LawError::Write(_) | LawError::Report(_) | LawError::Run { .. } => {
+            Failure::Run(e.to_string())
+        }
+    })?;
     say(&format!(
         "{}: {} in {:.2} s{}",
         done.outcome(),
@@ -116,6 +153,10 @@ pub fn run(
     }
     if deck.report {
         say(&report::line(&dir));
+    }
+    say(&report::state(done.hash));
+    if done.ended_by.is_some() {
+        say(&format!("go on:    peridyne resume {}", dir.display()));
     }
     match signals::received() {
         Some(signal) if done.ended_by.is_some() => Err(Failure::Ended(signal)),

@@ -7,9 +7,11 @@ mod converge;
 mod convert;
 mod deck;
 mod doc;
+mod early;
 mod enough;
 mod failure;
 mod fields;
+mod initial;
 mod law;
 mod laws;
 mod new;
@@ -17,6 +19,7 @@ mod numbers;
 mod progress;
 mod report;
 mod reproduce;
+mod resume;
 mod run;
 mod script;
 mod shell;
@@ -45,6 +48,8 @@ enum Verb {
     New(new::NewArguments),
     /// Run a deck (TOML) or a LAMMPS input script.
     Run(run::RunArguments),
+    /// Go on with a run that was ended before its last step, bit for bit.
+    Resume(resume::ResumeArguments),
     /// Say what a deck would run: points, bonds, moduli this cloud really has, stable step, memory, warnings.
     Check(check::CheckArguments),
     /// From atoms (or fine points) to coarse peridynamic points: decks of both, and an error card.
@@ -130,6 +135,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.verb {
         Verb::New(arguments) => new::new(&arguments),
         Verb::Run(arguments) => run::run(&arguments),
+        Verb::Resume(arguments) => resume::resume(&arguments),
         Verb::Check(arguments) => check::check(&arguments),
         Verb::Upscale(arguments) => upscale::upscale(&arguments),
         Verb::Coarsen(arguments) => coarsen::coarsen(&arguments),

@@ -1,5 +1,6 @@
 //! Progress: a live bar on a terminal, plain lines in a pipe.
 
+use crate::early::Early;
 use crate::failure::note;
 use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -23,6 +24,8 @@ pub struct Terminal {
     units: Option<UnitSystem>,
     /// Time and energy of the last row of the history.
     state: String,
+    done: u64,
+    early: Early,
 }
 
 impl Terminal {
@@ -45,7 +48,16 @@ impl Terminal {
             broken: 0,
             units,
             state: String::new(),
+            done: 0,
+            early: Early::default(),
         }
+    }
+
+    /// The same of a run that ends early; `done` steps were done before.
+    #[must_use]
+    pub fn ending(mut self, early: Early, done: u64) -> Terminal {
+        (self.early, self.done) = (early, done);
+        self
     }
 
     pub fn end(&self) {
@@ -57,6 +69,7 @@ impl Terminal {
 
 impl Progress for Terminal {
     fn step(&mut self, done: u64, total: u64, stepping: Duration) {
+        self.done = done;
         let per_step = stepping.as_secs_f64() / done as f64;
         if let Some(bar) = &self.bar {
             bar.set_position(done);
@@ -120,6 +133,11 @@ impl Progress for Terminal {
     }
 
     fn ended(&mut self) -> Option<String> {
-        signals::received().map(|s| s.to_string())
+        let signal = signals::received().map(|s| s.to_string());
+        signal.or_else(|| self.early.reached(self.done, self.begun))
+    }
+
+    fn wants_checkpoint(&mut self) -> bool {
+        signals::asked_for_checkpoint()
     }
 }

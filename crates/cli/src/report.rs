@@ -1,6 +1,7 @@
 //! `peridyne report`.
 
 use crate::failure::{Failure, say};
+use peridyne::observe::StateHash;
 use peridyne_io::write::folder::Folder;
 use peridyne_io::write::report::{self, NAME, ReportError};
 use std::path::{Path, PathBuf};
@@ -34,6 +35,11 @@ pub fn told(dir: &Path) -> String {
             dir.display()
         ),
     }
+}
+
+/// What a run ended as.
+pub fn state(hash: StateHash) -> String {
+    format!("state     {hash}")
 }
 
 /// Where the report of a folder is.

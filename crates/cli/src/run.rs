@@ -2,8 +2,10 @@
 
 use crate::Input;
 use crate::deck;
+use crate::early::{Early, asked, same_files};
 use crate::enough::enough;
 use crate::failure::{Failure, note, say};
+use crate::initial::InitialState;
 use crate::law;
 use crate::progress::Terminal;
 use crate::report;
@@ -17,10 +19,11 @@ use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, SpaceTimeSpec, UnitSystem, counted};
 use peridyne_io::drive::{
-    AtomsPlan, ExodusPlan, Plan, RigidBodies, SpaceTimeOptions, default_dir, drive,
+    AtomsPlan, DriveError, ExodusPlan, Plan, RigidBodies, SpaceTimeOptions, default_dir, drive,
     refused_threads, too_many_threads,
 };
 use peridyne_io::write::SeriesOptions;
+use peridyne_io::write::checkpoint::{Asked, Checkpoint};
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::marks::Marks;
@@ -43,10 +46,25 @@ pub struct RunArguments {
     /// Threads; all cores if not given. Results do not depend on it.
     #[arg(long)]
     pub threads: Option<usize>,
+    #[command(flatten)]
+    pub early: Early,
+}
+
+impl RunArguments {
+    /// Of a conservation law.
+    pub fn place(&self) -> law::Place<'_> {
+        law::Place {
+            input: &self.input,
+            out: self.out.as_deref(),
+            allow_outside: self.allow_outside,
+            early: &self.early,
+        }
+    }
 }
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if !deck::is_deck(&arguments.input) {
+        arguments.early.refused()?;
         return with_threads(arguments.threads, |threads| {
             let out = arguments.out.as_deref();
             script::run(&arguments.input, out, arguments.allow_outside, threads)
@@ -54,8 +72,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     }
     if let Some(deck) = law::read(&arguments.input)? {
         return with_threads(arguments.threads, |_| {
-            let out = arguments.out.as_deref();
-            law::run(&arguments.input, deck, out, arguments.allow_outside)
+            law::run(&arguments.place(), deck, None)
         });
     }
     let deck = deck::read(&arguments.input)?;
@@ -64,7 +81,9 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
             .map_err(|e| Failure::Input(e.into()))?;
     }
     let threads = arguments.threads.or(deck.threads);
-    with_threads(threads, |threads| run_deck(arguments, &deck, threads))
+    with_threads(threads, |threads| {
+        run_deck(arguments, &deck, threads, Begin::Unloaded)
+    })
 }
 
 /// Everything runs inside a pool of its own, so that sweeps never cross into another.
@@ -88,10 +107,34 @@ pub fn with_threads(
     pool.install(|| work(rayon::current_num_threads()))
 }
 
-fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(), Failure> {
+/// Where a run begins.
+pub enum Begin {
+    /// As its deck says.
+    Unloaded,
+    /// Where an earlier run of this deck was ended, in its folder.
+    Ended(Box<Checkpoint>),
+    /// At time 0 from a state of an earlier run, of this or another deck.
+    Anew(InitialState),
+}
+
+/// Runs a deck.
+pub fn run_deck(
+    arguments: &RunArguments,
+    deck: &Deck,
+    threads: usize,
+    begin: Begin,
+) -> Result<(), Failure> {
     let (rigid, spec) = RigidBodies::watched(&deck.spec);
     let mut sim = deck::model_of(deck, &spec, &arguments.input)?;
     drop(spec);
+    let from = match begin {
+        Begin::Unloaded => None,
+        Begin::Ended(state) => Some(*state),
+        Begin::Anew(state) => {
+            state.give(sim.as_mut())?;
+            None
+        }
+    };
     let dir = arguments
         .out
         .clone()
@@ -107,6 +150,18 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
+    let records = [&plan.command, &plan.deck, &plan.deck_text].map(String::clone);
+    plan.asked = asked(&arguments.input, records);
+    if let Some(from) = &from {
+        same_files(&from.asked.files, &plan.asked.files)?;
+        // records are those of the run that began
+        (plan.command, plan.deck) = (from.asked.command.clone(), from.asked.name.clone());
+        plan.asked = from.asked.clone();
+        plan.asked.text.clone_from(&plan.deck_text);
+    }
+    let done = from.as_ref().map_or(0, |f| f.asked.step);
+    from.as_ref()
+        .map_or(Ok(()), |f| has_steps(&f.asked, steps))?;
     plan.space_time = space_time;
     plan.replaces_nothing()
         .map_err(|e| Failure::input(e.to_string()))?;
@@ -122,20 +177,28 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let until = until(&deck.spec, steps - plan.increments, sim.info().time_step);
     let marks = Marks::of(&deck.spec, sim.as_mut(), until);
     plan.marks = MarkNotes::of(&marks, deck.units);
+    let whole = match plan.increments {
+        0 => counted(steps, "step"),
+        n => format!(
+            "{} of load, then {}",
+            counted(n, "increment"),
+            counted(steps - n, "step")
+        ),
+    };
+    let left = match done {
+        0 => whole,
+        done => format!("the last {} of {whole}", steps - done),
+    };
     say(&format!(
-        "threads   {threads}\nrunning {}{}, results in {}",
-        match plan.increments {
-            0 => String::new(),
-            n => counted(n, "increment") + " of load, then ",
-        },
-        counted(steps - plan.increments, "step"),
+        "threads   {threads}\nrunning {left}, results in {}",
         plan.dir.display()
     ));
     let statics = counts_load(&deck.spec.schedule);
     let times = (!statics).then_some(deck.units);
-    let mut progress = Terminal::new(steps, sim.info().directed_bonds, times);
+    let bonds = sim.info().directed_bonds;
+    let mut progress = Terminal::new(steps, bonds, times).ending(arguments.early.clone(), done);
     sim.stop_when(|| signals::received().is_some());
-    let result = drive(sim.as_mut(), &plan, &mut progress);
+    let result = drive(sim.as_mut(), &plan, &mut progress, from);
     progress.end();
     match result {
         Ok(done) => {
@@ -163,12 +226,28 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
             if plan.report {
                 say(&report::told(&plan.dir));
             }
+            say(&report::state(done.hash));
+            if done.status == Status::Ended {
+                say(&format!("go on:    peridyne resume {}", plan.dir.display()));
+            }
             match signals::received() {
                 Some(signal) if done.status == Status::Ended => Err(Failure::Ended(signal)),
                 _ => Ok(()),
             }
         }
+        Err(DriveError::Resume(e)) => Err(Failure::input(e.to_string())),
         Err(e) => Err(Failure::Run(e.to_string())),
+    }
+}
+
+/// Does the deck ask for the steps that were done?
+fn has_steps(asked: &Asked, steps: u64) -> Result<(), Failure> {
+    match asked.step > steps {
+        true => Err(Failure::input(format!(
+            "the run has done {} steps, and the deck asks for {steps} now; ask for as many or more",
+            asked.step
+        ))),
+        false => Ok(()),
     }
 }
 
@@ -385,6 +464,8 @@ fn plan(
         exodus: exodus(deck),
         fields: deck::fields(deck),
         continuum: continuum(deck),
+        checkpoints: output.checkpoints,
+        asked: Asked::default(),
         units: deck.units,
         time_unit: time_unit.to_string(),
         energy_unit: energy_unit.to_string(),

@@ -318,6 +318,7 @@ impl Told<'_> {
             say(&format!("picture: {}", path.display()));
         }
         say(&crate::report::told(dir));
+        say(&crate::report::state(report.hash));
         Ok(())
     }
 
@@ -371,6 +372,7 @@ impl Told<'_> {
             warnings.push(units.tell(&e.message()));
             Default::default()
         });
+        let (broken, fragments, hash) = (sim.broken(), sim.fragments(), sim.state_hash());
         let info = sim.info();
         RunReport {
             version: env!("CARGO_PKG_VERSION").to_string(),
@@ -388,8 +390,9 @@ impl Told<'_> {
             seconds: Spent::default(),
             ns_per_bond_step: run_json::ns_per_bond_step(seconds, info.directed_bonds, steps),
             peak_memory_bytes: run_json::peak_memory_bytes(),
-            broken_directed_bonds: sim.broken(),
-            fragments: Some(sim.fragments()),
+            broken_directed_bonds: broken,
+            fragments: Some(fragments),
+            hash,
             threads: self.threads,
             simd: info.simd.to_string(),
             energy: EnergyReport::from(&ledger),

@@ -1,9 +1,10 @@
 //! SIGINT (Ctrl-C), SIGTERM, and SIGHUP (the terminal is closed) where nobody has said that it is to be passed over, as `nohup` does.
 //!
 //! Until a run steps there is nothing to keep, and a signal ends the program at once. From its first step on
-//! ([`received`]) the first signal is a request to end at the next step, and a second one ends the program at once.
+//! ([`received`]) the first signal is a request to end at the next step, and a second one ends the program at once. SIGUSR1 asks for a
+//! state from which the run can go on ([`asked_for_checkpoint`]).
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::flag;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -62,6 +63,14 @@ fn passed_over(signal: Signal) -> bool {
     mask.is_none_or(|mask| mask >> (signal.number() - 1) & 1 == 1)
 }
 
+/// Has somebody asked for a state to go on from, by SIGUSR1?
+static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool::new(false)));
+
+/// Was SIGUSR1 received since the last time that this was asked?
+pub fn asked_for_checkpoint() -> bool {
+    ASKED.swap(false, Ordering::SeqCst)
+}
+
 /// From now on signals end the program as said above.
 ///
 /// # Errors
@@ -74,7 +83,7 @@ pub fn listen() -> std::io::Result<()> {
             .and_then(|_| flag::register_usize(number, LAST.clone(), number as usize))
             .and_then(|_| flag::register(number, AT_ONCE.clone()))?;
     }
-    Ok(())
+    flag::register(SIGUSR1, ASKED.clone()).map(drop)
 }
 
 /// The signal that this run is to end for. From the first call on the run ends at its next step instead of at once.

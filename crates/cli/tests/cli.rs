@@ -173,10 +173,15 @@ fn ten_lines_make_all_results() {
         "peak_memory_bytes",
         "broken_directed_bonds",
         "fragments",
+        "state_hash",
+        "ledger_hash",
         "threads",
     ] {
         assert!(!report[key].is_null(), "run.json has no {key}");
     }
+    let [state, ledger] = ["state_hash", "ledger_hash"].map(|key| report[key].as_str().unwrap());
+    let said = format!("state     {state} ledger {ledger}");
+    assert_eq!(text.lines().last(), Some(&*said));
     assert_eq!(report["status"], "done");
     assert_eq!(report["particles"], 86_000);
     assert_eq!(report["steps"], 20);
@@ -547,4 +552,86 @@ fn scripts_write_where_they_may_and_checks_nowhere() {
     assert!(!target.exists());
     good(run(&path, &out, &["--allow-outside"]));
     assert!(target.exists());
+}
+
+/// A run goes on with what it left only: another deck, a changed or missing file, a damaged state are told, and nothing is lost.
+#[test]
+fn a_run_that_was_cut_off_goes_on_only_with_what_it_left() {
+    let dir = TempDir::new().unwrap();
+    let own = dir.path().join("deck.toml");
+    let mesh = dir.path().join("plate.msh");
+    std::fs::copy(deck("good/plate.msh"), &mesh).unwrap();
+    let text = std::fs::read_to_string(deck("good/mesh_plate.toml")).unwrap();
+    std::fs::write(&own, &text).unwrap();
+    let out = dir.path().join("out");
+    let to = out.to_str().unwrap();
+    good(run(&own, &out, &["--stop-after", "40"]));
+    assert_eq!(report(&out)["ended_by"], "--stop-after 40");
+    let refused = |why: &str| {
+        let output = peridyne(&["resume", to]);
+        let said = errors(&output).replace("\n  │ ", " ");
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(why), "{why}: {said}");
+    };
+    // another deck; one that says the same otherwise, or that goes on longer, is none
+    let other = text.replacen("2440 kg/m^3", "2300 kg/m^3", 1);
+    assert_ne!(other, text);
+    std::fs::write(&own, other).unwrap();
+    refused("this is not the deck that the run began with");
+    std::fs::write(&own, format!("# the same\n{text}")).unwrap();
+    // another mesh
+    let bytes = std::fs::read_to_string(&mesh).unwrap();
+    std::fs::write(&mesh, format!("{bytes}\n")).unwrap();
+    refused("this is not the file that the run began with");
+    std::fs::write(&mesh, bytes).unwrap();
+    // a file that is another, and one that is gone
+    let history = out.join("history.csv");
+    let rows = std::fs::read_to_string(&history).unwrap();
+    std::fs::write(&history, rows.replacen('0', "1", 1)).unwrap();
+    refused("it is not as the run left it");
+    std::fs::write(&history, &rows).unwrap();
+    let first = out.join("points_00000000.vtu");
+    let frame = std::fs::read(&first).unwrap();
+    std::fs::remove_file(&first).unwrap();
+    refused("points_00000000.vtu");
+    std::fs::write(&first, frame).unwrap();
+    // a state that is damaged
+    let states = std::fs::read_dir(out.join("checkpoint")).unwrap();
+    let state = states.map(|e| e.unwrap().path()).next().unwrap();
+    let whole = std::fs::read(&state).unwrap();
+    let mut bytes = whole.clone();
+    bytes[whole.len() / 2] ^= 1;
+    std::fs::write(&state, &bytes).unwrap();
+    refused("is damaged");
+    std::fs::write(&state, &whole[..whole.len() / 2]).unwrap();
+    refused("ends too early");
+    std::fs::write(&state, &whole).unwrap();
+    good(peridyne(&["resume", to]));
+    assert_eq!(report(&out)["status"], "done");
+    refused("there is no state to go on from: the run has ended");
+}
+
+/// A state that cannot be written is told, and the run goes on without.
+#[cfg(unix)]
+#[test]
+fn a_state_that_cannot_be_written_costs_no_run() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().join("out");
+    std::fs::create_dir(&out).unwrap();
+    std::fs::write(out.join("checkpoint"), "a file of somebody").unwrap();
+    let more = [
+        "--set",
+        "output.checkpoint.every=\"1e-9 s\"",
+        "--set",
+        "run.duration=2",
+    ];
+    let output = run(&deck("good/spring_chain.toml"), &out, &more);
+    let said = errors(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(
+        said.contains("no state to go on from was written"),
+        "{said}"
+    );
+    let kept = std::fs::read_to_string(out.join("checkpoint")).unwrap();
+    assert_eq!(kept, "a file of somebody");
 }

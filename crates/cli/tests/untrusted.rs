@@ -545,7 +545,9 @@ fn a_signal_makes_films_short_and_a_hangup_ends_as_a_termination_does() {
     // many frames, each of which takes a tenth of a second to draw
     let until = Instant::now() + Duration::from_secs(60);
     let waiting = || -> u64 {
-        let files = std::fs::read_dir(case.path("o")).into_iter().flatten();
+        let files = std::fs::read_dir(case.path("o/checkpoint"))
+            .into_iter()
+            .flatten();
         let files = files.filter_map(|e| e.ok()?.metadata().ok());
         files.map(|m| m.len()).max().unwrap_or(0)
     };

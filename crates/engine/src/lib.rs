@@ -22,5 +22,6 @@ pub mod run;
 mod samples;
 pub mod space;
 pub mod spec;
+pub mod state;
 pub mod statics;
 pub mod transfer;

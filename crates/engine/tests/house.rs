@@ -16,6 +16,7 @@ const FLOORS: &[&[&str]] = &[
     &["quantity"],
     &["error"],
     &["execute"],
+    &["state"],
     &["space", "columns", "expression"],
     &["spec"],
     &["body"],
@@ -522,4 +523,162 @@ fn a_field_of_points_is_a_file_and_a_line() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Fields of `Model`, its inherent methods and the files that these are in: as many as there are, which may only become fewer. Where they
+/// are to end: 16, 60 and 10.
+const MODEL: [usize; 3] = [42, 230, 36];
+/// Methods of `Simulation`, `Steered` and `Examined`. Where they are to end: 20, 12 and 10.
+const ASKED: [usize; 3] = [24, 20, 10];
+/// Lines of a function.
+const LONG: usize = 120;
+/// Functions that are longer, with their lines: none may be added, and none may grow.
+const LONGER: &[(&str, &str, usize)] = &[
+    ("cli/src/coarsen/average.rs", "averaged", 125),
+    ("cli/src/run.rs", "run_deck", 121),
+    ("engine/src/error/run.rs", "message", 133),
+    ("engine/src/fracture/precrack.rs", "new", 156),
+    ("engine/src/interaction/stencil/assemble.rs", "new", 144),
+    ("engine/src/run/build.rs", "build_in", 377),
+    ("engine/src/run/constitutive/constants.rs", "constants", 149),
+    ("engine/src/run/constitutive/interaction.rs", "made", 126),
+    ("engine/src/run/reference.rs", "reference", 167),
+    ("engine/src/statics/modes.rs", "lowest", 128),
+    ("fields/src/fields.rs", "point", 126),
+    ("fields/src/sums.rs", "evaluate", 129),
+    ("io/src/convert/mod.rs", "deck", 134),
+    ("io/src/convert/solver.rs", "solver", 159),
+    ("io/src/deck/conservation/lower.rs", "lower", 148),
+    ("io/src/deck/describe/mod.rs", "describe", 311),
+    ("io/src/deck/lower/body.rs", "body", 151),
+    ("io/src/deck/lower/mod.rs", "lower", 215),
+    ("io/src/deck/lower/periods.rs", "periods", 123),
+    ("io/src/deck/upscaled.rs", "upscaled", 132),
+    ("io/src/read/dump.rs", "frame", 143),
+    ("io/src/read/lammps/file.rs", "read_data", 131),
+    ("io/src/write/card.rs", "markdown", 145),
+    ("lammps/src/command/fix_output.rs", "average", 131),
+    ("lammps/src/command/region.rs", "add_region", 128),
+    ("lammps/src/command/set.rs", "set_atoms", 151),
+    ("theory/src/coarsen/schur.rs", "schur", 122),
+];
+
+/// Names of functions, how they are set in, and their lines.
+fn functions(text: &str) -> Vec<(String, usize, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut found = vec![];
+    for (n, line) in lines.iter().enumerate() {
+        let code = line.trim_start();
+        let set_in = line.len() - code.len();
+        let words = ["pub ", "const ", "unsafe ", "async "];
+        let mut rest = code;
+        while let Some(word) = words.iter().find_map(|w| rest.strip_prefix(w)) {
+            rest = word;
+        }
+        if let Some(inner) = rest.strip_prefix("pub(") {
+            rest = inner.split_once(") ").map_or("", |(_, rest)| rest);
+        }
+        let Some(name) = rest.strip_prefix("fn ") else {
+            continue;
+        };
+        // a signature that ends without a body
+        let end = lines[n..]
+            .iter()
+            .position(|l| l.ends_with('{') || l.ends_with(';') || l.ends_with('}'));
+        let signature = lines[n + end.unwrap_or(0)];
+        let close = format!("{}}}", " ".repeat(set_in));
+        let body = match signature.ends_with('{') {
+            true => lines[n..].iter().position(|l| **l == close).unwrap_or(0) + 1,
+            false => end.unwrap_or(0) + 1,
+        };
+        let name = name.split(['(', '<']).next().unwrap_or(name);
+        found.push((name.to_string(), set_in, body));
+    }
+    found
+}
+
+/// A block of the source from the line that begins with this on.
+fn block<'a>(text: &'a str, begin: &str) -> &'a str {
+    let at = text.find(begin).unwrap_or_else(|| panic!("{begin}"));
+    let end = text[at..].find("\n}").unwrap_or(text.len() - at);
+    &text[at..at + end]
+}
+
+#[test]
+fn the_middle_of_the_house_only_shrinks() {
+    let run = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/run");
+    let model = fs::read_to_string(run.join("model.rs")).unwrap();
+    let fields = block(&model, "pub struct Model<").lines().skip(1);
+    let fields = fields.filter(|l| {
+        let code = l.trim_start();
+        l.starts_with("    ") && !code.starts_with("//") && code.contains(": ")
+    });
+    let mut own = [fields.count(), 0, 0];
+    let (mut open, mut files) = (vec![run.clone()], vec![]);
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            match path.is_dir() {
+                true => open.push(path),
+                false => files.push(path),
+            }
+        }
+    }
+    for file in &files {
+        let text = fs::read_to_string(file).unwrap();
+        let blocks = text.split("\nimpl<const D: usize> Model<D> {").skip(1);
+        let methods = blocks.map(|b| {
+            let end = b.find("\n}").unwrap_or(b.len());
+            functions(&b[..end]).iter().filter(|f| f.1 == 4).count()
+        });
+        let methods: usize = methods.sum();
+        own[1] += methods;
+        own[2] += usize::from(methods > 0);
+    }
+    let asked = fs::read_to_string(run.join("mod.rs")).unwrap();
+    let asked = ["Simulation", "Steered", "Examined"].map(|name| {
+        let text = block(&asked, &format!("pub trait {name}"));
+        functions(text).iter().filter(|f| f.1 == 4).count()
+    });
+    let mut long = vec![];
+    for root in crates() {
+        let mut open = vec![root.clone()];
+        while let Some(folder) = open.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    open.push(path);
+                } else if path.extension().is_some_and(|e| e == "rs") {
+                    let text = fs::read_to_string(&path).unwrap();
+                    let name = path.strip_prefix(root.parent().unwrap().parent().unwrap());
+                    let name = name.unwrap().to_str().unwrap().to_string();
+                    let all = functions(&text).into_iter().filter(|f| f.2 > LONG);
+                    long.extend(all.map(|f| (name.clone(), f.0, f.2)));
+                }
+            }
+        }
+    }
+    let too_long = long.iter().filter(|(file, name, lines)| {
+        let known = LONGER.iter().find(|k| k.0 == file && k.1 == name);
+        known.is_none_or(|k| *lines > k.2)
+    });
+    let too_long: Vec<_> = too_long.collect();
+    assert!(
+        too_long.is_empty(),
+        "functions over {LONG} lines: {too_long:#?}"
+    );
+    let gone: Vec<_> = LONGER
+        .iter()
+        .filter(|k| {
+            !long
+                .iter()
+                .any(|(file, name, lines)| k.0 == file && k.1 == name && *lines == k.2)
+        })
+        .collect();
+    assert!(gone.is_empty(), "say how short they are now: {gone:#?}");
+    assert_eq!(
+        own, MODEL,
+        "fields, methods and files of Model: the numbers of today stand here"
+    );
+    assert_eq!(asked, ASKED, "methods of Simulation, Steered, Examined");
 }

@@ -1,6 +1,7 @@
 //! Means over frames, with their standard errors: what is kept does not grow with the number of frames.
 
 use crate::fields::{Fields, NO_VELOCITIES, Quantity};
+use peridyne::state::{Archive, Owner};
 
 /// Means of all fields at points.
 #[derive(Debug, Clone, Default)]
@@ -10,6 +11,21 @@ pub struct Average {
     columns: Vec<Vec<[f64; 3]>>,
     /// Why the last frame did not have a quantity.
     why_not: Vec<&'static str>,
+}
+
+impl Owner for Average {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.one("frames", &mut self.frames);
+        archive.lists("columns", &mut self.columns);
+        let mut why: Vec<String> = self.why_not.iter().map(|w| w.to_string()).collect();
+        archive.items("why_not", &mut why, String::new, |text, archive| {
+            archive.text("text", text);
+        });
+        if archive.loads() {
+            // a few sentences, once
+            self.why_not = why.into_iter().map(|w| &*w.leak()).collect();
+        }
+    }
 }
 
 impl Average {

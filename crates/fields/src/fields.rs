@@ -5,6 +5,7 @@ use crate::bonds::Block;
 use crate::frame::{Frame, cross};
 use crate::kernel::dot;
 pub use crate::quantity::{Powers, Quantity};
+use peridyne::state::words;
 
 /// Why a field is not there.
 pub const NO_VELOCITIES: &str = "the frame has no velocities";
@@ -25,7 +26,7 @@ pub struct Rates {
 }
 
 /// Sums over the whole frame.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Totals {
     pub mass: f64,
     pub momentum: [f64; 3],
@@ -41,6 +42,17 @@ pub struct Totals {
     /// Were all particles visited? Far from all points some are not; then energy and virial are of those that were.
     pub complete: bool,
 }
+
+words!([] Totals {
+    mass: f64,
+    momentum: [f64; 3],
+    kinetic: f64,
+    energy: f64,
+    flow: [f64; 9],
+    virial: [f64; 9],
+    churning: [f64; 9],
+    complete: bool,
+});
 
 impl Totals {
     pub(crate) fn new(frame: &Frame) -> Totals {

@@ -17,6 +17,7 @@ use crate::method::Method;
 use crate::sums::evaluate;
 use crate::targets::Targets;
 use peridyne::law::terms::Sites;
+use peridyne::state::words;
 
 /// What is left of a balance law, as root mean squares over the points.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,6 +31,19 @@ pub struct Residual {
     /// With the steps h and 2h combined.
     pub extrapolated: f64,
 }
+
+words!([] Residual { value: f64, scale: f64, expected: f64, extrapolated: f64 });
+
+words!([] Residuals {
+    mass: Residual,
+    momentum: Residual,
+    energy: Residual,
+    internal_energy: Residual,
+    coordinate: Residual,
+    angular_momentum: Residual,
+    points: usize,
+    step: f64,
+});
 
 impl Residual {
     /// Relative to what cancels; 0 where nothing happens, not a number where it was not measured.

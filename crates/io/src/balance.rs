@@ -5,6 +5,7 @@ use peridyne::message;
 use peridyne::observe::Ledger;
 use peridyne::quantity::{Dimension, Message, rounded};
 use peridyne::run::Info;
+use peridyne::state::{Archive, Owner};
 
 /// Growth of the residual from one row to the next that is a jump.
 const JUMP: f64 = 16.0;
@@ -37,6 +38,29 @@ pub struct BalanceWatch {
     gone: bool,
     /// Was it said that breaking makes energy?
     told: bool,
+}
+
+impl Owner for BalanceWatch {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let mut last = self.last.map(|(step, was, contact)| (step, (was, contact)));
+        archive.one("last", &mut last);
+        self.last = last.map(|(step, (was, contact))| (step, was, contact));
+        for (name, x) in [
+            ("given", &mut self.given),
+            ("most", &mut self.most),
+            ("scale", &mut self.scale),
+        ] {
+            archive.one(name, x);
+        }
+        for (name, x) in [
+            ("begun", &mut self.begun),
+            ("lost", &mut self.lost),
+            ("gone", &mut self.gone),
+            ("told", &mut self.told),
+        ] {
+            archive.one(name, x);
+        }
+    }
 }
 
 impl BalanceWatch {

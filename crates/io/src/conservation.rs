@@ -3,12 +3,15 @@
 use crate::deck::Dim;
 use crate::deck::conservation::LawDeck;
 use crate::write::WriteError;
+use crate::write::checkpoint::{Asked, Checkpoint, CheckpointSchedule, Checkpoints, ResumeError};
 use crate::write::conservation::{Compared, Frames, Report, write_pictures};
 use crate::write::folder::Folder;
 use crate::write::history::{Column, History};
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{FieldNote, Setting, Status, UnitNames, deck_hash, peak_memory_bytes};
+use peridyne::observe::StateHash;
 use peridyne::quantity::rounded;
+use peridyne::state::{Archive, Owner};
 use peridyne_transport::{Evaluation, Evolution, Method, RunError, StepSize, measure};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -18,6 +21,8 @@ use std::time::{Duration, Instant};
 pub enum LawError {
     #[error(transparent)]
     Write(#[from] WriteError),
+    #[error(transparent)]
+    Resume(#[from] ResumeError),
     #[error("report.html: {0}")]
     Report(#[from] ReportError),
     #[error("{error}\nthe last good state, t = {} after {steps} steps, is in {}", rounded(*.time, 6), dir.display())]
@@ -35,6 +40,10 @@ pub trait Listener {
     fn step(&mut self, part: f64, steps: u64);
     /// Shall the run end here, and who says so?
     fn ended(&mut self) -> Option<String>;
+    /// Shall a state to go on from be written now?
+    fn wants_checkpoint(&mut self) -> bool;
+    /// Something that the user should know now.
+    fn warning(&mut self, text: &str);
 }
 
 /// Name of a method in reports.
@@ -175,6 +184,55 @@ fn advance(
 pub struct Told {
     pub command: String,
     pub understood: String,
+    /// What a state to go on from says of how the run was asked for.
+    pub asked: Asked,
+}
+
+/// What goes on beside the state of the law.
+struct Written {
+    history: History,
+    frames: Frames,
+    /// The next ones.
+    frame: u64,
+    line: u64,
+    stepping: Duration,
+}
+
+impl Owner for Written {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.part("history", &mut self.history);
+        archive.part("frames", &mut self.frames);
+        archive.one("frame", &mut self.frame);
+        archive.one("line", &mut self.line);
+        let mut stepping = self.stepping.as_secs_f64();
+        archive.one("stepping", &mut stepping);
+        self.stepping = Duration::try_from_secs_f64(stepping).unwrap_or_default();
+    }
+}
+
+fn pass(deck: &mut LawDeck, written: &mut Written, archive: &mut Archive<'_>) {
+    archive.part("law", &mut deck.evolution);
+    archive.part("files", written);
+}
+
+/// Writes a state to go on from; where it cannot be written, the one before stays and the run goes on.
+fn save(
+    states: &mut Checkpoints,
+    deck: &mut LawDeck,
+    written: &mut Written,
+    told: &Told,
+    listener: &mut dyn Listener,
+) {
+    let mut asked = Asked {
+        step: deck.evolution.steps,
+        ..told.asked.clone()
+    };
+    if let Err(error) = states.write(&mut asked, |archive| pass(deck, written, archive)) {
+        let time = deck.units.show(deck.evolution.time, Dim::TIME);
+        listener.warning(&format!(
+            "t = {time}: no state to go on from was written: {error}"
+        ));
+    }
 }
 
 fn setting(deck: &LawDeck, told: Told) -> Setting {
@@ -209,62 +267,14 @@ fn setting(deck: &LawDeck, told: Told) -> Setting {
     }
 }
 
-/// Runs and writes: `frames.npz`, `history.csv`, pictures and `run.json` in `dir`. A run that fails or is ended leaves its last good state as a last frame.
-///
-/// # Errors
-/// What stopped the run, or the first file that could not be written.
-pub fn run(
-    deck: &mut LawDeck,
-    dir: &Path,
+/// What `run.json` says.
+fn record(
+    deck: &LawDeck,
     told: Told,
-    listener: &mut dyn Listener,
-) -> Result<Report, LawError> {
-    let _held = Folder::claim(dir)?;
-    deck.evolution.estimate();
-    let mut history = History::create(&dir.join("history.csv"), &columns(deck))?;
-    let mut frames = Frames::new(deck.grid());
-    let (mut ended, mut stopped) = (None, None);
-    let mut stepping = Duration::ZERO;
-    let (mut frame, mut line) = (0, 0);
-    let at = |number: u64, of: u64, end: f64| end * number as f64 / of as f64;
-    loop {
-        let [next_frame, next_row] = [
-            at(frame, deck.frames, deck.duration),
-            at(line, deck.rows, deck.duration),
-        ];
-        let due = next_frame.min(next_row);
-        match advance(deck, due, &mut stepping, listener) {
-            Ok(signal) => ended = signal,
-            Err(error) => stopped = Some(error),
-        }
-        let whole = ended.is_none() && stopped.is_none();
-        let solution = exact(deck);
-        if next_frame <= due * (1.0 + 1e-12) || !whole {
-            frames.push(deck, solution.as_deref());
-            frame += 1;
-        }
-        if whole && next_row <= due * (1.0 + 1e-12) {
-            match row(deck, solution.as_deref()) {
-                Ok(values) => history.push(deck.evolution.steps, &values)?,
-                Err(RunError::Ended { .. }) => ended = Some(who(listener)),
-                Err(error) => stopped = Some(error),
-            }
-            line += 1;
-        }
-        if ended.is_some() || stopped.is_some() || frame > deck.frames && line > deck.rows {
-            break;
-        }
-    }
-    history.finish()?;
-    let solution = exact(deck);
-    if !frames.has(deck.evolution.time) {
-        frames.push(deck, solution.as_deref());
-    }
-    let compared = solution.and_then(|exact| Compared::new(deck, &exact));
-    frames.write(&dir.join("frames.npz"))?;
-    if deck.pictures {
-        write_pictures(dir, deck, &frames)?;
-    }
+    compared: Option<Compared>,
+    (ended, stopped): (Option<String>, Option<&RunError>),
+    stepping: Duration,
+) -> Report {
     let e = &deck.evolution;
     let (time_error, allowed) = errors(e);
     let mut warnings = deck.warnings.clone();
@@ -276,13 +286,14 @@ pub fn run(
     }
     let seconds = stepping.as_secs_f64();
     let visits = e.u.len() as f64 * e.steps as f64;
-    let report = Report {
+    Report {
         version: env!("CARGO_PKG_VERSION").to_string(),
         kind: "conservation_law",
-        deck: deck.file().to_string(),
+        // of a run that goes on as it was called when it began
+        deck: told.asked.name.clone(),
         deck_hash: deck_hash(deck.text().as_bytes()),
         title: deck.title.clone(),
-        status: match &stopped {
+        status: match stopped {
             Some(error) => Status::Stopped(error.to_string()),
             None if ended.is_some() => Status::Ended,
             None => Status::Done,
@@ -297,12 +308,107 @@ pub fn run(
         seconds_stepping: seconds,
         ns_per_point_step: (visits > 0.0).then(|| seconds * 1e9 / visits),
         peak_memory_bytes: peak_memory_bytes(),
+        hash: StateHash::of([e.time].into_iter().chain(e.u.iter().copied())),
         time_error,
         time_error_allowed: allowed,
         compared,
         warnings,
         setting: setting(deck, told),
+    }
+}
+
+/// Runs and writes: `frames.npz`, `history.csv`, pictures and `run.json` in `dir`. A run that fails or is ended leaves its last good state as a last frame,
+/// one that is ended a state to go on from.
+///
+/// `from`: the run goes on from this state, in the folder where it was.
+///
+/// # Errors
+/// What stopped the run, or the first file that could not be written.
+pub fn run(
+    deck: &mut LawDeck,
+    dir: &Path,
+    told: Told,
+    listener: &mut dyn Listener,
+    from: Option<Checkpoint>,
+) -> Result<Report, LawError> {
+    let _held = Folder::claim(dir)?;
+    deck.evolution.estimate();
+    let path = dir.join("history.csv");
+    let history = match &from {
+        None => History::create(&path, &columns(deck))?,
+        Some(_) => History::reopen(&path, &columns(deck)).map_err(ResumeError::Files)?,
     };
+    let schedule = Some(CheckpointSchedule::default());
+    let mut states = Checkpoints::new(dir, schedule, from.is_some())?;
+    let mut written = Written {
+        history,
+        frames: Frames::new(deck.grid()),
+        frame: 0,
+        line: 0,
+        stepping: Duration::ZERO,
+    };
+    if let Some(mut from) = from {
+        from.load(|archive| pass(deck, &mut written, archive))?;
+        written.history.rewind().map_err(ResumeError::Files)?;
+    }
+    let (mut ended, mut stopped) = (None, None);
+    let at = |number: u64, of: u64, end: f64| end * number as f64 / of as f64;
+    loop {
+        if states.is_due() || listener.wants_checkpoint() {
+            save(&mut states, deck, &mut written, &told, listener);
+        }
+        let [next_frame, next_row] = [
+            at(written.frame, deck.frames, deck.duration),
+            at(written.line, deck.rows, deck.duration),
+        ];
+        let due = next_frame.min(next_row);
+        match advance(deck, due, &mut written.stepping, listener) {
+            Ok(signal) => ended = signal,
+            Err(error) => stopped = Some(error),
+        }
+        if ended.is_some() {
+            save(&mut states, deck, &mut written, &told, listener);
+        }
+        let whole = ended.is_none() && stopped.is_none();
+        let solution = exact(deck);
+        if next_frame <= due * (1.0 + 1e-12) || !whole {
+            written.frames.push(deck, solution.as_deref());
+            written.frame += 1;
+        }
+        if whole && next_row <= due * (1.0 + 1e-12) {
+            match row(deck, solution.as_deref()) {
+                Ok(values) => written.history.push(deck.evolution.steps, &values)?,
+                Err(RunError::Ended { .. }) => ended = Some(who(listener)),
+                Err(error) => stopped = Some(error),
+            }
+            written.line += 1;
+        }
+        let done = written.frame > deck.frames && written.line > deck.rows;
+        if ended.is_some() || stopped.is_some() || done {
+            break;
+        }
+    }
+    match ended.is_none() && stopped.is_none() {
+        true => states.done()?,
+        false => states.ended()?,
+    }
+    let Written {
+        history,
+        mut frames,
+        stepping,
+        ..
+    } = written;
+    history.finish()?;
+    let solution = exact(deck);
+    if !frames.has(deck.evolution.time) {
+        frames.push(deck, solution.as_deref());
+    }
+    let compared = solution.and_then(|exact| Compared::new(deck, &exact));
+    frames.write(&dir.join("frames.npz"))?;
+    if deck.pictures {
+        write_pictures(dir, deck, &frames)?;
+    }
+    let report = record(deck, told, compared, (ended, stopped.as_ref()), stepping);
     report.write(&dir.join("run.json"))?;
     if deck.report {
         report::write(dir)?;
@@ -311,8 +417,8 @@ pub fn run(
         None => Ok(report),
         Some(error) => Err(LawError::Run {
             error,
-            time: e.time,
-            steps: e.steps,
+            time: deck.evolution.time,
+            steps: deck.evolution.steps,
             dir: dir.to_path_buf(),
         }),
     }

@@ -1,21 +1,16 @@
 //! Drives a simulation through its steps: observers at their intervals, files as they come, a report at the end.
 
 mod atoms;
-mod exodus;
-mod modes;
 mod names;
 mod rigid;
 mod row;
 mod setting;
-mod space_time;
+mod writers;
 
 pub use atoms::AtomsPlan;
-pub use exodus::ExodusPlan;
-use modes::{sweep_modes, write_modes};
-use rigid::Paths;
 pub use rigid::RigidBodies;
-pub use space_time::SpaceTimeOptions;
-use space_time::SpaceTimes;
+use writers::{Due, Known, Made, Now, Writer};
+pub use writers::{ExodusPlan, SpaceTimeOptions};
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -23,24 +18,20 @@ use std::time::{Duration, Instant};
 use peridyne::error::{RunError, SolveError};
 use peridyne::observe::{Ledger, Snapshot};
 use peridyne::run::Simulation;
-use peridyne::spec::{AnyLinearBody, Control, Stepper};
+use peridyne::spec::{Control, Stepper};
+use peridyne::state::Archive;
 use peridyne_fields::FieldsError;
 
-use crate::balance::BalanceWatch;
-use crate::continuum::run::{FieldsPlan, RunningFields};
+use crate::continuum::run::FieldsPlan;
 use crate::deck::UnitSystem;
-use crate::write::data::write_data;
+use crate::write::checkpoint::{Asked, Checkpoint, CheckpointSchedule, Checkpoints, ResumeError};
 use crate::write::earlier::sweep_pictures;
 use crate::write::folder::Folder;
-use crate::write::history::History;
-use crate::write::linear::write_linear;
-use crate::write::picture::film::HURRY;
 use crate::write::picture::rigid::Placed;
 use crate::write::picture::shown::About;
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{self, EnergyReport, MarkNotes, RunReport, Setting, Spent, Status};
-use crate::write::trajectory::Trajectory;
-use crate::write::{Series, SeriesOptions, WriteError};
+use crate::write::{SeriesOptions, WriteError};
 
 /// What to do and what to write.
 #[derive(Debug, Clone)]
@@ -92,6 +83,10 @@ pub struct Plan {
     pub atoms: Option<AtomsPlan>,
     /// Continuum fields, where any are asked for.
     pub continuum: Option<FieldsPlan>,
+    /// When states to go on from are written; `None`: only where the run is ended early, or somebody asks.
+    pub checkpoints: Option<CheckpointSchedule>,
+    /// What such a state says of how the run was asked for.
+    pub asked: Asked,
 }
 
 impl Plan {
@@ -139,10 +134,14 @@ pub trait Progress {
     fn phase(&mut self, _what: &str) {}
     /// Something that the user should know now.
     fn warning(&mut self, message: &str);
-    /// Asked after each step: shall the run end here, and who says so? What it has done is then written as at its end.
+    /// Asked before each step: shall the run end here, and who says so? What it has done is then written as at its end.
     /// ([`Simulation::stop_when`] asks within a long increment of statics.)
     fn ended(&mut self) -> Option<String> {
         None
+    }
+    /// Asked before each step: shall a state to go on from be written now?
+    fn wants_checkpoint(&mut self) -> bool {
+        false
     }
 }
 
@@ -159,6 +158,8 @@ pub enum DriveError {
         step: u64,
         dir: PathBuf,
     },
+    #[error(transparent)]
+    Resume(#[from] ResumeError),
     #[error("[[fields]]: {0}")]
     Fields(#[from] FieldsError),
     #[error("report.html: {0}")]
@@ -167,7 +168,10 @@ pub enum DriveError {
     Modes { error: SolveError, dir: PathBuf },
 }
 
-/// Run and write. [`Progress::ended`] ends a run early. On a [`RunError`] the last good state is written like a last frame and `run.json` says why.
+/// Run and write. [`Progress::ended`] ends a run early, and leaves a state from which it goes on. On a [`RunError`] the last good state is
+/// written like a last frame and `run.json` says why.
+///
+/// `from`: the run goes on from this state, in the folder where it was.
 ///
 /// # Errors
 /// What stopped the run, or the first file that could not be written.
@@ -175,56 +179,166 @@ pub fn drive(
     sim: &mut dyn Simulation,
     plan: &Plan,
     progress: &mut dyn Progress,
+    from: Option<Checkpoint>,
 ) -> Result<RunReport, DriveError> {
     let begin = Instant::now();
-    let mut spent = Spent::default();
     let _held = Folder::claim(&plan.dir)?;
     plan.stays_inside()?;
-    sweep_pictures(&plan.dir)?;
-    sweep_modes(&plan.dir)?;
-    let mut series = Series::new(&plan.dir, plan.series.clone())?;
-    let columns = row::columns(sim, plan);
-    let mut trajectories = Vec::new();
-    if let Some(atoms) = &plan.atoms {
-        for (path, format) in &atoms.trajectories {
-            let trajectory = Trajectory::create(&plan.dir.join(path), *format)?;
-            trajectories.push(trajectory.with_ase_velocity(atoms.ase_velocity));
+    let mut run = Run::begin(sim, plan, progress, from)?;
+    run.go_on(sim, plan, progress)?;
+    run.end(sim, plan, progress, begin)
+}
+
+/// A run between its first step and its last.
+struct Run {
+    writers: Vec<Box<dyn Writer>>,
+    checkpoints: Checkpoints,
+    known: Known,
+    spent: Spent,
+    /// Steps done.
+    step: u64,
+    goes_on: bool,
+    /// Time that an earlier part of the run spent in steps (s).
+    before: f64,
+    stopped: Option<RunError>,
+    /// Who ended it early.
+    ended: Option<String>,
+}
+
+impl Run {
+    /// Opens what is written, and brings the model to where the run begins or goes on.
+    fn begin(
+        sim: &mut dyn Simulation,
+        plan: &Plan,
+        progress: &mut dyn Progress,
+        from: Option<Checkpoint>,
+    ) -> Result<Run, DriveError> {
+        let goes_on = from.is_some();
+        // of the part before, too: all are drawn at the end
+        sweep_pictures(&plan.dir)?;
+        let columns = row::columns(sim, plan);
+        let told = sim.info().warnings.iter().map(|w| plan.units.tell(w));
+        let mut run = Run {
+            writers: writers::all(&columns),
+            checkpoints: Checkpoints::new(&plan.dir, plan.checkpoints, goes_on)?,
+            known: Known {
+                warnings: plan.warnings.iter().cloned().chain(told).collect(),
+                ..Known::default()
+            },
+            spent: Spent::default(),
+            step: 0,
+            goes_on,
+            before: 0.0,
+            stopped: None,
+            ended: None,
+        };
+        let opened = run.each(sim, plan, progress, run.due(plan), |writer, now| {
+            writer.open(now, goes_on)
+        });
+        match goes_on {
+            true => opened.map_err(as_found)?,
+            false => opened?,
+        }
+        let Some(mut from) = from else {
+            sim.start(true);
+            run.known.broken = sim.broken();
+            return Ok(run);
+        };
+        run.step = from.asked.step;
+        from.load(|archive| pass(sim, &mut run.known, &mut run.writers, archive))?;
+        run.before = run.known.stepping;
+        from.passed_over.into_iter().for_each(|why| {
+            progress.warning(&format!("{why}; the run goes on from the state before it"));
+        });
+        let rewound = run.each(sim, plan, progress, run.due(plan), |writer, now| {
+            writer.rewind(now)
+        });
+        rewound.map_err(as_found)?;
+        Ok(run)
+    }
+
+    /// What is due after the steps that are done.
+    fn due(&self, plan: &Plan) -> Due {
+        // steps of motion count from its beginning; every increment before it is told
+        let (loads, moved) = (
+            self.step < plan.increments,
+            self.step.saturating_sub(plan.increments),
+        );
+        let every = |e: u64| !loads && moved.is_multiple_of(e);
+        Due {
+            step: self.step,
+            moved,
+            loads,
+            row: loads || every(plan.history),
+            frame: self.step == 0 || self.step == plan.increments || plan.every.is_some_and(every),
+            last: false,
         }
     }
-    let asked = plan.continuum.as_ref();
-    let running = asked.map(|asked| RunningFields::new(sim, asked, &plan.dir));
-    let mut running = running.transpose()?;
-    let mut history = History::create(&plan.dir.join("history.csv"), &columns)?;
-    let mut exodus = plan.exodus.as_ref().map(|asked| {
-        let place = (&*plan.dir, &*plan.title);
-        exodus::Frames::new(asked, place, sim, &columns)
-    });
-    sim.start(true);
-    let mut over_time = SpaceTimes::new(sim, plan);
-    let broken = sim.broken();
-    let mut stepping = Duration::ZERO;
-    let mut stopped = None;
-    let mut ledger = Ledger::default();
-    let mut paths = Paths::default();
-    let mut framed = None;
-    let mut balance = BalanceWatch::default();
-    let told = sim.info().warnings.iter().map(|w| plan.units.tell(w));
-    let mut warnings: Vec<String> = plan.warnings.iter().cloned().chain(told).collect();
-    if let Some(text) = series.strange() {
-        progress.warning(&text);
-        warnings.push(text);
+
+    fn each(
+        &mut self,
+        sim: &mut dyn Simulation,
+        plan: &Plan,
+        progress: &mut dyn Progress,
+        due: Due,
+        mut visit: impl FnMut(&mut dyn Writer, &mut Now<'_>) -> Result<(), DriveError>,
+    ) -> Result<(), DriveError> {
+        let hurried = self.ended.is_some();
+        let mut now = Now::new(
+            (sim, plan, progress),
+            (&mut self.known, &mut self.spent),
+            &mut self.stopped,
+            (due, hurried),
+        );
+        for writer in &mut self.writers {
+            visit(writer.as_mut(), &mut now)?;
+            if now.stopped.is_some() {
+                break;
+            }
+        }
+        Ok(())
     }
-    let mut ended = None;
-    // what the history and the trajectories tell of already
-    let mut told = None;
-    let mut row = None;
-    for n in 0..=plan.steps {
-        if n > 0 {
+
+    fn look(
+        &mut self,
+        sim: &mut dyn Simulation,
+        plan: &Plan,
+        progress: &mut dyn Progress,
+        due: Due,
+    ) -> Result<(), DriveError> {
+        self.each(sim, plan, progress, due, |writer, now| writer.look(now))
+    }
+
+    /// Step by step to the end, or to what ends the run before it.
+    fn go_on(
+        &mut self,
+        sim: &mut dyn Simulation,
+        plan: &Plan,
+        progress: &mut dyn Progress,
+    ) -> Result<(), DriveError> {
+        // what is due where a run goes on was written before its state
+        if !self.goes_on {
+            self.look(sim, plan, progress, self.due(plan))?;
+        }
+        let mut stepping = Duration::from_secs_f64(self.known.stepping);
+        while self.step < plan.steps && self.stopped.is_none() {
+            self.ended = progress.ended();
+            if self.ended.is_some() {
+                break;
+            }
+            if self.checkpoints.is_due() || progress.wants_checkpoint() {
+                self.save(sim, plan, progress);
+            }
             let begin = Instant::now();
             let result = sim.step();
             stepping += begin.elapsed();
+            self.known.stepping = stepping.as_secs_f64();
             match result {
-                Ok(()) => progress.step(n, plan.steps, stepping),
+                Ok(()) => {
+                    self.step += 1;
+                    progress.step(self.step, plan.steps, stepping);
+                    self.look(sim, plan, progress, self.due(plan))?;
+                }
                 // within an increment or an implicit step, which is undone
                 Err(
                     RunError::Equilibrium {
@@ -235,224 +349,187 @@ pub fn drive(
                         error: SolveError::Stopped,
                         ..
                     },
-                ) => ended = Some(progress.ended().unwrap_or_default()),
-                Err(error) => {
-                    stopped = Some(error);
+                ) => {
+                    self.ended = Some(progress.ended().unwrap_or_default());
                     break;
+                }
+                Err(error) => {
+                    self.stopped = Some(error);
+                    return Ok(());
                 }
             }
         }
-        if n < plan.steps && ended.is_none() {
-            ended = progress.ended();
+        if self.stopped.is_some() {
+            return Ok(());
         }
-        let last = n == plan.steps || ended.is_some();
-        // steps of motion count from its beginning; every increment before it is told
-        let loads = n < plan.increments;
-        let moved = n.saturating_sub(plan.increments);
-        let every = |e: u64| !loads && moved % e == 0;
-        let frame = n == 0 || n == plan.increments || plan.every.is_some_and(every);
-        let rows = (loads || every(plan.history) || last) && told != Some(sim.step_number());
-        let placed = match rows || frame || last {
-            true => plan.placed(sim),
-            false => vec![],
+        if self.ended.is_some() {
+            self.save(sim, plan, progress);
+        }
+        let due = Due {
+            last: true,
+            ..self.due(plan)
         };
-        paths.push(frame_time(sim), plan.begun(sim), &placed);
-        if rows || (frame && exodus.is_some()) {
-            match sim.ledger() {
-                Ok(l) => ledger = l,
-                Err(error) => {
-                    stopped = Some(error);
-                    break;
-                }
-            }
-            row = Some((sim.step_number(), row::row(sim, plan, &ledger)));
-        }
-        if let Some((step, row)) = row.as_ref().filter(|_| rows) {
-            history.push(*step, row)?;
-            told = Some(*step);
-            progress.row(*step, sim.clock(), &ledger, sim.broken());
-            let statics = loads || matches!(sim.info().stepper, Stepper::Statics(_));
-            if let Some(jump) = balance.row(*step, &ledger, statics) {
-                let jump = plan.units.tell(&jump);
-                progress.warning(&jump);
-                warnings.push(jump);
-            }
-            let explicit = matches!(sim.info().stepper, Stepper::Verlet) && !loads;
-            stopped = balance
-                .gone(sim.step_number(), &ledger, sim.info())
-                .filter(|_| explicit);
-            if stopped.is_some() {
-                break;
-            }
-        }
-        if let Some(atoms) = plan.atoms.as_ref().filter(|_| !trajectories.is_empty())
-            && (frame || last)
-            && framed != Some(sim.step_number())
-        {
-            let frame = atoms.frame(sim);
-            trajectories.iter_mut().try_for_each(|t| t.push(&frame))?;
-            framed = Some(sim.step_number());
-        }
-        if let Some(running) = &mut running {
-            let begin = Instant::now();
-            for text in running.look(sim, n, last)? {
-                progress.warning(&text);
-                warnings.push(text);
-            }
-            spent.fields += begin.elapsed().as_secs_f64();
-        }
-        if !last && frame && (series.wants_frames() || exodus.is_some()) {
-            let snapshot = plan.look(sim);
-            series.write(&snapshot, &placed)?;
-            if let (Some(exodus), Some((_, row))) = (&mut exodus, &row) {
-                exodus.push(&snapshot, row)?;
-            }
-        }
-        if !loads {
-            over_time.look(sim, moved);
-        }
-        if plan.modes > 0 && plan.increments > 0 && n == plan.increments {
-            let loaded = plan.look(sim);
-            write_modes(sim, plan, &loaded)?;
-        }
-        if last {
-            break;
-        }
+        self.look(sim, plan, progress, due)
     }
-    let snapshot = plan.look(sim);
-    let placed = plan.placed(sim);
-    paths.push(snapshot.time, plan.begun(sim), &placed);
-    series.write(&snapshot, &placed)?;
-    if let Some(mut exodus) = exodus {
-        let row = row.filter(|(step, _)| *step == sim.step_number());
-        // of a run that stopped, what can be said of the last good state
-        let row = row
-            .map(|(_, row)| row)
-            .unwrap_or_else(|| match sim.ledger() {
-                Ok(ledger) => row::row(sim, plan, &ledger),
-                Err(_) => vec![f64::NAN; columns.len()],
-            });
-        exodus.push(&snapshot, &row)?;
-        exodus.finish()?;
+
+    /// Writes a state to go on from; where it cannot be written, the one before stays and the run goes on.
+    fn save(&mut self, sim: &mut dyn Simulation, plan: &Plan, progress: &mut dyn Progress) {
+        let begin = Instant::now();
+        let mut asked = Asked {
+            step: self.step,
+            steps: plan.steps,
+            ..plan.asked.clone()
+        };
+        let (known, writers) = (&mut self.known, &mut self.writers);
+        let written = self.checkpoints.write(&mut asked, |archive| {
+            pass(sim, known, writers, archive);
+        });
+        if let Err(error) = written {
+            let text = format!(
+                "step {}: no state to go on from was written: {error}",
+                self.step
+            );
+            progress.warning(&text);
+            self.known.warnings.push(text);
+        }
+        self.spent.checkpoints += begin.elapsed().as_secs_f64();
     }
-    let about = match (sim.broken() > broken, &sim.info().stepper) {
-        (true, _) => About::Fracture,
-        (false, Stepper::Statics(_)) => About::Equilibrium,
-        (false, Stepper::Verlet | Stepper::Newmark(_)) => About::Motion,
-        (false, Stepper::Still) => match sim.transfers().first() {
-            Some((quantity, _)) => About::Spread(quantity.column()),
-            None => About::Motion,
-        },
-    };
-    progress.phase("pictures");
-    let hurried = ended.is_some();
-    if hurried && series.hurry() {
-        let text = format!(
-            "the run was ended: films have no more frames than are drawn in {} s",
-            HURRY.as_secs()
+
+    /// Writes what stands for all of the run, and its record.
+    fn end(
+        mut self,
+        sim: &mut dyn Simulation,
+        plan: &Plan,
+        progress: &mut dyn Progress,
+        begin: Instant,
+    ) -> Result<RunReport, DriveError> {
+        let due = self.due(plan);
+        let mut made = Made::default();
+        let mut stopped = self.stopped.take();
+        let mut now = Now::new(
+            (sim, plan, progress),
+            (&mut self.known, &mut self.spent),
+            &mut stopped,
+            (due, self.ended.is_some()),
         );
-        progress.warning(&text);
-        warnings.push(text);
-    }
-    let drawing = Instant::now();
-    let pictures = series.finish(&snapshot, &placed, about)?;
-    let pictures = pictures.iter().filter_map(|p| p.file_name());
-    let mut pictures: Vec<String> = pictures.map(|p| p.to_string_lossy().into_owned()).collect();
-    pictures.extend(over_time.finish(plan)?);
-    spent.pictures = drawing.elapsed().as_secs_f64();
-    history.finish()?;
-    let collecting = Instant::now();
-    let slices = match running {
-        Some(running) => {
-            progress.phase("fields");
-            running.finish(hurried)?
+        for writer in self.writers {
+            writer.end(&mut now, &mut made)?;
         }
-        None => vec![],
-    };
-    spent.fields += collecting.elapsed().as_secs_f64();
-    for mut trajectory in trajectories {
-        // of a run that stopped, the last good state
-        if let Some(atoms) = plan
-            .atoms
-            .as_ref()
-            .filter(|_| framed != Some(sim.step_number()))
-        {
-            trajectory.push(&atoms.frame(sim))?;
+        let snapshot = now.snapshot();
+        let hash = sim.state_hash();
+        let status = match &stopped {
+            Some(error) => Status::Stopped(plan.units.tell(&error.message())),
+            None if self.ended.is_some() => Status::Ended,
+            None => Status::Done,
+        };
+        match status {
+            Status::Done => self.checkpoints.done()?,
+            Status::Ended | Status::Stopped(_) => self.checkpoints.ended()?,
         }
-        trajectory.finish()?;
-    }
-    if let Some(atoms) = &plan.atoms
-        && let Some(name) = &atoms.data
-    {
-        write_data(&plan.dir.join(name), &atoms.last(sim))?;
-    }
-    if plan.modes > 0 && plan.increments == 0 && stopped.is_none() && ended.is_none() {
-        write_modes(sim, plan, &snapshot)?;
-    }
-    if plan.linear_body {
-        let path = plan.dir.join("linear_body.npz");
-        match sim.linear_body() {
-            AnyLinearBody::One(body) => write_linear(&path, &body)?,
-            AnyLinearBody::Two(body) => write_linear(&path, &body)?,
-            AnyLinearBody::Three(body) => write_linear(&path, &body)?,
+        let (info, known, mut spent) = (sim.info(), self.known, self.spent);
+        spent.all = begin.elapsed().as_secs_f64();
+        let elsewhere =
+            known.stepping - self.before + spent.fields + spent.pictures + spent.checkpoints;
+        spent.frames = (spent.all - elsewhere).max(0.0);
+        let mut report = RunReport {
+            version: env!("CARGO_PKG_VERSION").to_string(),
+            deck: plan.deck.clone(),
+            deck_hash: run_json::deck_hash(plan.deck_text.as_bytes()),
+            title: plan.title.clone(),
+            status,
+            ended_by: self.ended,
+            particles: info.points,
+            directed_bonds: info.directed_bonds,
+            steps: sim.step_number(),
+            time_step: info.time_step,
+            parts_of_a_step: info.parts,
+            seconds_stepping: known.stepping,
+            seconds: spent,
+            ns_per_bond_step: run_json::ns_per_bond_step(
+                known.stepping,
+                info.directed_bonds,
+                sim.step_number(),
+            ),
+            peak_memory_bytes: run_json::peak_memory_bytes(),
+            broken_directed_bonds: sim.broken(),
+            fragments: plan.atoms.is_none().then(|| sim.fragments()),
+            hash,
+            threads: plan.threads,
+            simd: info.simd.to_string(),
+            energy: EnergyReport::from(&known.ledger),
+            warnings: known.warnings,
+            setting: Some(Setting {
+                slices: made.slices,
+                ..plan.setting(sim, &snapshot, &made.pictures, made.paths)
+            }),
+            pictures: made.pictures,
+        };
+        report.write(&plan.dir.join("run.json"))?;
+        if plan.report {
+            progress.phase("report");
+            report::of_run(&plan.dir, report.ended_by.is_some())?;
+        }
+        report.seconds.all = begin.elapsed().as_secs_f64();
+        report.seconds.report = report.seconds.all - spent.all;
+        match stopped {
+            None => Ok(report),
+            Some(error) => Err(DriveError::Run {
+                told: plan.units.tell(&error.message()),
+                error,
+                step: sim.step_number(),
+                dir: plan.dir.to_path_buf(),
+            }),
         }
     }
-    let status = match &stopped {
-        Some(error) => Status::Stopped(plan.units.tell(&error.message())),
-        None if ended.is_some() => Status::Ended,
-        None => Status::Done,
-    };
-    let info = sim.info();
-    spent.all = begin.elapsed().as_secs_f64();
-    spent.frames = spent.all - stepping.as_secs_f64() - spent.fields - spent.pictures;
-    let mut report = RunReport {
-        version: env!("CARGO_PKG_VERSION").to_string(),
-        deck: plan.deck.clone(),
-        deck_hash: run_json::deck_hash(plan.deck_text.as_bytes()),
-        title: plan.title.clone(),
-        status,
-        ended_by: ended,
-        particles: info.points,
-        directed_bonds: info.directed_bonds,
-        steps: sim.step_number(),
-        time_step: info.time_step,
-        parts_of_a_step: info.parts,
-        seconds_stepping: stepping.as_secs_f64(),
-        seconds: spent,
-        ns_per_bond_step: run_json::ns_per_bond_step(
-            stepping.as_secs_f64(),
-            info.directed_bonds,
-            sim.step_number(),
-        ),
-        peak_memory_bytes: run_json::peak_memory_bytes(),
-        broken_directed_bonds: sim.broken(),
-        fragments: plan.atoms.is_none().then(|| sim.fragments()),
-        threads: plan.threads,
-        simd: info.simd.to_string(),
-        energy: EnergyReport::from(&ledger),
-        warnings,
-        setting: Some(Setting {
-            slices,
-            ..plan.setting(sim, &snapshot, &pictures, paths.all())
-        }),
-        pictures,
-    };
-    report.write(&plan.dir.join("run.json"))?;
-    if plan.report {
-        progress.phase("report");
-        report::of_run(&plan.dir, report.ended_by.is_some())?;
+}
+
+/// Brings a model that was not started to the state of a checkpoint; nothing of its run's files is looked at.
+///
+/// # Errors
+/// The state is of another body.
+pub fn take_state(sim: &mut dyn Simulation, from: &mut Checkpoint) -> Result<(), ResumeError> {
+    from.load(|archive| pass_model(sim, archive))
+}
+
+fn pass_model(sim: &mut dyn Simulation, archive: &mut Archive<'_>) {
+    archive.same("body", &mut sum_of_body(sim));
+    archive.part("model", sim);
+}
+
+/// What is wrong with files that a run goes on with is wrong input.
+fn as_found(error: DriveError) -> DriveError {
+    match error {
+        DriveError::Write(error) => ResumeError::Files(error).into(),
+        other => other,
     }
-    report.seconds.all = begin.elapsed().as_secs_f64();
-    report.seconds.report = report.seconds.all - spent.all;
-    match stopped {
-        None => Ok(report),
-        Some(error) => Err(DriveError::Run {
-            told: plan.units.tell(&error.message()),
-            error,
-            step: sim.step_number(),
-            dir: plan.dir.to_path_buf(),
-        }),
+}
+
+/// All that is needed to go on.
+fn pass(
+    sim: &mut dyn Simulation,
+    known: &mut Known,
+    writers: &mut [Box<dyn Writer>],
+    archive: &mut Archive<'_>,
+) {
+    pass_model(sim, archive);
+    archive.part("run", known);
+    for writer in writers {
+        archive.part("files", writer.as_mut());
     }
+}
+
+/// A checksum of where points are in the reference, and what they are.
+fn sum_of_body(sim: &mut dyn Simulation) -> u32 {
+    let mut sum = crc32fast::Hasher::new();
+    let mut add = |x: &[f64]| x.iter().for_each(|x| sum.update(&x.to_le_bytes()));
+    add(sim.vectors("reference").as_flattened());
+    add(&sim.scalars("volume"));
+    add(&sim.scalars("density"));
+    sim.families()
+        .material
+        .iter()
+        .for_each(|m| add(&[f64::from(*m)]));
+    sum.finalize()
 }
 
 /// Time of a frame, as a snapshot has it: of loads that may fall the number of the equilibrium.

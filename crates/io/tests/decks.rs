@@ -409,6 +409,12 @@ fn frames_of_a_law_have_its_reference_and_its_flux() {
         fn ended(&mut self) -> Option<String> {
             None
         }
+        fn wants_checkpoint(&mut self) -> bool {
+            false
+        }
+        fn warning(&mut self, text: &str) {
+            panic!("{text}");
+        }
     }
     let dir = tempfile::tempdir().unwrap();
     let all = decks("good/conservation");
@@ -416,7 +422,7 @@ fn frames_of_a_law_have_its_reference_and_its_flux() {
         .find(|(path, _)| path.ends_with("compare.toml"))
         .unwrap();
     let mut deck = LawDeck::parse(text, path.to_str().unwrap(), &[]).unwrap();
-    let report = run(&mut deck, dir.path(), Told::default(), &mut Silent).unwrap();
+    let report = run(&mut deck, dir.path(), Told::default(), &mut Silent, None).unwrap();
     let file = std::fs::File::open(dir.path().join("frames.npz")).unwrap();
     let mut archive = ndarray_npy::NpzReader::new(file).unwrap();
     let mut read = |name: &str| -> ArrayD<f64> { archive.by_name(name).unwrap() };

@@ -7,6 +7,7 @@
 use crate::measure;
 use crate::operator::Operator;
 use crate::step::{Method, RunError, Stepper, stable_step};
+use peridyne::state::{Archive, Owner};
 
 /// How long steps are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,6 +80,28 @@ pub struct Evolution {
     other: Option<Other>,
     /// Longest step that the error allows, as far as it is known.
     allowed: f64,
+}
+
+impl Owner for Evolution {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.all("u", &mut self.u);
+        archive.one("time", &mut self.time);
+        archive.one("steps", &mut self.steps);
+        archive.one("allowed", &mut self.allowed);
+        let start = Other::new(&self.u, 0.0);
+        archive.option(
+            "other",
+            &mut self.other,
+            || start,
+            |other, archive| {
+                archive.all("u", &mut other.u);
+                archive.one("lost", &mut other.lost);
+                archive.one("now", &mut other.now);
+                archive.one("most", &mut other.most);
+                archive.one("scale", &mut other.scale);
+            },
+        );
+    }
 }
 
 impl Evolution {

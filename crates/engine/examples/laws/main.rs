@@ -1,7 +1,7 @@
 //! Time per directed bond and step of laws of the shelf beside the linear solid, whole steps in 3-D, on one thread or as many as asked for:
 //! `cargo run --release --example laws [threads] [words]`. Only rows with every word run, for example `laws avx2 stencil plastic`. A word
 //! `cells=20` makes the cube smaller than the 60 cells along an edge that no cache holds. The first rows are what such arithmetic costs alone
-//! ([`limit`]), on one thread.
+//! ([`limit`]), on one thread; the last ones are of a chain of 200 points, whose step is so short that calls are most of it.
 use peridyne::execute::simd::Simd;
 use peridyne::expression::Expression;
 use peridyne::run::{Options, build};
@@ -21,14 +21,34 @@ fn spec(cells: i32, law: LawSpec, breaks: bool, family: FamilyChoice) -> Spec {
             }
         }
     }
+    spec_of(LatticeKind::Cubic, quarters, law, breaks, family)
+}
+
+/// The bench of what a step costs beside its bonds.
+const CHAIN: &str = "chain of 200, pmb";
+
+/// Its points have families of 6 bonds.
+fn chain(breaks: bool, family: FamilyChoice) -> Spec {
+    let quarters = (0..200).map(|x| [4 * x, 0, 0]).collect();
+    let law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
+    spec_of(LatticeKind::Chain, quarters, law, breaks, family)
+}
+
+fn spec_of(
+    kind: LatticeKind,
+    quarters: Vec<[i32; 3]>,
+    law: LawSpec,
+    breaks: bool,
+    family: FamilyChoice,
+) -> Spec {
     let body = BodySpec::Sites {
-        kind: LatticeKind::Cubic,
+        kind,
         spacing: 1.0,
         origin: [0.0; 3],
         quarters,
         volume: None,
     };
-    let mut spec = Spec::new(3, body, 1.0, law);
+    let mut spec = Spec::new(kind.dimension(), body, 1.0, law);
     spec.horizon = Horizon::Ratio(3);
     spec.influence = Influence::Inverse;
     spec.volume_scaling = true;
@@ -163,7 +183,8 @@ fn main() {
     #[cfg(target_arch = "x86_64")]
     limit::print();
     for simd in Simd::available() {
-        for (name, law) in laws() {
+        let cubes = laws().into_iter().map(|(name, law)| (name, Some(law)));
+        for (name, law) in cubes.chain([(CHAIN, None)]) {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 for breaks in [false, true] {
                     // they must be able to break
@@ -177,7 +198,10 @@ fn main() {
                         if breaks { "breaks" } else { "intact" }
                     );
                     if words.iter().all(|w| row.contains(w.as_str())) {
-                        let spec = spec(cells, law.clone(), breaks, family);
+                        let spec = match &law {
+                            Some(law) => spec(cells, law.clone(), breaks, family),
+                            None => chain(breaks, family),
+                        };
                         pool.install(|| time(&row, &spec, simd));
                     }
                 }
@@ -206,14 +230,19 @@ fn time(row: &str, spec: &Spec, simd: Simd) {
     sim.set_velocities(&v);
     sim.start(false);
     let mut best = f64::MAX;
-    for _ in 0..if simd == Simd::Portable { 3 } else { 16 } {
+    let steps = match simd {
+        _ if spec.dimension == 1 => 2000,
+        Simd::Portable => 3,
+        _ => 16,
+    };
+    for _ in 0..steps {
         let start = Instant::now();
         sim.step().expect("a step");
         best = best.min(start.elapsed().as_secs_f64());
     }
     let bonds = sim.info().directed_bonds as f64;
     println!(
-        "{row:55} {:7.3} ns/bond {:8.2} ms {:5} B/point",
+        "{row:55} {:7.3} ns/bond {:10.4} ms {:5} B/point",
         best * 1e9 / bonds,
         best * 1e3,
         sim.info().bytes / n

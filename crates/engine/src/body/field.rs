@@ -1,5 +1,6 @@
 //! Fields: one column of numbers per component, each beginning on a cache line of its own choice.
 
+use crate::state::{Archive, Owner};
 use std::ops::{Deref, DerefMut};
 
 /// Numbers per cache line and lines per page.
@@ -33,6 +34,21 @@ impl Column {
             start,
             len,
             line,
+        }
+    }
+}
+
+/// As long as the state says, on its line of a page.
+impl Owner for Column {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let mut values = match archive.loads() {
+            true => vec![],
+            false => self.to_vec(),
+        };
+        archive.list("values", &mut values);
+        if archive.loads() {
+            *self = Column::new(values.len(), 0.0, self.line);
+            self.copy_from_slice(&values);
         }
     }
 }

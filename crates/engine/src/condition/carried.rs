@@ -1,6 +1,7 @@
 //! Points that are carried: where they are at the end of a step, and how fast, is told from outside before it (LAMMPS's
 //! `fix move`). Components that are not told move as forces say.
 
+use super::prescribed::Prescribed;
 use crate::body::Field;
 
 /// Where a point is next on one axis.
@@ -34,43 +35,49 @@ impl Carried {
         self.next.copy_from_slice(next);
     }
 
-    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
-        let mut kept = self.slots.iter().map(|s| keep(*s));
-        self.next.retain(|_| kept.next().unwrap_or(false));
-        self.slots.retain(|s| keep(*s));
-    }
-
     /// Slots and axes that are told.
-    pub fn holds(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.each().map(|(i, a, _)| (i, a))
-    }
-
-    fn each(&self) -> impl Iterator<Item = (usize, usize, Carry)> {
+    fn each<const D: usize>(&self) -> impl Iterator<Item = (usize, usize, Carry)> {
         self.slots.iter().zip(&self.next).flat_map(|(s, next)| {
             let told = |(a, c): (usize, &Option<Carry>)| c.map(|c| (*s as usize, a, c));
-            next.iter().enumerate().filter_map(told)
+            next.iter().enumerate().take(D).filter_map(told)
         })
     }
+}
 
-    /// Let the coming pass carry the points: no force, and the velocity of the step's middle.
-    pub fn begin<const D: usize>(&self, u: &Field<D>, v: &mut Field<D>, f: &mut Field<D>, dt: f64) {
-        for (i, a, c) in self.each().filter(|(_, a, _)| *a < D) {
+impl<const D: usize> Prescribed<D> for Carried {
+    fn before_drift(
+        &mut self,
+        u: &Field<D>,
+        v: &mut Field<D>,
+        f: &mut Field<D>,
+        [_, dt]: [f64; 2],
+        _: bool,
+    ) {
+        for (i, a, c) in self.each::<D>() {
             f[a][i] = 0.0;
             v[a][i] = (c.displacement - u[a][i]) / dt;
         }
     }
 
-    /// After the drift: displacements exactly as told.
-    pub fn drift<const D: usize>(&self, u: &mut Field<D>) {
-        for (i, a, c) in self.each().filter(|(_, a, _)| *a < D) {
+    fn after_drift(&self, u: &mut Field<D>, _: [f64; 2]) {
+        for (i, a, c) in self.each::<D>() {
             u[a][i] = c.displacement;
         }
     }
 
-    /// Velocities of the whole step, after the last half kick.
-    pub fn settle<const D: usize>(&self, v: &mut Field<D>) {
-        for (i, a, c) in self.each().filter(|(_, a, _)| *a < D) {
+    fn whole_velocity(&self, v: &mut Field<D>, _: [f64; 2]) {
+        for (i, a, c) in self.each::<D>() {
             v[a][i] = c.velocity;
         }
+    }
+
+    fn each_held(&self, visit: &mut dyn FnMut(usize, usize)) {
+        self.each::<D>().for_each(|(i, a, _)| visit(i, a));
+    }
+
+    fn retain(&mut self, keep: &dyn Fn(u32) -> bool) {
+        let mut kept = self.slots.iter().map(|s| keep(*s));
+        self.next.retain(|_| kept.next().unwrap_or(false));
+        self.slots.retain(|s| keep(*s));
     }
 }

@@ -2,18 +2,20 @@
 //! gave them.
 
 use super::Program;
+use super::prescribed::Prescribed;
 use crate::body::{Body, Field};
 use crate::space::Point;
+use crate::state::{Archive, Owner};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Prescribed {
+pub enum Kind {
     Displacement,
     Velocity,
 }
 
 #[derive(Debug, Clone)]
 pub struct Constraint<const D: usize> {
-    kind: Prescribed,
+    kind: Kind,
     program: Program<D>,
     slots: Vec<u32>,
     points: Vec<Point>,
@@ -23,8 +25,15 @@ pub struct Constraint<const D: usize> {
     pub work: f64,
 }
 
+impl<const D: usize> Owner for Constraint<D> {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.all("last", &mut self.last);
+        archive.one("work", &mut self.work);
+    }
+}
+
 impl<const D: usize> Constraint<D> {
-    pub fn new(kind: Prescribed, program: Program<D>, slots: Vec<u32>, points: Vec<Point>) -> Self {
+    pub fn new(kind: Kind, program: Program<D>, slots: Vec<u32>, points: Vec<Point>) -> Self {
         let last = vec![[[0.0; 3]; D]; slots.len()];
         Constraint {
             kind,
@@ -38,8 +47,8 @@ impl<const D: usize> Constraint<D> {
 
     fn velocity(&self, a: usize, k: usize, t: f64, dt: f64) -> f64 {
         match self.kind {
-            Prescribed::Velocity => self.program.at(a, k, &self.points[k], t),
-            Prescribed::Displacement => {
+            Kind::Velocity => self.program.at(a, k, &self.points[k], t),
+            Kind::Displacement => {
                 let g = |t| self.program.at(a, k, &self.points[k], t);
                 (g(t + dt) - g(t - dt)) / (2.0 * dt)
             }
@@ -56,10 +65,8 @@ impl<const D: usize> Constraint<D> {
         dt: f64,
     ) -> Option<[f64; 2]> {
         let prescribed = |c: &Self, k: usize, t: f64| match (self.kind, other.kind) {
-            (Prescribed::Displacement, Prescribed::Displacement) => {
-                c.program.at(a, k, &c.points[k], t)
-            }
-            (Prescribed::Velocity, _) | (_, Prescribed::Velocity) => c.velocity(a, k, t, dt),
+            (Kind::Displacement, Kind::Displacement) => c.program.at(a, k, &c.points[k], t),
+            (Kind::Velocity, _) | (_, Kind::Velocity) => c.velocity(a, k, t, dt),
         };
         times.iter().find_map(|t| {
             let both = [prescribed(self, k, *t), prescribed(other, j, *t)];
@@ -69,68 +76,40 @@ impl<const D: usize> Constraint<D> {
         })
     }
 
-    /// Slots, and which of their components are held.
-    pub fn holds(&self) -> impl Iterator<Item = (usize, [bool; D])> {
-        let held = std::array::from_fn(|a| self.program.acts(a));
-        self.slots.iter().map(move |s| (*s as usize, held))
-    }
-
     /// Every component that is held: place in the list of points, slot, axis.
-    pub fn each(&self, mut visit: impl FnMut(usize, usize, usize)) {
-        for (k, &s) in self.slots.iter().enumerate() {
-            (0..D)
-                .filter(|a| self.program.acts(*a))
-                .for_each(|a| visit(k, s as usize, a));
-        }
+    pub fn each(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        self.slots.iter().enumerate().flat_map(move |(k, s)| {
+            let held = (0..D).filter(|a| self.program.acts(*a));
+            held.map(move |a| (k, *s as usize, a))
+        })
     }
 
     /// Acceleration as prescribed at `t`, between the middles of the steps before and after (length / time²).
     pub fn acceleration(&self, a: usize, k: usize, t: f64, dt: f64) -> f64 {
         let at = |t: f64| self.program.at(a, k, &self.points[k], t);
         match self.kind {
-            Prescribed::Displacement => (at(t + dt) - 2.0 * at(t) + at(t - dt)) / (dt * dt),
-            Prescribed::Velocity => (at(t + 0.5 * dt) - at(t - 0.5 * dt)) / dt,
+            Kind::Displacement => (at(t + dt) - 2.0 * at(t) + at(t - dt)) / (dt * dt),
+            Kind::Velocity => (at(t + 0.5 * dt) - at(t - 0.5 * dt)) / dt,
         }
     }
 
     pub fn is_velocity(&self) -> bool {
-        self.kind == Prescribed::Velocity
+        self.kind == Kind::Velocity
     }
 
     /// The displacement along axis `a` that point `k` of the list has at time `t`; `None`: its velocity is told.
     pub fn displaced(&self, a: usize, k: usize, t: f64) -> Option<f64> {
         match self.kind {
-            Prescribed::Displacement => Some(self.program.at(a, k, &self.points[k], t)),
-            Prescribed::Velocity => None,
+            Kind::Displacement => Some(self.program.at(a, k, &self.points[k], t)),
+            Kind::Velocity => None,
         }
     }
 
     /// Displacements as prescribed at time `t`.
     pub fn place(&self, u: &mut Field<D>, t: f64) {
-        if self.kind == Prescribed::Displacement {
-            for (k, &s) in self.slots.iter().enumerate() {
-                for a in (0..D).filter(|a| self.program.acts(*a)) {
-                    u[a][s as usize] = self.program.at(a, k, &self.points[k], t);
-                }
-            }
-        }
-    }
-
-    /// Put the points where they belong at the start of a run.
-    pub fn start(&mut self, u: &mut Field<D>, v: &mut Field<D>, t: f64, dt: f64) {
-        self.place(u, t);
-        self.settle(v, t, dt);
-    }
-
-    /// Remember the state of the whole step that begins at `t`, and let the coming pass carry the points: no force,
-    /// and the velocity of the step's middle.
-    pub fn begin(&mut self, u: &Field<D>, v: &mut Field<D>, f: &mut Field<D>, t: f64, dt: f64) {
-        for (k, &s) in self.slots.iter().enumerate() {
-            let i = s as usize;
-            for a in (0..D).filter(|a| self.program.acts(*a)) {
-                self.last[k][a] = [u[a][i], self.velocity(a, k, t, dt), f[a][i]];
-                f[a][i] = 0.0;
-                v[a][i] = (self.target(a, k, u[a][i], t + dt, dt) - u[a][i]) / dt;
+        for (k, i, a) in self.each() {
+            if let Some(x) = self.displaced(a, k, t) {
+                u[a][i] = x;
             }
         }
     }
@@ -138,17 +117,8 @@ impl<const D: usize> Constraint<D> {
     /// Displacement at `t`, from `from` one step before.
     fn target(&self, a: usize, k: usize, from: f64, t: f64, dt: f64) -> f64 {
         match self.kind {
-            Prescribed::Displacement => self.program.at(a, k, &self.points[k], t),
-            Prescribed::Velocity => from + dt * self.velocity(a, k, t - 0.5 * dt, dt),
-        }
-    }
-
-    /// After the drift of the step that ends at `t`: displacements exactly as prescribed.
-    pub fn drift(&self, u: &mut Field<D>, t: f64, dt: f64) {
-        for (k, &s) in self.slots.iter().enumerate() {
-            for a in (0..D).filter(|a| self.program.acts(*a)) {
-                u[a][s as usize] = self.target(a, k, self.last[k][a][0], t, dt);
-            }
+            Kind::Displacement => self.program.at(a, k, &self.points[k], t),
+            Kind::Velocity => from + dt * self.velocity(a, k, t - 0.5 * dt, dt),
         }
     }
 
@@ -165,8 +135,7 @@ impl<const D: usize> Constraint<D> {
         u: &Field<D>,
         f: &Field<D>,
         gained: &dyn Fn(usize, usize, [f64; 2]) -> f64,
-        t: f64,
-        dt: f64,
+        [t, dt]: [f64; 2],
     ) {
         for (k, &s) in self.slots.iter().enumerate() {
             let i = s as usize;
@@ -180,13 +149,50 @@ impl<const D: usize> Constraint<D> {
             }
         }
     }
+}
 
-    /// Velocities of the whole step at `t`, after the last half kick.
-    pub fn settle(&self, v: &mut Field<D>, t: f64, dt: f64) {
+impl<const D: usize> Prescribed<D> for Constraint<D> {
+    /// It remembers the state of the whole step, too.
+    fn before_drift(
+        &mut self,
+        u: &Field<D>,
+        v: &mut Field<D>,
+        f: &mut Field<D>,
+        [t, dt]: [f64; 2],
+        _: bool,
+    ) {
         for (k, &s) in self.slots.iter().enumerate() {
+            let i = s as usize;
             for a in (0..D).filter(|a| self.program.acts(*a)) {
-                v[a][s as usize] = self.velocity(a, k, t, dt);
+                self.last[k][a] = [u[a][i], self.velocity(a, k, t, dt), f[a][i]];
+                f[a][i] = 0.0;
+                v[a][i] = (self.target(a, k, u[a][i], t + dt, dt) - u[a][i]) / dt;
             }
         }
+    }
+
+    fn after_drift(&self, u: &mut Field<D>, [t, dt]: [f64; 2]) {
+        for (k, i, a) in self.each() {
+            u[a][i] = self.target(a, k, self.last[k][a][0], t, dt);
+        }
+    }
+
+    fn whole_velocity(&self, v: &mut Field<D>, [t, dt]: [f64; 2]) {
+        for (k, i, a) in self.each() {
+            v[a][i] = self.velocity(a, k, t, dt);
+        }
+    }
+
+    fn each_held(&self, visit: &mut dyn FnMut(usize, usize)) {
+        self.each().for_each(|(_, i, a)| visit(i, a));
+    }
+
+    fn retain(&mut self, keep: &dyn Fn(u32) -> bool) {
+        let all = 0..self.slots.len();
+        let kept: Vec<usize> = all.filter(|k| keep(self.slots[*k])).collect();
+        self.slots = kept.iter().map(|k| self.slots[*k]).collect();
+        self.points = kept.iter().map(|k| self.points[*k]).collect();
+        self.last = kept.iter().map(|k| self.last[*k]).collect();
+        self.program.pick(&kept);
     }
 }

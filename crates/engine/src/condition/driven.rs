@@ -2,11 +2,12 @@
 //! each on the force that the ones before it left.
 
 use super::Program;
+use super::force_field::ForceField;
 use super::indenter::{Form, Indenter, Push};
 use super::load::{Load, LoadKind};
 use super::reaction::Reaction;
-use crate::body::{Body, Field};
 use crate::space::Point;
+use crate::state::{Archive, Owner};
 
 /// The values of a driven condition at one instant. Lists are in order of the condition's points.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +39,15 @@ pub enum Drive {
 pub(crate) enum Driven<const D: usize> {
     Indenter(Indenter<D>),
     Load(Load<D>),
+}
+
+impl<const D: usize> Owner for Driven<D> {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        match self {
+            Driven::Indenter(i) => archive.part("indenter", i),
+            Driven::Load(l) => archive.part("load", l),
+        }
+    }
 }
 
 /// The load of a drive; `None` for an indenter.
@@ -99,27 +109,18 @@ impl<const D: usize> Driven<D> {
         true
     }
 
-    /// Half of the old force's work; `moved` bounds the path of any point.
-    pub fn begin(&mut self, body: &Body<D>, v: &Field<D>, t: f64, dt: f64, moved: f64) {
+    pub fn field(&mut self) -> &mut dyn ForceField<D> {
         match self {
-            Driven::Indenter(i) => i.begin(body, v, t, dt, moved),
-            Driven::Load(l) => l.begin(body, v, dt),
+            Driven::Indenter(i) => i,
+            Driven::Load(l) => l,
         }
     }
 
-    /// Add the force density; `dt` is 0 at the start of a run.
-    pub fn add(
-        &mut self,
-        body: &Body<D>,
-        u: &Field<D>,
-        v: &Field<D>,
-        f: &mut Field<D>,
-        t: f64,
-        dt: f64,
-    ) {
+    /// What it is where it is no rigid body.
+    pub fn load(&self) -> Option<&Load<D>> {
         match self {
-            Driven::Indenter(i) => i.add(body, [u, v], f, t, [dt; 2]),
-            Driven::Load(l) => l.add(body, [u, v], f, t, dt, None),
+            Driven::Load(l) => Some(l),
+            Driven::Indenter(_) => None,
         }
     }
 
@@ -130,14 +131,6 @@ impl<const D: usize> Driven<D> {
                 energy: 0.0,
                 force: l.before,
             },
-        }
-    }
-
-    /// Points have the slots that `keep` holds for only, from now on; new values must follow before the next forces.
-    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
-        match self {
-            Driven::Indenter(i) => i.retain(keep),
-            Driven::Load(l) => l.retain(keep),
         }
     }
 }

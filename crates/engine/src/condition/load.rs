@@ -2,9 +2,13 @@
 
 use super::Program;
 use super::condensed::Condensed;
+use super::force_field::ForceField;
 use super::own::{OwnForce, Seen};
 use crate::body::{Body, Field};
+use crate::interaction::Evaluation;
+use crate::interaction::friction::Pressed;
 use crate::space::Point;
+use crate::state::{Archive, Owner};
 
 #[derive(Debug, Clone)]
 pub enum LoadKind<const D: usize> {
@@ -30,6 +34,17 @@ impl<const D: usize> LoadKind<D> {
     }
 }
 
+/// In what order loads act.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rank {
+    /// Forces of their own.
+    Load,
+    /// What looks at all that was added.
+    Resistance,
+    /// What replaces it, whatever it is.
+    Override,
+}
+
 /// A load on a set of points.
 #[derive(Debug, Clone)]
 pub struct Load<const D: usize> {
@@ -42,10 +57,20 @@ pub struct Load<const D: usize> {
     pub of: Option<(usize, Option<f64>)>,
     /// Force density added last time, for the work of the next step.
     last: Vec<[f64; D]>,
+    /// The same where an implicit step departed.
+    departed: Vec<[f64; D]>,
     /// Sum of the force densities on the points before this load acted, without those that a list leaves alone.
     pub before: [f64; 3],
     /// Work done on the body (energy).
     pub work: f64,
+}
+
+impl<const D: usize> Owner for Load<D> {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.all("force", &mut self.last);
+        archive.one("before", &mut self.before);
+        archive.one("work", &mut self.work);
+    }
 }
 
 impl<const D: usize> Load<D> {
@@ -63,6 +88,7 @@ impl<const D: usize> Load<D> {
             condensed: None,
             of: None,
             last,
+            departed: vec![],
             before: [0.0; 3],
             work: 0.0,
         }
@@ -111,27 +137,40 @@ impl<const D: usize> Load<D> {
         each.collect()
     }
 
-    /// Points have the slots that `keep` holds for only, from now on.
-    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
-        let kept: Vec<usize> = (0..self.slots.len())
-            .filter(|k| keep(self.slots[*k]))
-            .collect();
-        self.slots = kept.iter().map(|k| self.slots[*k]).collect();
-        self.last = kept.iter().map(|k| self.last[*k]).collect();
-        if let Some(condensed) = &mut self.condensed {
-            return condensed.pick(&kept);
-        }
-        self.points = kept.iter().map(|k| self.points[*k]).collect();
-        if let LoadKind::Drag(gamma) = &mut self.kind {
-            *gamma = kept.iter().map(|k| gamma[*k]).collect();
-        }
-        if let LoadKind::Body(p) | LoadKind::Replace(p) | LoadKind::Damping(p) = &mut self.kind {
-            p.pick(&kept);
+    /// Visits the slots of a load that resists velocities, with the viscosity there at time `t` (mass / volume / time).
+    pub fn each_viscosity(&self, t: f64, mut visit: impl FnMut(usize, f64)) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            match &self.kind {
+                LoadKind::Damping(c) => visit(s as usize, c.at(0, k, &self.points[k], t)),
+                LoadKind::Drag(gamma) => visit(s as usize, gamma[k]),
+                LoadKind::Body(_) | LoadKind::Replace(_) | LoadKind::Own(_) => {}
+            }
         }
     }
 
-    /// Work of the force of the step's start over half its path (the other half is [`Load::add`]'s).
-    pub fn begin(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
+    /// What it is, if it has no tangent.
+    pub fn without_tangent(&self) -> Option<&'static str> {
+        match self.kind {
+            LoadKind::Body(_) | LoadKind::Damping(_) | LoadKind::Drag(_) => None,
+            LoadKind::Replace(_) => Some("a force that replaces all others"),
+            LoadKind::Own(_) => Some("a force of the program"),
+        }
+    }
+
+    pub fn is_damping(&self) -> bool {
+        matches!(self.kind, LoadKind::Damping(_))
+    }
+    pub fn rank(&self) -> Rank {
+        match self.kind {
+            LoadKind::Body(_) | LoadKind::Own(_) => Rank::Load,
+            LoadKind::Damping(_) | LoadKind::Drag(_) => Rank::Resistance,
+            LoadKind::Replace(_) => Rank::Override,
+        }
+    }
+}
+
+impl<const D: usize> ForceField<D> for Load<D> {
+    fn begin_step(&mut self, body: &Body<D>, v: &Field<D>, [_, dt]: [f64; 2], _: f64) {
         for (f, &s) in self.last.iter().zip(&self.slots) {
             let i = s as usize;
             let power: f64 = (0..D).map(|a| f[a] * v[a][i]).sum();
@@ -139,17 +178,16 @@ impl<const D: usize> Load<D> {
         }
     }
 
-    /// Add the force density at time `t` to `f`; `v` is the velocity of the step's middle, `dt` 0 at the start of a run. `push` is `ρ a` of
-    /// the step's start where masses couple points and forces on one of them do not say how it is accelerated.
-    pub fn add(
+    fn add(
         &mut self,
         body: &Body<D>,
         [u, v]: [&Field<D>; 2],
         f: &mut Field<D>,
         t: f64,
-        dt: f64,
+        at: Evaluation,
         push: Option<&Field<D>>,
     ) {
+        let dt = at.ended();
         if let (LoadKind::Body(density), Some(condensed)) = (&self.kind, &mut self.condensed) {
             condensed.evaluate(density, t);
         }
@@ -210,39 +248,45 @@ impl<const D: usize> Load<D> {
         }
     }
 
-    /// Force densities of the last evaluation, in order of the load's points.
-    pub fn acting(&self) -> &[[f64; D]] {
-        &self.last
+    fn depart(&mut self, _: &Field<D>, pressed: Pressed) {
+        match pressed {
+            Pressed::Now => self.departed.clone_from(&self.last),
+            // whoever makes increments counts the work of all loads
+            Pressed::Held => self.departed.clear(),
+        }
     }
 
-    /// Work over a whole step along `path` (displacement of a slot), with force densities that were `before` at its start and
-    /// are what they are now at its end: the trapezoidal rule.
-    pub fn account(
-        &mut self,
-        body: &Body<D>,
-        before: &[[f64; D]],
-        path: impl Fn(usize) -> [f64; D],
-    ) {
-        for ((f, g), &s) in before.iter().zip(&self.last).zip(&self.slots) {
+    fn arrive(&mut self, body: &Body<D>, [then, now]: [&Field<D>; 2]) {
+        let both = self.departed.iter().zip(&self.last);
+        for ((f, g), &s) in both.zip(&self.slots) {
             let i = s as usize;
-            let path = path(i);
-            let along: f64 = (0..D).map(|a| (f[a] + g[a]) * path[a]).sum();
+            let along = (0..D).map(|a| (f[a] + g[a]) * (now[a][i] - then[a][i]));
+            let along: f64 = along.sum();
             self.work += 0.5 * body.volume.at(i) * along;
         }
     }
 
-    /// Visits the slots of a load that resists velocities, with the viscosity there at time `t` (mass / volume / time).
-    pub fn each_viscosity(&self, t: f64, mut visit: impl FnMut(usize, f64)) {
-        for (k, &s) in self.slots.iter().enumerate() {
-            match &self.kind {
-                LoadKind::Damping(c) => visit(s as usize, c.at(0, k, &self.points[k], t)),
-                LoadKind::Drag(gamma) => visit(s as usize, gamma[k]),
-                LoadKind::Body(_) | LoadKind::Replace(_) | LoadKind::Own(_) => {}
-            }
-        }
-    }
+    /// The next evaluation finds its force anew.
+    fn retreat(&mut self) {}
 
-    pub fn is_damping(&self) -> bool {
-        matches!(self.kind, LoadKind::Damping(_))
+    /// It acts wherever its points are.
+    fn moved(&mut self, _: f64) {}
+
+    fn retain(&mut self, keep: &dyn Fn(u32) -> bool) {
+        let kept: Vec<usize> = (0..self.slots.len())
+            .filter(|k| keep(self.slots[*k]))
+            .collect();
+        self.slots = kept.iter().map(|k| self.slots[*k]).collect();
+        self.last = kept.iter().map(|k| self.last[*k]).collect();
+        if let Some(condensed) = &mut self.condensed {
+            return condensed.pick(&kept);
+        }
+        self.points = kept.iter().map(|k| self.points[*k]).collect();
+        if let LoadKind::Drag(gamma) = &mut self.kind {
+            *gamma = kept.iter().map(|k| gamma[*k]).collect();
+        }
+        if let LoadKind::Body(p) | LoadKind::Replace(p) | LoadKind::Damping(p) = &mut self.kind {
+            p.pick(&kept);
+        }
     }
 }

@@ -1,13 +1,17 @@
 //! What the world does to a body: loads that add force, constraints that prescribe motion, rigid bodies (indenters).
 //! Each keeps the account of its own work.
 
+pub(crate) mod applied;
 pub mod carried;
 pub mod condensed;
 pub mod constraint;
 pub mod driven;
+pub(crate) mod force_field;
 pub mod indenter;
 pub mod load;
 pub mod own;
+pub(crate) mod prescribed;
+pub(crate) mod prescribed_motion;
 pub mod reaction;
 pub mod rigid;
 pub(crate) mod still;

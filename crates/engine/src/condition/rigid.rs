@@ -13,6 +13,7 @@ use crate::space::rigid::RigidShape;
 use crate::space::rotation::{Axes, Quaternion, times, transposed_times};
 use crate::space::{Point, cross, dot, length};
 use crate::spec::{FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
+use crate::state::{Archive, Owner, words};
 
 #[derive(Debug, Clone)]
 enum Motion {
@@ -67,6 +68,17 @@ pub struct Kept {
     torque: Point,
 }
 
+words!([] Kept {
+    center: Point,
+    axes: Axes,
+    velocity: Point,
+    turning: Point,
+    turned: Quaternion,
+    spin: Point,
+    force: Point,
+    torque: Point,
+});
+
 /// Force and torque about the centre, axes of space.
 pub type Wrench = [f64; 6];
 
@@ -96,6 +108,19 @@ pub struct Path {
     pub way: f64,
     /// Radians.
     pub angle: f64,
+}
+
+impl<const D: usize> Owner for Rigid<D> {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let mut now = self.keep();
+        archive.one("motion", &mut now);
+        if archive.loads() {
+            self.retreat(&now);
+        }
+        if let Motion::Driven(next) = &mut self.motion {
+            archive.one("next", next);
+        }
+    }
 }
 
 impl<const D: usize> Rigid<D> {

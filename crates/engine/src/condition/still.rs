@@ -1,6 +1,7 @@
 //! Points that no stepper moves: they stay where they are with the velocity they have (LAMMPS's atoms without
 //! `fix nve`).
 
+use super::prescribed::Prescribed;
 use crate::body::Field;
 
 #[derive(Debug, Clone, Default)]
@@ -17,20 +18,17 @@ impl<const D: usize> Still<D> {
             slots,
         }
     }
+}
 
-    /// Points have the slots that `keep` holds for only, from now on.
-    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
-        let mut kept = self.slots.iter().map(|s| keep(*s));
-        self.velocity.retain(|_| kept.next().unwrap_or(false));
-        self.slots.retain(|s| keep(*s));
-    }
-
-    pub fn slots(&self) -> &[u32] {
-        &self.slots
-    }
-
-    /// Let the coming pass leave the points alone. `whole`: does `v` hold the velocities of the whole step?
-    pub fn begin(&mut self, v: &mut Field<D>, f: &mut Field<D>, whole: bool) {
+impl<const D: usize> Prescribed<D> for Still<D> {
+    fn before_drift(
+        &mut self,
+        _: &Field<D>,
+        v: &mut Field<D>,
+        f: &mut Field<D>,
+        _: [f64; 2],
+        whole: bool,
+    ) {
         for (kept, &s) in self.velocity.iter_mut().zip(&self.slots) {
             let i = s as usize;
             for a in 0..D {
@@ -43,12 +41,26 @@ impl<const D: usize> Still<D> {
         }
     }
 
-    /// Velocities of the whole step.
-    pub fn settle(&self, v: &mut Field<D>) {
+    /// No drift moved them.
+    fn after_drift(&self, _: &mut Field<D>, _: [f64; 2]) {}
+
+    fn whole_velocity(&self, v: &mut Field<D>, _: [f64; 2]) {
         for (kept, &s) in self.velocity.iter().zip(&self.slots) {
             for a in 0..D {
                 v[a][s as usize] = kept[a];
             }
         }
+    }
+
+    fn each_held(&self, visit: &mut dyn FnMut(usize, usize)) {
+        for s in &self.slots {
+            (0..D).for_each(|a| visit(*s as usize, a));
+        }
+    }
+
+    fn retain(&mut self, keep: &dyn Fn(u32) -> bool) {
+        let mut kept = self.slots.iter().map(|s| keep(*s));
+        self.velocity.retain(|_| kept.next().unwrap_or(false));
+        self.slots.retain(|s| keep(*s));
     }
 }

@@ -4,6 +4,7 @@ use crate::body::Body;
 use crate::expression::Expression;
 use crate::interaction::history;
 use crate::spec::ToughnessFactor;
+use crate::state::{Archive, Owner};
 
 /// Critical stretches of points.
 pub struct ToughnessField {
@@ -14,6 +15,12 @@ pub struct ToughnessField {
     factors: Vec<(Vec<u32>, ToughnessFactor)>,
     /// `[slots]`: critical values of `e`, or critical works.
     values: Vec<f64>,
+}
+
+impl Owner for ToughnessField {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.all("values", &mut self.values);
+    }
 }
 
 /// What bonds break by.

@@ -4,10 +4,11 @@ use super::{
     BondForce, BondState, BondTangent, PointEnergies, Sweep, Tally, add_virial, along, history,
 };
 use crate::body::{Body, Field, Identity};
-use crate::columns::Declaration;
+use crate::columns::{Declaration, On};
 use crate::error::BuildError;
 use crate::law::BondFactors;
 use crate::spec::{CrackKind, Cycles};
+use crate::state::Archive;
 
 /// A law on a family, made for one body.
 ///
@@ -327,11 +328,6 @@ pub trait Interaction<const D: usize>: Send + Sync {
         0
     }
 
-    /// Point field of the law at a slot; 0 where the law has none.
-    fn point_field(&self, _field: usize, _slot: usize) -> f64 {
-        0.0
-    }
-
     /// Is the pair bonded or repelled inside the family (so that contact outside must leave it alone)?
     fn in_family(&self, _body: &Body<D>, _i: usize, _j: usize) -> bool {
         false
@@ -358,6 +354,19 @@ pub trait Interaction<const D: usize>: Send + Sync {
         false
     }
 
+    /// Every directed bond of one of its columns of bonds, in the order in which [`read_column`](Interaction::read_column) gives their values: the slot of its
+    /// point, that of its partner (which an image is resolved to), and ξ. What has columns of bonds says it itself.
+    fn each_directed(
+        &self,
+        _body: &Body<D>,
+        name: &str,
+        _visit: &mut dyn FnMut(usize, usize, [f64; D]),
+    ) {
+        let columns = self.columns();
+        let known = columns.iter().any(|c| c.name == name && c.on == On::Bonds);
+        assert!(!known, "{name} is a column of bonds that nobody enumerates");
+    }
+
     /// Every directed bond that pulls or pushes at `u`, in order of slots, with the force density that its point gets from it: their
     /// sum is that of [`forces`](Interaction::forces) without breaking. Repulsion inside the family counts. Images of `u` must be
     /// fresh. False: the law has no forces of single bonds, and nothing is visited.
@@ -369,6 +378,9 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ) -> bool {
         false
     }
+
+    /// Passes what bonds and points remember through an archive; after reading, what follows from it is found anew.
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>);
 
     /// The memory of bonds, as it is laid out: bits of whole bonds and critical values of `e`.
     fn memory(&self) -> (&[u8], &[f64]) {

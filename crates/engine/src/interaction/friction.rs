@@ -11,14 +11,14 @@
 //! `u_j − u_i − ω × y`. So angular momentum is kept, what turns as one does not rub, and what rolls does not either. Between two points that
 //! are both alone there is no couple, and angular momentum is not kept.
 
-use super::BondTangent;
-use super::Interaction;
 use super::contact::{Contact, Touch};
 use super::coulomb::{Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped};
 use super::spin::Families;
+use super::{BondTangent, Evaluation, Interaction};
 use crate::body::{Body, Field, zeros};
 use crate::space::{cross, full};
 use crate::spec::FrictionSpec;
+use crate::state::{Archive, Owner, words};
 use std::iter::Peekable;
 use std::slice::Iter;
 
@@ -32,6 +32,8 @@ struct Spring<const D: usize> {
     /// ξ over what it would be if nothing slipped: 1 of what sticks.
     kept: f64,
 }
+
+words!([const D: usize] Spring<D> { ends: [u32; 2], way: [f64; D], depth: f64, kept: f64 });
 
 /// By what those that touch are pressed while an increment or an implicit step looks for its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,6 +76,36 @@ pub struct Friction<const D: usize> {
     found: u64,
     /// What springs hold (energy): `−work − energy` is dissipated.
     pub energy: f64,
+}
+
+impl<const D: usize> Owner for Friction<D> {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.columns("force", &mut self.force);
+        archive.list("before", &mut self.before);
+        archive.list("springs", &mut self.now);
+        archive.list("pressed", &mut self.pressed);
+        archive.one("work", &mut self.work);
+        archive.one("stored", &mut self.energy);
+        let slots = self.force[0].len();
+        let departure = || Departure {
+            u: zeros(slots),
+            force: zeros(slots),
+            pressed: Pressed::Now,
+        };
+        archive.option("departure", &mut self.from, departure, |from, archive| {
+            archive.columns("displacement", &mut from.u);
+            archive.columns("force", &mut from.force);
+            let mut held = from.pressed == Pressed::Held;
+            archive.one("held", &mut held);
+            from.pressed = if held { Pressed::Held } else { Pressed::Now };
+        });
+        if archive.loads() {
+            // found again with the pairs of the contact
+            self.touching.clear();
+            self.families = Families::default();
+            self.found = 0;
+        }
+    }
 }
 
 /// The spring of two, in a list that is gone through in order of the ends.
@@ -150,8 +182,7 @@ impl<const D: usize> Friction<D> {
         self.work = self.kept;
     }
 
-    /// Adds the force density at the displacements of the contact's last update to `f`. `v` is the velocity of the step's middle,
-    /// `dt` the step that ends, 0 at the start of a run and in statics and implicit steps, where the path is that from the beginning; `t` the time.
+    /// Adds the force density at time `t`, at the displacements of the contact's last update, to `f`.
     pub fn add(
         &mut self,
         contact: &Contact<D>,
@@ -159,10 +190,11 @@ impl<const D: usize> Friction<D> {
         body: &Body<D>,
         [u, v]: [&Field<D>; 2],
         f: &mut Field<D>,
-        [t, dt]: [f64; 2],
+        (t, at): (f64, Evaluation),
     ) {
         let law = Coefficients::new(&self.law, t);
-        if dt == 0.0 && self.from.is_none() {
+        let at = at.of(self.from.is_some());
+        if let Evaluation::Start { .. } = at {
             std::mem::swap(&mut self.before, &mut self.now);
         }
         self.now.clear();
@@ -181,6 +213,7 @@ impl<const D: usize> Friction<D> {
             self.touching.sort_unstable_by_key(|t| [t.i, t.j]);
         }
         self.find_families(contact, interaction, body);
+        let from = at.since(&self.from);
         // all in order of their ends
         let mut before = self.before.iter().peekable();
         let mut pressed = self.pressed.iter().peekable();
@@ -191,15 +224,15 @@ impl<const D: usize> Friction<D> {
             }
             let ends = [i as u32, j as u32];
             let before = find(&mut before, ends);
-            let depth = match &self.from {
+            let depth = match from {
                 Some(from) if from.pressed == Pressed::Held => {
                     find(&mut pressed, ends).map_or(0.0, |s| s.depth)
                 }
                 Some(_) | None => d - r,
             };
             let normal = y.map(|c| c / r);
-            let from = self.from.as_ref().map(|from| &from.u);
-            let together = self.families.together(body, [u, v], from, [i, j]);
+            let then = from.map(|from| &from.u);
+            let together = self.families.together(body, [u, v], then, [i, j]);
             // what both turn by together is no sliding
             let [turn, turned] = together.map_or([[0.0; D]; 2], |t| {
                 t.turns.map(|omega| {
@@ -212,16 +245,17 @@ impl<const D: usize> Friction<D> {
             let speeds = length(&turn) + length::<D>(&std::array::from_fn(|a| v[a][i]));
             let w = sliding(&normal, &relative, speeds);
             let most = law.at(length(&w)) * depth / TANGENTIAL;
-            let (way, kept) = match (&self.from, before) {
-                (None, before) if dt == 0.0 && before.is_none_or(|s| s.way == [0.0; D]) => {
-                    (begun(&w, most), 1.0)
-                }
-                (from, before) => {
-                    let path = match from {
-                        Some(Departure { u: from, .. }) => std::array::from_fn(|a| {
+            let sticks = before.is_some_and(|s| s.way != [0.0; D]);
+            let (way, kept) = match at {
+                Evaluation::Start { .. } if !sticks => (begun(&w, most), 1.0),
+                Evaluation::Start { .. }
+                | Evaluation::StepEnd { .. }
+                | Evaluation::Trial { .. } => {
+                    let path = match then {
+                        Some(from) => std::array::from_fn(|a| {
                             (u[a][j] - from[a][j]) - (u[a][i] - from[a][i]) - turned[a]
                         }),
-                        None => w.map(|c| dt * c),
+                        None => w.map(|c| at.ended() * c),
                     };
                     slipped(before.map_or(&[0.0; D], |s| &s.way), &normal, &path, most)
                 }
@@ -254,7 +288,9 @@ impl<const D: usize> Friction<D> {
                 *f += own;
             }
         }
-        self.half_path(body, v, dt);
+        if let Evaluation::StepEnd { dt } = at {
+            self.half_path(body, v, dt);
+        }
     }
 
     /// Finds the families of all that may touch before pairs are found anew, where one is missing.
@@ -296,9 +332,6 @@ impl<const D: usize> Friction<D> {
     }
 
     fn half_path(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
-        if dt == 0.0 {
-            return;
-        }
         for &s in &body.slots {
             let i = s as usize;
             let power: f64 = (0..D).map(|a| self.force[a][i] * v[a][i]).sum();

@@ -2,7 +2,9 @@
 
 use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, history};
 use crate::body::{Body, Field, zeros};
+use crate::columns::On;
 use crate::spec::CrackKind;
+use crate::state::Archive;
 
 /// No slot.
 const NONE: u32 = u32::MAX;
@@ -45,6 +47,12 @@ impl<const D: usize> Points<D> {
     }
 }
 
+/// Has an interaction a column of bonds of this name?
+pub fn has_bonds<const D: usize>(bonds: &dyn Interaction<D>, name: &str) -> bool {
+    let columns = bonds.columns();
+    columns.iter().any(|c| c.name == name && c.on == On::Bonds)
+}
+
 /// An interface and its own columns.
 pub struct Interface<const D: usize> {
     bonds: Box<dyn Interaction<D>>,
@@ -82,6 +90,11 @@ impl<const D: usize> Interface<D> {
                 whole,
             },
         }
+    }
+
+    /// [`archive`](Interaction::archive) of its bonds.
+    pub fn archive_bonds(&mut self, archive: &mut Archive<'_>) {
+        self.bonds.archive(&self.points.cloud, archive);
     }
 
     /// Critical values of `e` by slot of the body of all: NaN where it has no point, [`history::NEVER`] of bonds that never break.
@@ -187,6 +200,17 @@ impl<const D: usize> Interface<D> {
     /// Sets a column of its bonds, in the order in which they are read.
     pub fn write_bonds(&mut self, name: &str, values: &[f64]) -> bool {
         self.bonds.write_column(&self.points.cloud, name, values)
+    }
+
+    /// Of [`read_bonds`](Interface::read_bonds); nothing if there is no such column.
+    pub fn each_directed(&self, name: &str, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        let points = &self.points;
+        if has_bonds(self.bonds.as_ref(), name) {
+            self.bonds
+                .each_directed(&points.cloud, name, &mut |i, j, xi| {
+                    visit(points.whole(i), points.whole(j), xi);
+                });
+        }
     }
 
     pub fn each_bond(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

@@ -12,6 +12,7 @@ use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::{Links, Tile, Tiles};
 use crate::law::BondFactors;
+use crate::state::Archive;
 
 /// Micromoduli on a lattice.
 pub struct LinearInteraction<const D: usize> {
@@ -290,6 +291,9 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
         self.links.family_size(body, slot)
     }
+
+    /// Nothing is remembered.
+    fn archive(&mut self, _: &Body<D>, _: &mut Archive<'_>) {}
 
     fn bytes(&self) -> usize {
         self.links.bytes()

@@ -23,6 +23,7 @@ use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
 use crate::law::Law;
 use crate::spec::CrackKind;
+use crate::state::Archive;
 pub use assemble::ListParts;
 use images::Images;
 use kernel::{Energies, Forces, Pack, Share, View};
@@ -319,10 +320,6 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.list.near_horizon
     }
 
-    fn point_field(&self, field: usize, slot: usize) -> f64 {
-        self.fields.get(2 * slot + field).copied().unwrap_or(0.0)
-    }
-
     fn in_family(&self, _: &Body<D>, i: usize, j: usize) -> bool {
         self.list.partners(self.list.row(i)).any(|(_, k)| k == j)
     }
@@ -337,6 +334,22 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
 
     fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
         self.write_named(body, name, values)
+    }
+
+    fn archive(&mut self, _: &Body<D>, archive: &mut Archive<'_>) {
+        archive.all("whole", &mut self.alive);
+        archive.all("critical", &mut self.critical);
+        if archive.loads() {
+            // kernels follow every bit
+            let there = self.list.present.iter();
+            self.alive.iter_mut().zip(there).for_each(|(a, t)| *a &= t);
+            self.spares = self.critical.contains(&history::NEVER);
+        }
+    }
+
+    fn each_directed(&self, _: &Body<D>, _: &str, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        let view = self.view(&self.moved);
+        self.each_line(|_, _, [i, j]| visit(i, j, view.constant(i, j).0));
     }
 
     fn memory(&self) -> (&[u8], &[f64]) {

@@ -6,6 +6,7 @@ use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
 use crate::spec::LinearBody;
+use crate::state::Archive;
 
 /// Rows per block of work.
 const BLOCK: usize = 256;
@@ -262,6 +263,9 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         let row = self.row[slot] as usize;
         self.start[row + 1] - self.start[row]
     }
+
+    /// Nothing is remembered.
+    fn archive(&mut self, _: &Body<D>, _: &mut Archive<'_>) {}
 
     fn bytes(&self) -> usize {
         4 * (self.slots.len() + self.row.len() + self.partner.len())

@@ -4,7 +4,7 @@
 
 mod columns;
 
-use super::interface::Interface;
+use super::interface::{Interface, has_bonds};
 use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, history};
 use crate::body::several::Piece;
 use crate::body::{Body, Field, Identity, Layout, zeros};
@@ -12,6 +12,7 @@ use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::law::BondFactors;
 use crate::spec::CrackKind;
+use crate::state::Archive;
 
 /// One body's bonds and its own columns.
 struct Own<const D: usize> {
@@ -332,6 +333,22 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.write_named(body, name, values)
     }
 
+    fn each_directed(
+        &self,
+        body: &Body<D>,
+        name: &str,
+        visit: &mut dyn FnMut(usize, usize, [f64; D]),
+    ) {
+        for (p, bonds) in self.each(body).filter(|(_, bonds)| has_bonds(*bonds, name)) {
+            bonds.each_directed(&p.body, name, &mut |i, j, xi| {
+                visit(i + p.first, j + p.first, xi);
+            });
+        }
+        for interface in &self.interfaces {
+            interface.each_directed(name, visit);
+        }
+    }
+
     fn gain(&self, slot: usize) -> f64 {
         self.at(slot, |bonds, _, s| bonds.gain(s)).unwrap_or(0.0)
     }
@@ -469,11 +486,6 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         all.map(|b| b.near_horizon()).sum()
     }
 
-    fn point_field(&self, field: usize, slot: usize) -> f64 {
-        self.at(slot, |bonds, _, s| bonds.point_field(field, s))
-            .unwrap_or(0.0)
-    }
-
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
         let ((n, i), (m, j)) = (self.place(i), self.place(j));
         let bonds = self.own[n].bonds.as_deref();
@@ -482,6 +494,17 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
 
     fn memory(&self) -> (&[u8], &[f64]) {
         (&[], &[])
+    }
+
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            archive.given("body", &mut own.bonds, |bonds, archive| {
+                bonds.archive(&p.body, archive);
+            });
+        }
+        for interface in &mut self.interfaces {
+            archive.within("interface", |archive| interface.archive_bonds(archive));
+        }
     }
 
     fn bytes(&self) -> usize {

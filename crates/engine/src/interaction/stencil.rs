@@ -24,6 +24,7 @@ use crate::family::offsets::OffsetSet;
 use crate::law::BondFactors;
 use crate::law::Law;
 use crate::spec::CrackKind;
+use crate::state::Archive;
 pub use assemble::StencilParts;
 pub use kernel::MOST;
 use kernel::{Bond, Energies, Forces, Partner, Remember, Share, View};
@@ -340,10 +341,6 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             .map_or(0, |f| *f as usize)
     }
 
-    fn point_field(&self, field: usize, slot: usize) -> f64 {
-        self.fields[field].get(slot).copied().unwrap_or(0.0)
-    }
-
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
         let grid = body.grid();
         let ((ci, bi), (cj, bj)) = (grid.cell(i), grid.cell(j));
@@ -361,6 +358,19 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
 
     fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
         self.write_named(body, name, values)
+    }
+
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        self.archive_memory(body, archive);
+    }
+
+    fn each_directed(
+        &self,
+        body: &Body<D>,
+        _: &str,
+        visit: &mut dyn FnMut(usize, usize, [f64; D]),
+    ) {
+        self.each_end(body, visit);
     }
 
     fn memory(&self) -> (&[u8], &[f64]) {

@@ -3,6 +3,7 @@
 use crate::body::Field;
 use crate::execute::lane::Lane;
 use crate::spec::Release;
+use crate::state::words;
 use std::ops::AddAssign;
 
 /// May bonds break in this sweep?
@@ -66,6 +67,8 @@ pub struct Released {
     /// What others have more: not below 0.
     pub made: f64,
 }
+
+words!([] Released { lost: f64, made: f64 });
 
 impl Released {
     /// The same of bonds that may be on their own: these hold no less than nothing, and what half a step seems to make is its error.

@@ -1,5 +1,7 @@
 //! Energies over time.
 
+use crate::state::words;
+
 /// Energies (energy; volume-weighted sums) whose balance
 /// `kinetic + strain + contact + released − made + dissipated + numerical − work = const` closes up to the error of the time step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -24,6 +26,19 @@ pub struct Ledger {
     /// Energy at the start.
     pub initial: f64,
 }
+
+words!([] Ledger {
+    kinetic: f64,
+    strain: f64,
+    contact: f64,
+    released: f64,
+    made: f64,
+    dissipated: f64,
+    numerical: f64,
+    work_conditions: f64,
+    work_indenter: f64,
+    initial: f64,
+});
 
 impl Ledger {
     /// All that the body has and has given away, whatever it came from.

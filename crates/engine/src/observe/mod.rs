@@ -9,6 +9,7 @@ pub mod observables;
 mod probe;
 mod snapshot;
 mod state;
+pub(crate) mod state_hash;
 mod values;
 
 pub use ledger::Ledger;
@@ -17,4 +18,5 @@ pub use observables::temperature_of;
 pub use probe::ProbeColumn;
 pub use snapshot::Snapshot;
 pub use state::{FamilyBond, Observed, PointForce, State};
+pub use state_hash::StateHash;
 pub use values::{Column, Values};

@@ -65,6 +65,21 @@ impl Values {
         }
     }
 
+    /// Numbers as laws store them in `d` dimensions, as [`unpacked`](Values::unpacked) takes them.
+    pub fn packed(&self, shape: Shape, d: usize) -> Vec<f64> {
+        let axes = &b"xyz"[..d];
+        let there = |name: &&str| name.bytes().all(|axis| axes.contains(&axis));
+        let names = shape.components().iter().enumerate();
+        let kept: Vec<usize> = match shape {
+            Shape::Scalar => vec![0],
+            Shape::Vector | Shape::Symmetric | Shape::Tensor => {
+                names.filter(|(_, n)| there(n)).map(|(c, _)| c).collect()
+            }
+        };
+        let each = (0..self.len()).flat_map(|i| kept.iter().map(move |c| self.at(i, *c)));
+        each.collect()
+    }
+
     /// From numbers as laws store them, [`Shape::stored`] for each value in `d` dimensions.
     pub fn unpacked(shape: Shape, d: usize, stored: &[f64]) -> Values {
         let rows = stored.chunks_exact(shape.stored(d));
@@ -118,6 +133,23 @@ impl Column {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_laws_store_comes_back() {
+        for d in 1..=3 {
+            for shape in [
+                Shape::Scalar,
+                Shape::Vector,
+                Shape::Symmetric,
+                Shape::Tensor,
+            ] {
+                let count = 2 * shape.stored(d);
+                let stored: Vec<f64> = (0..count).map(|n| n as f64 - 0.5).collect();
+                let values = Values::unpacked(shape, d, &stored);
+                assert_eq!(values.packed(shape, d), stored, "{shape:?} {d}");
+            }
+        }
+    }
 
     #[test]
     fn components_stand_where_their_names_are() {

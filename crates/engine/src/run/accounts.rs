@@ -1,5 +1,7 @@
 //! The accounts of a model: energies now, and whether they still add up.
 
+pub(super) mod state;
+
 use super::constitutive::Laws;
 use super::model::Model;
 use crate::condition::driven::Driven;
@@ -16,20 +18,13 @@ impl<const D: usize> Model<D> {
             false => self.interaction.energy(&self.body, &self.u),
         };
         if let Some(pairs) = &mut self.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-            contact += pairs.energy(body, &self.u);
+            pairs.find(&self.body, &self.u, self.interaction.as_ref());
+            contact += pairs.central.energy(&self.body, &self.u);
         }
         let mut ledger = Ledger {
             strain,
             contact,
-            released: self.released.lost,
-            made: self.released.made,
-            dissipated: self.past_work[0],
-            numerical: self.numerical,
-            work_conditions: self.past_work[1],
-            work_indenter: self.past_work[2],
-            ..Ledger::default()
+            ..self.accounts.ledger()
         };
         for &s in &self.body.slots {
             let i = s as usize;
@@ -40,26 +35,25 @@ impl<const D: usize> Model<D> {
         if let Some(kinetic) = self.coupled_kinetic() {
             ledger.kinetic = kinetic;
         }
-        for load in &self.loads {
+        for load in &self.applied.loads {
             if load.is_damping() {
                 ledger.dissipated -= load.work
             } else {
                 ledger.work_conditions += load.work
             }
         }
-        if let Some(friction) = &self.friction {
+        if let Some(friction) = self.contact.as_ref().and_then(|c| c.friction.as_ref()) {
             ledger.contact += friction.energy;
             ledger.dissipated -= friction.work + friction.energy;
         }
-        ledger.work_conditions += self.constraints.iter().map(|c| c.work).sum::<f64>();
-        ledger.work_indenter += self.indenters.iter().map(|i| i.work).sum::<f64>();
-        for d in &self.driven {
+        ledger.work_conditions += self.prescribed.work();
+        ledger.work_indenter += self.applied.rigid.iter().map(|i| i.work).sum::<f64>();
+        for d in &self.applied.driven {
             match d {
                 Driven::Indenter(i) => ledger.work_indenter += i.work,
                 Driven::Load(l) => ledger.work_conditions += l.work,
             }
         }
-        ledger.initial = self.initial_energy.unwrap_or(0.0);
         ledger
     }
 
@@ -71,7 +65,7 @@ impl<const D: usize> Model<D> {
         let ledger = self.energy_now();
         if let Some((i, j)) = self.crossed_chain() {
             return Err(RunError::Crossing {
-                step: self.step,
+                step: self.clock.step(),
                 i,
                 j,
             });
@@ -79,20 +73,21 @@ impl<const D: usize> Model<D> {
         let before =
             ledger.initial.abs() + ledger.work_conditions.abs() + ledger.work_indenter.abs();
         let after = ledger.held() - self.last_kick();
-        if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.step > self.origin.0 {
+        if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.clock.has_gone_on() {
             if self.statics.is_some() {
                 return Err(RunError::Unbalanced {
-                    step: self.step,
+                    step: self.clock.step(),
                     before,
                     after,
                 });
             }
             return Err(RunError::Unstable {
-                step: self.step,
+                step: self.clock.step(),
                 before,
                 after,
-                time_step: self.dt,
-                contact: (ledger.contact > ledger.strain || self.dt > self.info.contact_step)
+                time_step: self.clock.dt(),
+                contact: (ledger.contact > ledger.strain
+                    || self.clock.dt() > self.info.contact_step)
                     .then_some(self.info.contact_step),
             });
         }
@@ -115,7 +110,7 @@ impl<const D: usize> Model<D> {
             for a in 0..D {
                 let v = self.v[a][i];
                 now += v * v;
-                before += (v - 0.5 * self.dt / rho * f[a][i]).powi(2);
+                before += (v - 0.5 * self.clock.dt() / rho * f[a][i]).powi(2);
             }
             energy += 0.5 * rho * volume * f64::max(now - before, 0.0);
         }
@@ -124,9 +119,9 @@ impl<const D: usize> Model<D> {
 
     /// Which point the pass refused, and why: one that is nowhere, else the one that went furthest.
     pub(super) fn refused(&self, limit: f64) -> RunError {
-        let step = self.step + 1;
+        let step = self.clock.step() + 1;
         let path = |i: usize| {
-            let square = (0..D).map(|a| (self.dt * self.v[a][i]).powi(2));
+            let square = (0..D).map(|a| (self.clock.dt() * self.v[a][i]).powi(2));
             square.sum::<f64>().sqrt()
         };
         // what is not a number is furthest
@@ -164,14 +159,17 @@ impl<const D: usize> Model<D> {
         let mut seen = PointEnergies::default();
         self.interaction.observe(&self.body, &self.u, &mut seen);
         if let Some(contact) = &self.contact {
-            contact.add_energy_density(&self.body, &self.u, &mut seen.repulsion);
+            let repulsion = &mut seen.repulsion;
+            contact
+                .central
+                .add_energy_density(&self.body, &self.u, repulsion);
         }
         seen.repulsion[slot] > seen.strain[slot]
     }
 
     /// A fault of the last forces, with point ids.
     pub(super) fn explained(&self, fault: Fault) -> RunError {
-        let step = self.step;
+        let step = self.clock.step();
         match fault {
             Fault::Crossing { i, j } => RunError::Crossing {
                 step,

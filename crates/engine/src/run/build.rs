@@ -1,7 +1,9 @@
 //! From a specification to a model: the only place that matches on dimension, law and family.
 
+use super::accounts::state::Accounts;
 use super::atoms;
 use super::bind::{bind, names};
+use super::clock::Clock;
 use super::clouds::{own_densities, own_velocities};
 use super::constitutive::{Shelf, breaks, criteria, directed};
 use super::equilibrium::state::StaticState;
@@ -20,14 +22,14 @@ use super::{Info, Simulation, Steered};
 use super::{bonds, indenters, own_horizons, precracks, surface, transfers};
 use super::{contact, gaps, meant};
 use crate::body::{Values, zeros};
-use crate::condition::carried::Carried;
-use crate::condition::still::Still;
+use crate::condition::applied::AppliedForces;
+use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::nodes::Nodes;
-use crate::interaction::Interaction;
 use crate::interaction::atoms::smoothed::Smoothed;
+use crate::interaction::{ContactForces, Interaction};
 use crate::message;
 use crate::quantity::{Dimension, Warnings, rounded};
 use crate::spec::{BodySpec, Control, FamilyChoice, Horizon, LawSpec, Spec, Stepper, TimeStep};
@@ -320,11 +322,17 @@ pub fn build_in<const D: usize>(
         u,
         verlet: Verlet::new(simd, &body),
         inertia,
-        contact: repulsion.map(|r| {
-            let pairs = constitutive.first().pairs.as_ref();
-            r.contact(&parts, &body, pairs.map_or(least_horizon, |p| p.shortest()))
-        }),
-        friction: contact::friction(spec, &body)?,
+        contact: match repulsion {
+            None => None,
+            Some(r) => {
+                let pairs = constitutive.first().pairs.as_ref();
+                let horizon = pairs.map_or(least_horizon, |p| p.shortest());
+                Some(ContactForces {
+                    central: r.contact(&parts, &body, horizon),
+                    friction: contact::friction(spec, &body)?,
+                })
+            }
+        },
         toughness: None,
         healing: None,
         boltzmann: spec.boltzmann,
@@ -334,11 +342,8 @@ pub fn build_in<const D: usize>(
         shelf: shelf.clone(),
         interaction,
         body,
-        loads: vec![],
-        constraints: vec![],
-        driven: vec![],
-        still: Still::new(vec![]),
-        carried: Carried::default(),
+        prescribed: PrescribedMotion::default(),
+        applied: AppliedForces::default(),
         fastest: 0.0,
         watch: false,
         watched: None,
@@ -346,28 +351,19 @@ pub fn build_in<const D: usize>(
         virial: None,
         watch_virials: false,
         virials: None,
-        indenters: vec![],
         probes: vec![],
         sets,
         faces: Faces::new(spec)?,
         carriers,
         carrier_sets,
-        dt,
-        step: 0,
-        origin: (0, 0.0),
+        clock: Clock::new(dt),
         fraction: match spec.schedule.time_step {
             TimeStep::Fixed(_) => None,
             TimeStep::Fraction(_) | TimeStep::Auto => Some(dt / limits.bond).filter(|x| *x > 0.0),
         },
-        part: None,
         pending: false,
         stale: false,
-        broken: 0,
-        cycles: 0.0,
-        released: crate::interaction::Released::default(),
-        past_work: [0.0; 3],
-        numerical: 0.0,
-        initial_energy: None,
+        accounts: Accounts::default(),
         fault: None,
         statics: None,
         preload: None,
@@ -384,8 +380,9 @@ pub fn build_in<const D: usize>(
     }
     initial(spec, &mut model)?;
     if let (TimeStep::Auto, Some(potentials)) = (spec.schedule.time_step, &potentials) {
-        model.dt = model.dt.min(model.step_of_speeds(potentials)?);
-        model.info.time_step = model.dt;
+        let dt = dt.min(model.step_of_speeds(potentials)?);
+        model.clock = Clock::new(dt);
+        model.info.time_step = dt;
     }
     model.make_transfers(spec)?;
     if spec.schedule.stepper == Stepper::Still {
@@ -405,7 +402,7 @@ pub fn build_in<const D: usize>(
     };
     let end = steps as f64 * dt;
     model.check_agreement(&spec.conditions, end)?;
-    let told = Model::tell_loads(&model.body, &mut model.loads, &spec.conditions, end);
+    let told = Model::tell_loads(&model.body, &mut model.applied.loads, &spec.conditions, end);
     model.info.loads.extend(told);
     let torn = model.torn(end);
     model.info.warnings.extend(torn);

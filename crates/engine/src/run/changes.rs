@@ -52,7 +52,7 @@ impl<const D: usize> Model<D> {
                 .iter()
                 .any(|p| (0..D).map(|a| (x[a] - p[a]).powi(2)).sum::<f64>() < near)
         };
-        self.broken += self
+        self.accounts.broken += self
             .interaction
             .cut(&self.body, CrackKind::Broken, &|from, to| {
                 is_gone(from) || is_gone(to)
@@ -90,18 +90,14 @@ impl<const D: usize> Model<D> {
         }
         self.body.slots.retain(|s| keep(*s));
         self.info.points = self.body.slots.len() as u64;
-        self.still.retain(keep);
-        self.carried.retain(keep);
-        for d in &mut self.driven {
-            d.retain(keep);
-        }
+        self.prescribed.all_mut().for_each(|p| p.retain(&keep));
+        self.applied.all().for_each(|x| x.retain(&keep));
         self.watched = None;
         self.virial = None;
         self.virials = None;
         self.refresh_images();
         self.look_again();
         // what they carried is no longer asked for
-        let now = self.energy_now();
-        self.initial_energy = Some(now.base());
+        self.accounts.initial = Some(self.energy_now().base());
     }
 }

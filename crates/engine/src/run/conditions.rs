@@ -4,14 +4,16 @@ use super::LoadInfo;
 use super::model::Model;
 use crate::body::Body;
 use crate::condition::Program;
+use crate::condition::applied::AppliedForces;
 use crate::condition::condensed::Condensed;
-use crate::condition::constraint::{Constraint, Prescribed};
+use crate::condition::constraint::{Constraint, Kind};
+use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::BuildError;
 use crate::expression::Expression;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::spec::{Carriers, ConditionKind, ConditionSpec};
+use crate::spec::{Carriers, ConditionKind, ConditionSpec, IndenterSpec};
 use std::collections::HashMap;
 
 /// Times up to the end at which a load is looked at.
@@ -102,12 +104,13 @@ impl<const D: usize> Model<D> {
         Ok(load)
     }
 
-    /// Loads in the order in which they act, and constraints.
-    pub(super) fn loads_and_constraints(
+    /// All that acts, and constraints.
+    pub(super) fn acting(
         &self,
         conditions: &[ConditionSpec],
+        rigid: &[IndenterSpec],
         sets: &[(String, Vec<u32>)],
-    ) -> Result<(Vec<Load<D>>, Vec<Constraint<D>>), BuildError> {
+    ) -> Result<(AppliedForces<D>, Vec<Constraint<D>>), BuildError> {
         let (mut loads, mut constraints) = (vec![], vec![]);
         for (n, c) in conditions.iter().enumerate() {
             let (slots, points) = self
@@ -160,27 +163,23 @@ impl<const D: usize> Model<D> {
                     loads.push(made);
                 }
                 ConditionKind::Displacement(e) => constraints.push(Constraint::new(
-                    Prescribed::Displacement,
+                    Kind::Displacement,
                     Program::new(e, &points),
                     slots,
                     points,
                 )),
                 ConditionKind::Velocity(e) => constraints.push(Constraint::new(
-                    Prescribed::Velocity,
+                    Kind::Velocity,
                     Program::new(e, &points),
                     slots,
                     points,
                 )),
             }
         }
-        // damping looks at what was added, and a replaced force is replaced whatever else there is
-        loads.sort_by_key(|l: &Load<D>| match l.kind {
-            LoadKind::Body(_) | LoadKind::Own(_) => 0,
-            LoadKind::Damping(_) | LoadKind::Drag(_) => 1,
-            LoadKind::Replace(_) => 2,
-        });
-        Ok((loads, constraints))
+        let rigid = rigid.iter().map(Indenter::new).collect();
+        Ok((AppliedForces::new(rigid, loads), constraints))
     }
+
     /// What loads come to in all, each at the time up to `end` at which it is largest.
     pub(super) fn tell_loads(
         body: &Body<D>,
@@ -235,42 +234,41 @@ impl<const D: usize> Model<D> {
         let times = [0.0, 0.25, 0.5, 1.0].map(|part| part * end);
         // who holds a component of a slot: constraint, and place in its list
         let mut holders: HashMap<(usize, usize), (usize, usize)> = HashMap::new();
-        for (c, constraint) in self.constraints.iter().enumerate() {
-            for (k, (slot, held)) in constraint.holds().enumerate() {
-                for a in (0..D).filter(|a| held[*a]) {
-                    let Some(&(other, j)) = holders.get(&(slot, a)) else {
-                        holders.insert((slot, a), (c, k));
-                        continue;
-                    };
-                    let other_constraint = &self.constraints[other];
-                    let both = other_constraint.disagree(constraint, (a, j, k), &times, self.dt);
-                    if let Some([first, second]) = both {
-                        let (n, m) = (number[other], number[c]);
-                        let x = self.body.position(slot);
-                        let axis = ["x", "y", "z"][a];
-                        let dimension = match (&conditions[n].kind, &conditions[m].kind) {
-                            (ConditionKind::Displacement(_), ConditionKind::Displacement(_)) => {
-                                Dimension::LENGTH
-                            }
-                            // where one is a velocity both are told as such
-                            _ => Dimension::VELOCITY,
-                        };
-                        let message = message![
-                            format!(
-                                "two conditions, on `{}` and on `{}`, ask different motions of the point at ",
-                                conditions[n].set, conditions[m].set
-                            ),
-                            place(&x[..D]),
-                            format!(" along {axis}: "),
-                            dimension.of(first),
-                            " and ",
-                            dimension.of(second),
-                        ];
-                        return Err(BuildError::conflict(format!("conditions[{m}]"), message).help(
-                            "make their sets disjoint, or leave this component out of one of them",
-                        ));
+        let constraints = &self.prescribed.constraints;
+        for (c, constraint) in constraints.iter().enumerate() {
+            for (k, slot, a) in constraint.each() {
+                let Some(&(other, j)) = holders.get(&(slot, a)) else {
+                    holders.insert((slot, a), (c, k));
+                    continue;
+                };
+                let first = &constraints[other];
+                let both = first.disagree(constraint, (a, j, k), &times, self.clock.dt());
+                let Some([first, second]) = both else {
+                    continue;
+                };
+                let (n, m) = (number[other], number[c]);
+                let x = self.body.position(slot);
+                let axis = ["x", "y", "z"][a];
+                let dimension = match (&conditions[n].kind, &conditions[m].kind) {
+                    (ConditionKind::Displacement(_), ConditionKind::Displacement(_)) => {
+                        Dimension::LENGTH
                     }
-                }
+                    // where one is a velocity both are told as such
+                    _ => Dimension::VELOCITY,
+                };
+                let message = message![
+                    format!(
+                        "two conditions, on `{}` and on `{}`, ask different motions of the point at ",
+                        conditions[n].set, conditions[m].set
+                    ),
+                    place(&x[..D]),
+                    format!(" along {axis}: "),
+                    dimension.of(first),
+                    " and ",
+                    dimension.of(second),
+                ];
+                return Err(BuildError::conflict(format!("conditions[{m}]"), message)
+                    .help("make their sets disjoint, or leave this component out of one of them"));
             }
         }
         Ok(())

@@ -39,9 +39,11 @@ impl<const D: usize> Examined for Model<D> {
         self.refresh_images();
         let mut out = self.seen_now();
         if let Some(pairs) = &mut self.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-            pairs.add_energy_density(body, &self.u, &mut out.repulsion);
+            pairs.find(&self.body, &self.u, self.interaction.as_ref());
+            let repulsion = &mut out.repulsion;
+            pairs
+                .central
+                .add_energy_density(&self.body, &self.u, repulsion);
         }
         self.observed_of(&out)
     }

@@ -13,12 +13,8 @@ impl<const D: usize> Model<D> {
         if self.contact.is_some() {
             return Err(self.unsolved(SolveError::Contact));
         }
-        let conditions = (
-            std::mem::take(&mut self.loads),
-            std::mem::take(&mut self.constraints),
-            std::mem::take(&mut self.indenters),
-            std::mem::take(&mut self.driven),
-        );
+        let forces = std::mem::take(&mut self.applied);
+        let prescribed = std::mem::take(&mut self.prescribed);
         self.refresh_images();
         let before = self.u.clone();
         let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
@@ -37,7 +33,7 @@ impl<const D: usize> Model<D> {
             self.u = before;
             self.refresh_images();
         }
-        (self.loads, self.constraints, self.indenters, self.driven) = conditions;
+        (self.applied, self.prescribed) = (forces, prescribed);
         solved.map_err(|error| self.unsolved(error))
     }
 }

@@ -126,7 +126,7 @@ impl<const D: usize> Model<D> {
         let [before, _] = self.interaction.energy(body, u);
         self.interaction.mend(body, u, &heals);
         let [after, _] = self.interaction.energy(body, u);
-        self.released.lost -= after - before;
+        self.accounts.released.lost -= after - before;
         // they conduct again
         self.break_transfers();
     }

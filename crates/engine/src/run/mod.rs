@@ -1,6 +1,7 @@
 //! From a specification to a running model.
 
 mod accounts;
+mod archive;
 mod atoms;
 mod bind;
 mod bonded;
@@ -8,6 +9,7 @@ mod bonds;
 mod build;
 mod calibration;
 mod changes;
+mod clock;
 mod clouds;
 mod conditions;
 mod constitutive;
@@ -36,6 +38,7 @@ mod probes;
 mod record;
 mod reference;
 mod sets;
+mod state_hash;
 mod steered;
 mod surface;
 mod time_step;
@@ -55,10 +58,13 @@ use crate::condition::carried::Motion;
 use crate::condition::driven::Drive;
 use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
-use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, Values};
+use crate::observe::{
+    Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, StateHash, Values,
+};
 use crate::quantity::Warnings;
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, Influence, Quantity, Stepper};
+use crate::state::Owner;
 use crate::statics::Solved;
 use crate::transfer::TransferAccount;
 
@@ -193,7 +199,10 @@ pub struct Wall {
 }
 
 /// A running model of any dimension, law and family. All arrays are in order of point id.
-pub trait Simulation: Steered + Examined + Send {
+///
+/// It [owns](Owner) its state: a model of the same specification that reads what this one wrote goes on as this one, bit for bit, and is not
+/// [started](Simulation::start).
+pub trait Simulation: Steered + Examined + Owner + Send {
     fn info(&self) -> &Info;
     /// Forces at the current state. Call once before the first step, and after changing the state from outside.
     /// `bonds = false` leaves the bonds out, as LAMMPS does in the first set-up of a run.
@@ -216,6 +225,8 @@ pub trait Simulation: Steered + Examined + Send {
     fn column(&mut self, name: &str) -> Option<Column>;
     /// Displacements and these columns, of what exists; unbroken bonds if asked for. Nothing else is computed.
     fn snapshot(&mut self, fields: &[&str], bonds: bool) -> Snapshot;
+    /// What the model is now, in two numbers: for a look whether two runs went the same way.
+    fn state_hash(&mut self) -> StateHash;
     /// Sets a persistent column of the law, or of what spreads, to numbers as [`Simulation::column`] gives them, those of the dimension's components
     /// only. False: there is no such column of the law, it follows from others, or the number of values is another.
     fn set_column(&mut self, name: &str, values: &[f64]) -> bool;

@@ -1,5 +1,7 @@
 //! The running model: its state, and what may be asked of it.
 
+use super::accounts::state::Accounts;
+use super::clock::Clock;
 use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
 use super::faces::Faces;
@@ -12,44 +14,26 @@ use super::transfers::state::Transfers;
 use super::{Info, Simulation};
 use crate::body::{Body, Field};
 use crate::columns::Declaration;
-use crate::condition::carried::Carried;
-use crate::condition::constraint::Constraint;
-use crate::condition::driven::Driven;
-use crate::condition::indenter::Indenter;
-use crate::condition::load::Load;
-use crate::condition::still::Still;
+use crate::condition::applied::AppliedForces;
+use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::condition::toughness::ToughnessField;
 use crate::dynamics::verlet::Verlet;
 use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
-use crate::interaction::contact::Contact;
-use crate::interaction::friction::Friction;
-use crate::interaction::{Fault, Interaction, PointEnergies, Released};
-use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot};
+use crate::interaction::{ContactForces, Fault, Interaction, PointEnergies};
+use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot, StateHash};
 use crate::space::Point;
 use crate::spec::{Carriers, Quantity, Release};
 use crate::statics::Solved;
 use crate::transfer::{Transfer, TransferAccount};
-
-/// Where a step in parts is.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct StepPart {
-    /// Time at the start of the step.
-    pub begin: f64,
-    /// Length of a part (time), and how many are done.
-    pub length: f64,
-    pub done: u32,
-}
 
 /// A model in D dimensions.
 pub struct Model<const D: usize> {
     pub(super) info: Info,
     pub(super) body: Body<D>,
     pub(super) interaction: Box<dyn Interaction<D>>,
-    /// Repulsion between points that are not in each other's family.
-    pub(super) contact: Option<Contact<D>>,
-    /// Of the same points.
-    pub(super) friction: Option<Friction<D>>,
+    /// Between points that are not in each other's family.
+    pub(super) contact: Option<ContactForces<D>>,
     /// `None`: that of the materials.
     pub(super) toughness: Option<ToughnessField>,
     /// `None`: what is broken stays so.
@@ -60,12 +44,8 @@ pub struct Model<const D: usize> {
     pub(super) verlet: Verlet,
     /// Where masses couple points.
     pub(super) inertia: Option<Inertia<D>>,
-    pub(super) loads: Vec<Load<D>>,
-    pub(super) constraints: Vec<Constraint<D>>,
-    pub(super) indenters: Vec<Indenter<D>>,
-    pub(super) driven: Vec<Driven<D>>,
-    pub(super) still: Still<D>,
-    pub(super) carried: Carried,
+    pub(super) prescribed: PrescribedMotion<D>,
+    pub(super) applied: AppliedForces<D>,
     /// Bound on the path of any point in the last drift (length).
     pub(super) fastest: f64,
     /// Shall the next force evaluation be watched, and what the last watched one saw.
@@ -91,14 +71,9 @@ pub struct Model<const D: usize> {
     pub(super) carrier_sets: Vec<(String, Vec<u32>)>,
     /// On what area loads act.
     pub(super) faces: Faces,
-    pub(super) dt: f64,
-    pub(super) step: u64,
-    /// Step and time from which time is counted in whole steps.
-    pub(super) origin: (u64, f64),
+    pub(super) clock: Clock,
     /// Part of its stable step at which a body runs whose bonds become stiffer as they become shorter; `None`: its step stays as it is.
     pub(super) fraction: Option<f64>,
-    /// Within a step that is done in parts.
-    pub(super) part: Option<StepPart>,
     /// Does `v` wait for the last half kick?
     pub(super) pending: bool,
     /// Were columns written since the forces were found?
@@ -107,15 +82,7 @@ pub struct Model<const D: usize> {
     pub(super) release: Release,
     /// Has somebody had enough of a search for an equilibrium?
     pub(super) stop: fn() -> bool,
-    pub(super) broken: u64,
-    /// Cycles of load so far, where increments are these.
-    pub(super) cycles: f64,
-    pub(super) released: Released,
-    /// Work of conditions that were replaced since.
-    pub(super) past_work: [f64; 3],
-    /// Taken by the implicit method (energy).
-    pub(super) numerical: f64,
-    pub(super) initial_energy: Option<f64>,
+    pub(super) accounts: Accounts,
     /// The last forces mean nothing.
     pub(super) fault: Option<Fault>,
     /// Steps are increments of load.
@@ -137,8 +104,7 @@ impl<const D: usize> Model<D> {
     pub(super) fn bytes(&self) -> usize {
         self.body.bytes()
             + self.interaction.bytes()
-            + self.contact.as_ref().map_or(0, Contact::bytes)
-            + self.friction.as_ref().map_or(0, Friction::bytes)
+            + self.contact.as_ref().map_or(0, ContactForces::bytes)
             + self.inertia.as_ref().map_or(0, |i| i.masses.bytes())
             + 3 * D * 8 * self.body.len
             + self
@@ -222,7 +188,7 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn step(&mut self) -> Result<(), RunError> {
-        if self.is_loaded() {
+        if self.clock.is_loaded() {
             self.set_in_motion()?;
         }
         self.refresh();
@@ -243,18 +209,15 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn step_number(&self) -> u64 {
-        self.step
+        self.clock.step()
     }
 
     fn time(&self) -> f64 {
-        match &self.part {
-            Some(part) => part.begin + f64::from(part.done) * part.length,
-            None => self.origin.1 + (self.step - self.origin.0) as f64 * self.dt,
-        }
+        self.clock.time()
     }
 
     fn clock(&self) -> f64 {
-        self.shown_time()
+        self.clock.shown()
     }
 
     fn ledger(&mut self) -> Result<Ledger, RunError> {
@@ -267,6 +230,10 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn column(&mut self, name: &str) -> Option<Column> {
         self.columns_of([name].into_iter()).pop()
+    }
+
+    fn state_hash(&mut self) -> StateHash {
+        self.hashed()
     }
 
     fn set_column(&mut self, name: &str, values: &[f64]) -> bool {
@@ -286,7 +253,7 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn broken(&self) -> u64 {
-        self.broken
+        self.accounts.broken
     }
 
     fn fragments(&self) -> u64 {
@@ -316,7 +283,7 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn indenters(&self) -> Vec<Point> {
-        self.indenters.iter().map(|i| i.rigid.center).collect()
+        self.applied.rigid.iter().map(|i| i.rigid.center).collect()
     }
 
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {
@@ -325,7 +292,7 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn cycles(&self) -> Option<f64> {
         let options = self.statics.as_ref().map(|s| s.options);
-        options.and_then(|o| o.cycles).map(|_| self.cycles)
+        options.and_then(|o| o.cycles).map(|_| self.accounts.cycles)
     }
 
     fn solved(&self) -> Option<Solved> {

@@ -1,12 +1,9 @@
 //! Motion: forces of everything that acts, steps, and the way back from a step that failed.
 
-use super::Simulation;
 use super::constitutive::{ConstitutiveModel, Laws};
-use super::model::{Model, StepPart};
-use crate::condition::driven::Driven;
-use crate::condition::indenter::Indenter;
+use super::model::Model;
 use crate::error::RunError;
-use crate::interaction::Sweep;
+use crate::interaction::{Evaluation, Sweep};
 
 /// Part of the stable step of now that is not passed, where none was asked for.
 const HELD: f64 = 0.9;
@@ -15,26 +12,26 @@ const PARTS: f64 = 1000.0;
 
 impl<const D: usize> Model<D> {
     /// All forces at the current displacements, no bond breaking.
-    pub(super) fn forces_held(&mut self) {
+    pub(super) fn forces_held(&mut self, at: Evaluation) {
         self.refresh_images();
         let (body, u) = (&self.body, &self.u);
         self.interaction
             .forces(body, u, &mut self.f, Sweep::Hold, None);
-        self.other_forces(0.0);
+        self.other_forces(at);
     }
 
-    /// All forces at the current displacements; `dt` is 0 at the start of a run.
-    pub(super) fn forces(&mut self, bonds: bool, dt: f64) {
-        self.forces_of_steps(bonds, dt, [dt, self.dt]);
+    /// All forces at the current displacements, and what breaks by them.
+    pub(super) fn forces(&mut self, bonds: bool, at: Evaluation) {
+        self.forces_of_steps(bonds, at, [at.ended(), self.clock.dt()]);
     }
 
     /// All forces at the end of an implicit step, in which no bond goes on pulling beyond what it is.
     pub(super) fn evolve(&mut self) {
-        self.forces_of_steps(true, 0.0, [0.0; 2]);
+        self.forces_of_steps(true, self.clock.trial(), [0.0; 2]);
     }
 
     /// `steps` that end and begin here, for what breaking costs.
-    fn forces_of_steps(&mut self, bonds: bool, dt: f64, steps: [f64; 2]) {
+    fn forces_of_steps(&mut self, bonds: bool, at: Evaluation, steps: [f64; 2]) {
         self.refresh_images();
         let mut watched = self.watched.take();
         watched = std::mem::take(&mut self.watch).then(|| watched.unwrap_or_default());
@@ -63,9 +60,7 @@ impl<const D: usize> Model<D> {
                 watched.as_mut(),
             );
             self.fault = tally.fault;
-            self.broken += tally.broken;
-            self.released += tally.released;
-            self.past_work[0] += tally.dissipated;
+            self.accounts.book(&tally);
             self.take_heat_of_flow();
         } else {
             self.f.iter_mut().for_each(|c| c.fill(0.0));
@@ -74,7 +69,7 @@ impl<const D: usize> Model<D> {
             }
         }
         self.watched = watched;
-        self.other_forces(dt);
+        self.other_forces(at);
         if let Some(mut virial) = self.virial {
             self.add_virial_of_contact(&mut virial);
             self.virial = Some(virial);
@@ -86,66 +81,44 @@ impl<const D: usize> Model<D> {
     }
 
     /// Forces of contact, indenters and loads, on top of those of bonds.
-    pub(super) fn other_forces(&mut self, dt: f64) {
-        let t = self.time();
+    pub(super) fn other_forces(&mut self, at: Evaluation) {
+        let t = self.clock.time();
         if let Some(contact) = &mut self.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            contact.add_forces(body, &self.u, &mut self.f, &|i, j| {
-                interaction.in_family(body, i, j)
-            });
-            if let Some(watched) = &mut self.watched {
-                contact.add_energy_density(body, &self.u, &mut watched.repulsion);
-            }
-            if let Some(friction) = &mut self.friction {
-                let state = [&self.u, &self.v];
-                friction.add(
-                    contact,
-                    self.interaction.as_ref(),
-                    body,
-                    state,
-                    &mut self.f,
-                    [t, dt],
-                );
-            }
-        }
-        for indenter in &mut self.indenters {
+            let (bonds, seen) = (self.interaction.as_ref(), self.watched.as_mut());
             let state = [&self.u, &self.v];
-            indenter.add(&self.body, state, &mut self.f, t, [dt, self.dt]);
+            contact.add(bonds, &self.body, state, &mut self.f, seen, (t, at));
         }
-        for load in &mut self.loads {
-            let push = self.inertia.as_ref().map(|i| &i.push);
-            load.add(&self.body, [&self.u, &self.v], &mut self.f, t, dt, push);
-        }
-        for d in &mut self.driven {
-            d.add(&self.body, &self.u, &self.v, &mut self.f, t, dt);
-        }
+        let (state, push) = ([&self.u, &self.v], self.inertia.as_ref().map(|i| &i.push));
+        let f = &mut self.f;
+        let all = self.applied.all();
+        all.for_each(|x| x.add(&self.body, state, f, t, at, push));
         self.accelerate();
+    }
+
+    /// What forces are found for in a state that motion begins from, or goes on from after somebody changed it.
+    pub(super) fn given(&self) -> Evaluation {
+        match &self.implicit {
+            Some(_) => self.clock.trial(),
+            None => self.clock.start(),
+        }
     }
 
     /// Points may be anywhere now: whoever keeps track of what is near forgets it.
     pub(super) fn look_again(&mut self) {
         if let Some(contact) = &mut self.contact {
-            contact.look_again();
+            contact.central.look_again();
         }
-        self.indenters.iter_mut().for_each(Indenter::look_again);
-        for d in &mut self.driven {
-            if let Driven::Indenter(i) = d {
-                i.look_again();
-            }
-        }
+        self.applied.all().for_each(|x| x.moved(f64::INFINITY));
     }
 
     /// Bring velocities to the whole step.
     pub(super) fn finish(&mut self) {
         if self.pending {
+            let (t, dt) = (self.clock.time(), self.clock.dt());
             let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
-            self.verlet.kick(&self.body, &mut self.v, f, self.dt);
-            let (t, dt) = (self.time(), self.dt);
-            for c in &self.constraints {
-                c.settle(&mut self.v, t, dt);
-            }
-            self.still.settle(&mut self.v);
-            self.carried.settle(&mut self.v);
+            self.verlet.kick(&self.body, &mut self.v, f, dt);
+            let all = self.prescribed.all();
+            all.for_each(|p| p.whole_velocity(&mut self.v, [t, dt]));
             self.pending = false;
         }
     }
@@ -153,20 +126,17 @@ impl<const D: usize> Model<D> {
     /// First forces and accounts of a run; without bonds: for a body whose bonds are still to be cut.
     pub(super) fn begin(&mut self, bonds: bool) {
         self.finish();
-        let (t, dt) = (self.time(), self.dt);
-        for c in &mut self.constraints {
-            c.start(&mut self.u, &mut self.v, t, dt);
-        }
+        let step = [self.clock.time(), self.clock.dt()];
+        self.prescribed.start(&mut self.u, &mut self.v, step);
         self.start_transfers();
         self.look_again();
         if let Some(implicit) = &mut self.implicit {
             implicit.acceleration.clear();
         }
-        self.forces(bonds, 0.0);
+        self.forces(bonds, self.given());
         self.stale = false;
         // energy that came in from outside counts as initial
-        let now = self.energy_now();
-        self.initial_energy = Some(now.base());
+        self.accounts.initial = Some(self.energy_now().base());
     }
 
     /// Forces of what columns say that were written since: the next step begins with them.
@@ -184,14 +154,14 @@ impl<const D: usize> Model<D> {
         }
         match self.statics.is_some() {
             true => self.forces_of_statics(),
-            false => self.forces_held(),
+            false => self.forces_held(self.given()),
         }
     }
 
     /// A step in which points stand where they are.
     pub(super) fn stand(&mut self) -> Result<(), RunError> {
-        self.spread(self.time(), self.dt)?;
-        self.step += 1;
+        self.spread(self.clock.time(), self.clock.dt())?;
+        self.clock.forward();
         Ok(())
     }
 
@@ -204,27 +174,14 @@ impl<const D: usize> Model<D> {
         }
         self.finish();
         self.info.parts = self.info.parts.max(parts);
-        let (begin, whole) = (self.time(), self.dt);
-        self.dt = whole / f64::from(parts);
-        self.part = Some(StepPart {
-            begin,
-            length: self.dt,
-            done: 0,
-        });
+        self.clock.divide(parts);
         let all = (0..parts).try_for_each(|_| {
             self.depart()?;
             self.arrive()
         });
         // with the length of a part, and at its time
         self.finish();
-        let now = self.time();
-        self.part = None;
-        match all {
-            Ok(()) => self.step += 1,
-            // time is that of the last part that went well
-            Err(_) => self.origin = (self.step, now),
-        }
-        self.dt = whole;
+        self.clock.join(all.is_ok());
         all
     }
 
@@ -243,37 +200,25 @@ impl<const D: usize> Model<D> {
 
     /// In how many parts what touches rigid bodies asks for: the deeper a point is below a surface, the stiffer it is held.
     fn parts_of_indenters(&self, fraction: f64) -> u32 {
-        let bonds = (2.0 * fraction / self.dt).powi(2);
-        let stiffest = self.indenters.iter().map(|i| i.stiffened(bonds));
+        let dt = self.clock.dt();
+        let bonds = (2.0 * fraction / dt).powi(2);
+        let stiffest = self.applied.rigid.iter().map(|i| i.stiffened(bonds));
         let lambda = stiffest.fold(0.0, f64::max);
-        (0.5 * self.dt * lambda.sqrt() / HELD)
-            .ceil()
-            .clamp(1.0, PARTS) as u32
-    }
-
-    /// One more step, or part of one.
-    fn count(&mut self, forward: bool) {
-        match (&mut self.part, forward) {
-            (Some(part), true) => part.done += 1,
-            (Some(part), false) => part.done -= 1,
-            (None, true) => self.step += 1,
-            (None, false) => self.step -= 1,
-        }
+        (0.5 * dt * lambda.sqrt() / HELD).ceil().clamp(1.0, PARTS) as u32
     }
 
     /// The first half of a step: displacements of its end, velocities of its middle.
     pub(super) fn depart(&mut self) -> Result<(), RunError> {
-        let (t, dt) = (self.time(), self.dt);
+        let (t, dt) = (self.clock.time(), self.clock.dt());
         self.update_toughness(t + dt)?;
         let pressed = self.pressed();
         if self.holds_others() {
             self.accelerate();
         }
-        for c in &mut self.constraints {
-            c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
-        }
-        self.still.begin(&mut self.v, &mut self.f, !self.pending);
-        self.carried.begin(&self.u, &mut self.v, &mut self.f, dt);
+        let (u, v, f) = (&self.u, &mut self.v, &mut self.f);
+        let whole = !self.pending;
+        let all = self.prescribed.all_mut();
+        all.for_each(|p| p.before_drift(u, v, f, [t, dt], whole));
         // linear springs may go through each other: they know no distance that is too far for a step
         let linear = |m: &ConstitutiveModel| match m.laws {
             Laws::Springs(_) | Laws::Micromoduli(_) => true,
@@ -299,18 +244,16 @@ impl<const D: usize> Model<D> {
             self.verlet
                 .retreat(&self.body, &mut self.u, &mut self.v, f, dt, limit);
             self.pending = false;
-            self.still.settle(&mut self.v);
+            self.prescribed.refused(&mut self.v, [t, dt]);
             return Err(error);
         }
-        self.count(true);
+        self.clock.forward();
         if let Some(contact) = &mut self.contact {
-            contact.moved(fastest.sqrt());
+            contact.central.moved(fastest.sqrt());
         }
-        let t = self.time();
-        for c in &self.constraints {
-            c.drift(&mut self.u, t, dt);
-        }
-        self.carried.drift(&mut self.u);
+        let t = self.clock.time();
+        let all = self.prescribed.all();
+        all.for_each(|p| p.after_drift(&mut self.u, [t, dt]));
         self.fastest = fastest.sqrt();
         // whoever asks for velocities now gets those of the middle
         self.pending = false;
@@ -324,17 +267,17 @@ impl<const D: usize> Model<D> {
 
     /// Back to the step before: where it was, and with the forces that were.
     fn step_back(&mut self) {
+        let dt = self.clock.dt();
         for &s in &self.body.slots {
             for a in 0..D {
-                self.u[a][s as usize] -= self.dt * self.v[a][s as usize];
+                self.u[a][s as usize] -= dt * self.v[a][s as usize];
             }
         }
-        self.count(false);
+        self.clock.back();
         if let Some(contact) = &mut self.contact {
-            contact.moved(self.fastest);
+            contact.central.moved(self.fastest);
         }
-        self.forces(true, 0.0);
-        let dt = self.dt;
+        self.forces(true, self.clock.start());
         let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
         self.verlet
             .retreat(&self.body, &mut self.u, &mut self.v, f, dt, 0.0);
@@ -343,28 +286,18 @@ impl<const D: usize> Model<D> {
 
     /// The second half of a step: forces at its end.
     pub(super) fn arrive(&mut self) -> Result<(), RunError> {
-        let (t, dt, path) = (self.time(), self.dt, self.fastest);
-        for load in &mut self.loads {
-            load.begin(&self.body, &self.v, dt);
+        let (t, dt, path) = (self.clock.time(), self.clock.dt(), self.fastest);
+        if let Some(contact) = &mut self.contact {
+            contact.begin_step(&self.body, &self.v, dt);
         }
-        if let Some(friction) = &mut self.friction {
-            friction.begin(&self.body, &self.v, dt);
-        }
-        for indenter in &mut self.indenters {
-            indenter.begin(&self.body, &self.v, t, dt, path);
-        }
-        for d in &mut self.driven {
-            d.begin(&self.body, &self.v, t, dt, path);
-        }
+        let all = self.applied.all();
+        all.for_each(|x| x.begin_step(&self.body, &self.v, [t, dt], path));
         self.heal(t);
-        self.forces(true, dt);
+        self.forces(true, self.clock.step_end());
         if let Some(fault) = self.fault {
             let error = self.explained(fault);
             self.retreat_transfers();
-            self.indenters.iter_mut().for_each(Indenter::retreat);
-            if let Some(friction) = &mut self.friction {
-                friction.retreat();
-            }
+            self.acting_retreat();
             self.step_back();
             return Err(error);
         }

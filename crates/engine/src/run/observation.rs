@@ -1,6 +1,7 @@
 //! What may be seen of a model: its columns by name, and the state that observables look at.
 
 use super::Examined;
+use super::equilibrium::state::StaticState;
 use super::model::Model;
 use crate::columns::{Declaration, Life, On};
 use crate::error::BuildError;
@@ -188,9 +189,8 @@ impl<const D: usize> Model<D> {
         let body = &self.body;
         let known = self.interaction.each_force(body, &self.u, visit);
         if let Some(contact) = &mut self.contact {
-            let interaction = &self.interaction;
-            contact.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-            contact.each_pull(&self.u, |touch| {
+            contact.find(body, &self.u, self.interaction.as_ref());
+            contact.central.each_pull(&self.u, |touch| {
                 let pull = touch.pull;
                 for (i, j, sign) in [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)] {
                     let y = touch.y.map(|y| sign * y);
@@ -328,7 +328,8 @@ impl<const D: usize> Model<D> {
             }
         };
         if let Some(before) = broken.filter(|_| written) {
-            self.broken = (self.broken + self.count_broken()).saturating_sub(before);
+            let broken = self.accounts.broken + self.count_broken();
+            self.accounts.broken = broken.saturating_sub(before);
             self.break_transfers();
         }
         self.stale |= written;
@@ -349,9 +350,13 @@ impl<const D: usize> Model<D> {
         let first = ["displacement"].into_iter();
         let others = fields.iter().copied().filter(|f| *f != "displacement");
         let columns = self.columns_of(first.chain(others));
+        let load_may_fall = self
+            .statics
+            .as_ref()
+            .is_some_and(StaticState::load_may_fall);
         Snapshot {
-            step: self.step,
-            time: self.frame_time(),
+            step: self.clock.step(),
+            time: self.clock.of_frame(load_may_fall),
             dimension: D,
             spacing: self.body.spacing,
             reference: self.by_id(|i| self.body.position(i)),

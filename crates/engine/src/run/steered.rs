@@ -1,10 +1,9 @@
 //! A model that a script leads step by step.
 
 use super::model::Model;
-use super::{Simulation, Steered, Wall};
+use super::{Steered, Wall};
 use crate::condition::carried::{Carried, Motion};
 use crate::condition::driven::{Drive, Driven};
-use crate::condition::indenter::Indenter;
 use crate::condition::reaction::Reaction;
 use crate::condition::still::Still;
 use crate::error::{BuildError, RunError, SolveError};
@@ -15,7 +14,7 @@ impl<const D: usize> Steered for Model<D> {
     fn depart(&mut self) -> Result<f64, RunError> {
         if self.implicit.is_some() {
             return Err(RunError::Implicit {
-                step: self.step + 1,
+                step: self.clock.step() + 1,
                 position: None,
                 error: SolveError::NoTangent {
                     what: "what acts between the halves of a step",
@@ -37,11 +36,11 @@ impl<const D: usize> Steered for Model<D> {
     fn set_carried(&mut self, ids: &[u32]) {
         self.finish();
         let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        self.carried = Carried::new(slots.collect());
+        self.prescribed.carried = Carried::new(slots.collect());
     }
 
     fn carry(&mut self, next: &[Motion]) {
-        self.carried.tell(next);
+        self.prescribed.carried.tell(next);
     }
 
     fn remove(&mut self, ids: &[u32]) {
@@ -49,19 +48,13 @@ impl<const D: usize> Steered for Model<D> {
     }
 
     fn set_time(&mut self, step: u64, time: f64) {
-        self.step = step;
-        self.origin = (step, time);
+        self.clock.set_step(step);
+        self.clock.set(time);
     }
 
     fn set_time_step(&mut self, dt: f64) {
-        if let Some(waits) = &mut self.preload {
-            waits.dt = dt;
-            self.info.time_step = dt;
-            return;
-        }
         self.finish();
-        self.origin = (self.step, self.time());
-        self.dt = dt;
+        self.clock.set_time_step(dt);
         self.info.time_step = dt;
     }
 
@@ -71,18 +64,16 @@ impl<const D: usize> Steered for Model<D> {
         sets: &[(String, Vec<u32>)],
         indenters: &[IndenterSpec],
     ) -> Result<(), BuildError> {
-        let (loads, constraints) = self.loads_and_constraints(conditions, sets)?;
+        let (forces, constraints) = self.acting(conditions, indenters, sets)?;
         self.finish();
         let now = self.energy_now();
-        self.past_work = [now.dissipated, now.work_conditions, now.work_indenter];
+        self.accounts.pass(&now);
         // it goes on; what it took is in the past now
-        if let Some(friction) = &mut self.friction {
+        if let Some(friction) = self.contact.as_mut().and_then(|c| c.friction.as_mut()) {
             friction.work = -friction.energy;
         }
-        self.driven.clear();
-        self.loads = loads;
-        self.constraints = constraints;
-        self.indenters = indenters.iter().map(Indenter::new).collect();
+        self.applied = forces;
+        self.prescribed.constraints = constraints;
         Ok(())
     }
 
@@ -161,8 +152,7 @@ impl<const D: usize> Steered for Model<D> {
             None => {
                 self.refresh_images();
                 if let Some(pairs) = &mut self.contact {
-                    let (body, interaction) = (&self.body, &self.interaction);
-                    pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+                    pairs.find(&self.body, &self.u, self.interaction.as_ref());
                 }
                 let mut points = self.virials_of_bonds();
                 self.add_virials_of_contact(&mut points);
@@ -185,20 +175,24 @@ impl<const D: usize> Steered for Model<D> {
             Driven::new(drive, slots, points)
         });
         let new: Vec<_> = new.collect();
-        for old in std::mem::replace(&mut self.driven, new) {
+        for old in std::mem::replace(&mut self.applied.driven, new) {
             match old {
-                Driven::Load(l) => self.past_work[1] += l.work,
-                Driven::Indenter(i) => self.past_work[2] += i.work,
+                Driven::Load(l) => self.accounts.past.conditions += l.work,
+                Driven::Indenter(i) => self.accounts.past.indenters += i.work,
             }
         }
     }
 
     fn drive(&mut self, index: usize, value: &Drive) -> bool {
-        self.driven.get_mut(index).is_some_and(|d| d.set(value))
+        self.applied
+            .driven
+            .get_mut(index)
+            .is_some_and(|d| d.set(value))
     }
 
     fn reaction(&self, index: usize) -> Reaction {
-        self.driven
+        self.applied
+            .driven
             .get(index)
             .map_or_else(Reaction::default, Driven::reaction)
     }
@@ -206,6 +200,6 @@ impl<const D: usize> Steered for Model<D> {
     fn set_still(&mut self, ids: &[u32]) {
         self.finish();
         let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        self.still = Still::new(slots.collect());
+        self.prescribed.still = Still::new(slots.collect());
     }
 }

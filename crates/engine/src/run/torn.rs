@@ -69,6 +69,7 @@ impl<const D: usize> Model<D> {
     fn loosest(&self, end: f64) -> Vec<Loaded<D>> {
         let mut force: HashMap<usize, [f64; D]> = HashMap::new();
         let tractions = self
+            .applied
             .loads
             .iter()
             .filter(|l| l.of.is_some_and(|(_, area)| area.is_some()));
@@ -76,11 +77,9 @@ impl<const D: usize> Model<D> {
             let sum = force.entry(slot).or_insert([0.0; D]);
             (0..D).for_each(|a| sum[a] += density[a]);
         }
-        let held = self
-            .constraints
-            .iter()
-            .flat_map(|c| c.holds().map(|(slot, _)| slot));
-        let held: HashSet<usize> = held.collect();
+        let mut held = HashSet::new();
+        let mut hold = |slot, _| held.extend([slot]);
+        self.prescribed.all().for_each(|p| p.each_held(&mut hold));
         let mut few: Vec<(usize, usize)> = { force.keys() }
             .filter(|slot| !held.contains(slot))
             .map(|slot| (self.interaction.family_size(&self.body, *slot), *slot))

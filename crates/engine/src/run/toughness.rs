@@ -158,7 +158,7 @@ impl<const D: usize> Model<D> {
         field
             .set(&self.body, t, at)
             .map_err(|unfit| RunError::Toughness {
-                step: self.step + 1,
+                step: self.clock.step() + 1,
                 position: self.body.position(unfit.slot),
                 value: unfit.value,
             })
@@ -179,7 +179,7 @@ impl<const D: usize> Model<D> {
     /// breaks yet.
     pub(super) fn tell_toughness(&mut self) {
         if let Some(field) = &self.toughness
-            && (field.at_once() || self.initial_energy.is_some())
+            && (field.at_once() || self.accounts.initial.is_some())
         {
             self.interaction
                 .write_column(&self.body, field.column(), field.values());

@@ -42,7 +42,7 @@ impl<const D: usize> Model<D> {
         let Some(contact) = &self.contact else {
             return;
         };
-        contact.each_pull(&self.u, |touch| {
+        contact.central.each_pull(&self.u, |touch| {
             let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
             add(&mut points[touch.i], &touch.y, 0.5 * touch.pull, volumes);
             add(&mut points[touch.j], &touch.y, 0.5 * touch.pull, volumes);
@@ -54,7 +54,7 @@ impl<const D: usize> Model<D> {
         let Some(contact) = &self.contact else {
             return;
         };
-        contact.each_pull(&self.u, |touch| {
+        contact.central.each_pull(&self.u, |touch| {
             let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
             add(virial, &touch.y, touch.pull, volumes);
         });
@@ -64,8 +64,7 @@ impl<const D: usize> Model<D> {
     pub(super) fn virial_now(&mut self) -> [f64; 6] {
         self.refresh_images();
         if let Some(pairs) = &mut self.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+            pairs.find(&self.body, &self.u, self.interaction.as_ref());
         }
         let mut virial = self.virial_of_bonds();
         self.add_virial_of_contact(&mut virial);

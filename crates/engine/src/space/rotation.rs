@@ -1,6 +1,7 @@
 //! Rotations of space: as rows of a matrix, and as quaternions of length 1.
 
 use super::Point;
+use crate::state::Word;
 
 /// Rows of a rotation, from axes of the shape to space.
 pub type Axes = [Point; 3];
@@ -18,6 +19,18 @@ pub fn transposed_times(m: &Axes, x: &Point) -> Point {
 /// A turn: cos(φ/2), and sin(φ/2) along its axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quaternion([f64; 4]);
+
+impl Word for Quaternion {
+    const BYTES: usize = <[f64; 4]>::BYTES;
+
+    fn put(&self, to: &mut [u8]) {
+        self.0.put(to);
+    }
+
+    fn take(from: &[u8]) -> Self {
+        Quaternion(Word::take(from))
+    }
+}
 
 impl Quaternion {
     pub const ONE: Quaternion = Quaternion([1.0, 0.0, 0.0, 0.0]);

@@ -1,9 +1,7 @@
 //! The linear body of any law about any state: tangents of bonds, gathered row by row.
 
 use crate::body::{Body, Field};
-use crate::interaction::contact::Contact;
-use crate::interaction::friction::Friction;
-use crate::interaction::{BondTangent, Channel, Interaction};
+use crate::interaction::{BondTangent, Channel, ContactForces, Interaction};
 use crate::spec::{LinearBody, add_alike};
 use rayon::prelude::*;
 
@@ -16,29 +14,14 @@ pub fn linear_body<const D: usize>(
     interaction: &mut dyn Interaction<D>,
     u: &Field<D>,
 ) -> LinearBody<D> {
-    linear_body_touching(body, interaction, Touching::default(), u)
+    linear_body_touching(body, interaction, None, u)
 }
 
-/// What acts between points that touch.
-pub struct Touching<'a, const D: usize> {
-    pub contact: Option<&'a Contact<D>>,
-    pub friction: Option<&'a Friction<D>>,
-}
-
-impl<const D: usize> Default for Touching<'_, D> {
-    fn default() -> Self {
-        Touching {
-            contact: None,
-            friction: None,
-        }
-    }
-}
-
-/// The same with points that touch, as contact and friction found them at `u`.
+/// The same with points that touch, as contact found them at `u`.
 pub fn linear_body_touching<const D: usize>(
     body: &Body<D>,
     interaction: &mut dyn Interaction<D>,
-    touching: Touching<'_, D>,
+    contact: Option<&ContactForces<D>>,
     u: &Field<D>,
 ) -> LinearBody<D> {
     let mut id = vec![u32::MAX; body.len];
@@ -51,11 +34,8 @@ pub fn linear_body_touching<const D: usize>(
         bonds.push(&bond);
     };
     interaction.tangents(body, u, &mut push);
-    if let Some(contact) = touching.contact {
+    if let Some(contact) = contact {
         contact.tangents(body, u, &mut push);
-    }
-    if let Some(friction) = touching.friction {
-        friction.tangents(body, &mut push);
     }
     bonds.sort();
     let n = body.points();

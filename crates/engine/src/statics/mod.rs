@@ -22,7 +22,8 @@ pub mod support;
 mod vectors;
 
 use crate::error::SolveError;
-pub use assemble::{Touching, linear_body, linear_body_touching};
+use crate::state::words;
+pub use assemble::{linear_body, linear_body_touching};
 pub use direct::{Direct, SYMMETRIC};
 pub use masses::Masses;
 pub use operator::{Assembled, LinearOperator, Shifted, Swept};
@@ -37,6 +38,8 @@ pub struct Solved {
     /// Residual force over that of the start.
     pub residual: f64,
 }
+
+words!([] Solved { iterations: usize, residual: f64 });
 
 impl SolveError {
     /// Where a motion that gives energy back is largest.

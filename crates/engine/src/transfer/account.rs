@@ -1,5 +1,7 @@
 //! What came into a body, and what it holds.
 
+use crate::state::words;
+
 /// Amounts since the start (energy, or amount of a species). What the bonds carry cancels, so
 /// `content − initial = supplied + exchanged + held` up to round-off of explicit steps, and to the tolerance of implicit ones.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -20,6 +22,16 @@ pub struct TransferAccount {
     /// conducts nothing.
     pub through_contact: Option<f64>,
 }
+
+words!([] TransferAccount {
+    content: f64,
+    initial: f64,
+    supplied: f64,
+    exchanged: f64,
+    held: f64,
+    made: f64,
+    through_contact: Option<f64>,
+});
 
 impl TransferAccount {
     /// What the balance misses.

@@ -21,6 +21,7 @@ pub use touching::Touching;
 use crate::error::SolveError;
 use crate::execute::blocks::for_each_piece;
 use crate::spec::{Quantity, TransferMethod};
+use crate::state::{Archive, Owner};
 
 /// A scalar on the points of a body, its bonds, and what is done to it.
 #[derive(Debug, Clone)]
@@ -42,6 +43,13 @@ pub struct Transfer {
     /// Values and account before the last step.
     before: (Vec<f64>, TransferAccount),
     flow: Vec<f64>,
+}
+
+impl Owner for Transfer {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.all("values", &mut self.value);
+        archive.one("account", &mut self.account);
+    }
 }
 
 impl Transfer {

@@ -23,6 +23,7 @@ mod sample;
 mod scale;
 mod shifted;
 mod stability;
+mod state_hash;
 mod tangents;
 mod tearing;
 mod waves;

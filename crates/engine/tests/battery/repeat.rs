@@ -84,7 +84,9 @@ fn state(sim: &mut dyn Simulation) -> Vec<u64> {
     ] {
         bits.extend(field.iter().map(|c| c.to_bits()));
     }
-    bits.extend([sim.broken(), sim.fragments()]);
+    let hash = sim.state_hash();
+    bits.extend([sim.broken(), sim.fragments(), hash.state]);
+    bits.extend(hash.ledger);
     bits
 }
 

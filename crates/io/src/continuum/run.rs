@@ -7,6 +7,7 @@ use crate::write::atomic::WriteError;
 use crate::write::continuum::{Collected, Origin, examined};
 use peridyne::run::Simulation;
 use peridyne::spec::Spec;
+use peridyne::state::{Archive, Owner};
 use peridyne_fields::effort::Effort;
 use peridyne_fields::{Cell, FieldsError, Frame, Method, Quantity, Targets};
 use std::ffi::OsStr;
@@ -113,7 +114,30 @@ struct One {
     stopped: bool,
 }
 
+impl Owner for RunningFields {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        for one in &mut self.each {
+            archive.within("field", |archive| {
+                archive.one("met", &mut one.met);
+                archive.one("stopped", &mut one.stopped);
+                let grid = one.grid();
+                one.collected.archive(grid, archive);
+            });
+        }
+    }
+}
+
 impl RunningFields {
+    /// Takes away what came after the state that was read.
+    ///
+    /// # Errors
+    /// The operating system's; a frame is missing.
+    pub fn rewind(&mut self) -> Result<(), WriteError> {
+        self.each
+            .iter_mut()
+            .try_for_each(|one| one.collected.rewind())
+    }
+
     /// # Errors
     /// What is asked for makes no sense with this model.
     pub fn new(
@@ -152,15 +176,26 @@ impl RunningFields {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn look(
+    pub fn look(&mut self, sim: &mut dyn Simulation, step: u64) -> Result<Vec<String>, WriteError> {
+        self.take(sim, |one| one.is_due(step))
+    }
+
+    /// The same where the run ends: a run that ends before its first frame has its end.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn look_last(&mut self, sim: &mut dyn Simulation) -> Result<Vec<String>, WriteError> {
+        self.take(sim, |one| !one.stopped && one.collected.frames() == 0)
+    }
+
+    fn take(
         &mut self,
         sim: &mut dyn Simulation,
-        step: u64,
-        last: bool,
+        due: impl Fn(&mut One) -> bool,
     ) -> Result<Vec<String>, WriteError> {
         let mut said = vec![];
         for one in &mut self.each {
-            if !one.is_due(step, last) {
+            if !due(one) {
                 continue;
             }
             if let Err(why) = one.take(&self.live, sim)? {
@@ -197,7 +232,15 @@ impl RunningFields {
 }
 
 impl One {
-    fn is_due(&mut self, step: u64, last: bool) -> bool {
+    /// Counts and cell of a grid.
+    fn grid(&self) -> Option<([usize; 3], Cell)> {
+        match self.asked.place {
+            Place::Grid { counts, .. } => Some((counts, self.cell.clone())),
+            Place::Points(_) => None,
+        }
+    }
+
+    fn is_due(&mut self, step: u64) -> bool {
         if self.stopped {
             return false;
         }
@@ -208,8 +251,7 @@ impl One {
         if due {
             self.met += 1;
         }
-        // a run that ends before the first has its end
-        (due && self.met > self.asked.skip) || (last && self.collected.frames() == 0)
+        due && self.met > self.asked.skip
     }
 
     /// A frame, or why there is none.
@@ -223,10 +265,7 @@ impl One {
             Ok(found) => found,
             Err(why) => return Ok(Err(why)),
         };
-        let grid = match self.asked.place {
-            Place::Grid { counts, .. } => Some((counts, self.cell.clone())),
-            Place::Points(_) => None,
-        };
+        let grid = self.grid();
         let origin = Origin {
             index: self.collected.frames(),
             step: Some(sim.step_number()),

@@ -24,7 +24,7 @@ pub use influence::InfluenceWritten;
 pub use law::{Given, Law};
 pub use molecules::Molecules;
 pub use names::*;
-pub use output::{Output, Picture, SpaceTimes};
+pub use output::{Checkpoint, Output, Picture, SpaceTimes};
 pub use region::{Mark, Periodic, Set, Shape};
 pub use run::{LoadCycles, MethodName, Probe, ReleaseName, Run, Safety, SolverName, Statics};
 use schemars::JsonSchema;

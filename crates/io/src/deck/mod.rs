@@ -29,10 +29,11 @@ pub use doubts::{Doubt, doubts};
 pub use error::DeckError;
 pub use schema::{law_schema, schema};
 pub use source::Flag;
-pub use units::{Constants, Dim, UnitSystem, counted, example, named, rounded, usual};
+pub use units::{Constants, Dim, UnitSystem, clock_time, counted, example, named, rounded, usual};
 
 use crate::continuum::plan::FieldsSpec;
 use crate::read::Cells;
+use crate::write::checkpoint::CheckpointSchedule;
 use crate::write::space_time::Window;
 use crate::write::trajectory::Format;
 use document::Document;
@@ -107,6 +108,8 @@ pub struct OutputSpec {
     pub trajectories: Vec<(PathBuf, Format)>,
     /// LAMMPS data file of the last state of atoms.
     pub data: Option<PathBuf>,
+    /// When states to go on from are written; `None`: only where a run is ended early.
+    pub checkpoints: Option<CheckpointSchedule>,
     /// Keys whose names lead out of the folder they belong in, and the names.
     pub outside: Vec<(&'static str, String)>,
 }

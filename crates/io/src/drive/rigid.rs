@@ -1,7 +1,6 @@
 //! Rigid bodies of a run: where they are in a frame, and their paths for the report.
 
 use crate::write::picture::rigid::{Form, Placed};
-use crate::write::run_json::RigidNote;
 use peridyne::condition::rigid::Rigid;
 use peridyne::run::Simulation;
 use peridyne::space::length;
@@ -117,33 +116,5 @@ fn turned(vector: [f64; 3]) -> [[f64; 3]; 3] {
     match angle > 0.0 {
         true => Quaternion::about(&vector.map(|c| c / angle), angle).axes(),
         false => Quaternion::ONE.axes(),
-    }
-}
-
-/// What the report tells of bodies, as frames come.
-#[derive(Debug, Default)]
-pub(super) struct Paths {
-    statics: Vec<RigidNote>,
-    motion: Vec<RigidNote>,
-}
-
-impl Paths {
-    /// Where bodies are at a time of the records, which only grows.
-    pub fn push(&mut self, time: f64, begun: bool, placed: &[Placed]) {
-        let notes = if begun {
-            &mut self.motion
-        } else {
-            &mut self.statics
-        };
-        for (n, body) in placed.iter().enumerate() {
-            if notes.len() <= n {
-                notes.push(RigidNote::of(&body.form));
-            }
-            notes[n].push(time, body);
-        }
-    }
-
-    pub fn all(self) -> Vec<RigidNote> {
-        self.statics.into_iter().chain(self.motion).collect()
     }
 }

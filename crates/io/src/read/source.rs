@@ -168,6 +168,27 @@ pub fn read_inside(dir: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
+/// Files that were read, each with the CRC-32 of its bytes as they are now, in order of their places. What cannot be read any more is
+/// left out.
+pub fn sums() -> Vec<(PathBuf, u32)> {
+    let mut places = known().places.clone();
+    places.sort();
+    places.dedup();
+    let sum = |path: &PathBuf| -> io::Result<u32> {
+        let (mut file, mut sum) = (File::open(path)?, crc32fast::Hasher::new());
+        let mut room = vec![0; 1 << 18];
+        loop {
+            match file.read(&mut room)? {
+                0 => return Ok(sum.finalize()),
+                count => sum.update(&room[..count]),
+            }
+        }
+    };
+    let each = places.into_iter();
+    each.filter_map(|path| Some((path.clone(), sum(&path).ok()?)))
+        .collect()
+}
+
 /// This process has made the file: it may replace it.
 pub fn made(file: &File) {
     if let Ok(of) = file.metadata() {

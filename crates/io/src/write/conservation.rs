@@ -4,10 +4,12 @@ use super::atomic::{WriteError, write_file};
 use super::npz::write_npz;
 use super::picture::label;
 use super::plot::{ColorMap, Map, Plot};
-use super::run_json::{Setting, Status};
+use super::run_json::{Setting, Status, digits};
 use super::space_time::Drawing;
 use crate::deck::Dim;
 use crate::deck::conservation::LawDeck;
+use peridyne::observe::StateHash;
+use peridyne::state::{Archive, Owner};
 use peridyne_transport::{Grid, measure, noll};
 use serde::Serialize;
 use std::io::Write as _;
@@ -23,6 +25,15 @@ pub struct Frames {
     exact: Vec<f64>,
     /// Through the faces, where it is asked for.
     flux: Vec<f64>,
+}
+
+impl Owner for Frames {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.list("times", &mut self.times);
+        archive.list("values", &mut self.values);
+        archive.list("exact", &mut self.exact);
+        archive.list("flux", &mut self.flux);
+    }
 }
 
 impl Frames {
@@ -212,6 +223,9 @@ pub struct Report {
     pub seconds_stepping: f64,
     pub ns_per_point_step: Option<f64>,
     pub peak_memory_bytes: Option<u64>,
+    /// Of the time and the solution at the end.
+    #[serde(flatten, serialize_with = "digits")]
+    pub hash: StateHash,
     /// What steps have added to u at most until the end, estimated; none where it is not known.
     pub time_error: Option<f64>,
     /// What they may add.

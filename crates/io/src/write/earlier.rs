@@ -31,17 +31,18 @@ fn remove(dir: &Path, name: &str) -> Result<(), WriteError> {
     }
 }
 
-/// Removes the frames of a kind that a collection of an earlier run lists, and the collection; gives names of frames that are there and
-/// stand in none, which stay.
+/// Removes the frames of a kind that a collection of an earlier run lists, and the collection, but for those that are kept; gives names of
+/// frames that are there and stand in none, which stay.
 ///
 /// # Errors
 /// The operating system's.
-pub fn sweep_frames(dir: &Path, kind: &str) -> Result<Vec<String>, WriteError> {
+pub fn sweep_frames(dir: &Path, kind: &str, keep: &[&str]) -> Result<Vec<String>, WriteError> {
     let index = format!("{kind}.pvd");
     // one that cannot be read lists nothing; this run has not read it, and writes its own in its place
     let text = fs::read_to_string(dir.join(&index)).unwrap_or_default();
     let listed = collected(&text).unwrap_or_default();
-    for (_, name) in listed.iter().filter(|(_, name)| is_frame(name, kind)) {
+    let goes = |name: &str| is_frame(name, kind) && !keep.contains(&name);
+    for (_, name) in listed.iter().filter(|(_, name)| goes(name)) {
         remove(dir, name)?;
     }
     if !listed.is_empty() {
@@ -129,7 +130,7 @@ mod tests {
         let run = r#"{"pictures": ["damage.png", "stress.png", "../mine.png", "run.json"]}"#;
         fs::write(dir.path().join("run.json"), run).unwrap();
         assert_eq!(
-            sweep_frames(dir.path(), "points").unwrap(),
+            sweep_frames(dir.path(), "points", &[]).unwrap(),
             ["points_00000002.vtu"]
         );
         sweep_pictures(dir.path()).unwrap();

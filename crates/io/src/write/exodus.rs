@@ -14,9 +14,11 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use peridyne::observe::{Column, Snapshot};
+use peridyne::state::{Archive, Owner};
 
 use super::atomic::{WriteError, write_file};
 use super::fields::{fields, invalid};
+use super::grown::changed;
 use crate::netcdf::{Attribute, Header, Type, Version, lay_out};
 
 /// What a file says of its points besides frames.
@@ -223,6 +225,14 @@ impl Start {
         self.texts(&format!("attrib_name{n}"), attributes, names);
     }
 
+    /// A file without records.
+    fn write(&self, path: &Path) -> Result<(), WriteError> {
+        write_file(path, |w| {
+            self.header.write(w)?;
+            self.fixed.iter().try_for_each(|numbers| numbers.write(w))
+        })
+    }
+
     /// What is recorded: time, global and nodal variables.
     fn recorded(&mut self, globals: &[String], nodal: &[String]) {
         let (time, nodes) = (self.time, self.nodes);
@@ -255,16 +265,16 @@ fn numbers(points: &[u32]) -> Vec<i32> {
 /// # Errors
 /// Those of [`Exodus::create`].
 pub fn write_mesh(path: &Path, layout: &Layout, at: &[[f64; 3]]) -> Result<(), WriteError> {
-    begin(path, layout, at, &[]).map(drop)
+    begun(path, layout, at, &[])?.0.write(path)
 }
 
-/// Writes what is not recorded; answers the header and its length with that.
-fn begin(
+/// What is not recorded, and its length.
+fn begun(
     path: &Path,
     layout: &Layout,
     reference: &[[f64; 3]],
     nodal: &[String],
-) -> Result<(Header, u64), WriteError> {
+) -> Result<(Start, u64), WriteError> {
     let failed = |e: io::Error| WriteError::at("write", path)(e);
     let points = reference.len();
     let mut in_block = vec![0u8; points];
@@ -291,14 +301,18 @@ fn begin(
         start.recorded(&layout.globals, nodal);
         lay_out(&mut start.header).map(|length| (start, length))
     };
-    let (start, length) = start(Version::Offset64)
+    start(Version::Offset64)
         .or_else(|_| start(Version::Data64))
-        .map_err(failed)?;
-    write_file(path, |w| {
-        start.header.write(w)?;
-        start.fixed.iter().try_for_each(|numbers| numbers.write(w))
-    })?;
-    Ok((start.header, length))
+        .map_err(failed)
+}
+
+impl Owner for Exodus {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.same("start", &mut self.start);
+        archive.same("record", &mut self.record);
+        archive.one("records", &mut self.header.records);
+        archive.one("step", &mut self.step);
+    }
 }
 
 impl Exodus {
@@ -307,11 +321,31 @@ impl Exodus {
     /// # Errors
     /// The operating system's; `InvalidInput` when the layout is not that of the points, or there are more than the format can count.
     pub fn create(path: &Path, layout: &Layout, first: &Snapshot) -> Result<Self, WriteError> {
+        Exodus::made(path, layout, first, |start| start.write(path))
+    }
+
+    /// The file of a run that goes on, which has columns like these; its state must be read, and [`rewind`](Exodus::rewind) called,
+    /// before a frame comes.
+    ///
+    /// # Errors
+    /// As [`create`](Exodus::create).
+    pub fn reopen(path: &Path, layout: &Layout, now: &Snapshot) -> Result<Self, WriteError> {
+        Exodus::made(path, layout, now, |_| Ok(()))
+    }
+
+    fn made(
+        path: &Path,
+        layout: &Layout,
+        like: &Snapshot,
+        write: impl FnOnce(&Start) -> Result<(), WriteError>,
+    ) -> Result<Self, WriteError> {
         let failed = |e: io::Error| WriteError::at("write", path)(e);
-        let columns = fields(first).map_err(failed)?;
+        let columns = fields(like).map_err(failed)?;
         let nodal: Vec<String> = columns.iter().flat_map(|c| names_of(c)).collect();
-        let (header, start) = begin(path, layout, &first.reference, &nodal)?;
-        let file = File::options().write(true).open(path);
+        let (begun, start) = begun(path, layout, &like.reference, &nodal)?;
+        write(&begun)?;
+        let header = begun.header;
+        let file = File::options().read(true).write(true).open(path);
         Ok(Exodus {
             path: path.to_path_buf(),
             file: file.map_err(failed)?,
@@ -322,6 +356,22 @@ impl Exodus {
             globals: layout.globals.len(),
             step: None,
         })
+    }
+
+    /// Takes away the frames that came after the state that was read: first they are not counted any more, then they are cut off.
+    ///
+    /// # Errors
+    /// The operating system's; there are fewer frames.
+    pub fn rewind(&mut self) -> Result<(), WriteError> {
+        let failed = |e| WriteError::at("go on with", &self.path)(e);
+        let end = self.start + self.header.records * self.record;
+        if self.file.metadata().map_err(failed)?.len() < end {
+            return Err(changed(&self.path));
+        }
+        self.count(self.header.records)
+            .and_then(|()| self.file.sync_data())
+            .and_then(|()| self.file.set_len(end))
+            .map_err(failed)
     }
 
     /// Adds a frame, or nothing; one of the step of the last frame is passed over.

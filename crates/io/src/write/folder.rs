@@ -77,7 +77,7 @@ pub fn stays(name: &Path) -> bool {
 }
 
 /// Files of the results that have fixed names.
-const OWN: [&str; 14] = [
+const OWN: [&str; 15] = [
     "history.csv",
     "damage.png",
     "displacement.png",
@@ -92,7 +92,14 @@ const OWN: [&str; 14] = [
     "frames.npz",
     FILES,
     "peridyne.lock",
+    CHECKPOINT,
 ];
+
+/// What a run goes on from, and what waits in it until it has ended.
+pub const CHECKPOINT: &str = "checkpoint";
+
+/// How names of frames of films end that wait there.
+pub const WAITING: &str = "frames";
 
 /// What a script has written besides its results: a list of its files.
 pub const FILES: &str = "files.json";

@@ -1,19 +1,17 @@
 //! `history.csv`: numbers over time, one row per output.
 //!
-//! A file that grows cannot be replaced whole at every row, so it is atomic row by row instead: the header
-//! replaces an older file atomically; every row is one unbuffered append of one whole line, which the operating
-//! system keeps when the run is killed; a row that does not fit (disk full) is cut off again. The file can
-//! be read at any time while the run goes on.
+//! A file that grows cannot be replaced whole at every row, so it is atomic row by row instead ([`Grown`]): the header
+//! replaces an older file atomically, and the operating system keeps every row when the run is killed.
 
-use std::fs::File;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use peridyne::observe::Ledger;
 use peridyne::spec::Quantity;
+use peridyne::state::{Archive, Owner};
 use peridyne::transfer::TransferAccount;
 
-use super::atomic::{WriteError, open_to_append, write_file};
+use super::Grown;
+use super::atomic::WriteError;
 use super::fields::invalid;
 
 /// A column: name, and unit ("" for pure numbers). The header shows `name [unit]`.
@@ -43,11 +41,8 @@ impl Column {
 /// An open `history.csv`.
 #[derive(Debug)]
 pub struct History {
-    path: PathBuf,
-    file: File,
+    file: Grown,
     columns: usize,
-    /// Length of the file in bytes, whole rows only.
-    length: u64,
 }
 
 impl History {
@@ -59,14 +54,23 @@ impl History {
             header += &column.header();
         }
         header += "\n";
-        write_file(path, |w| w.write_all(header.as_bytes()))?;
-        let file = open_to_append(path)?;
         Ok(History {
-            path: path.to_path_buf(),
-            file,
+            file: Grown::create(path, header.as_bytes())?,
             columns: columns.len(),
-            length: header.len() as u64,
         })
+    }
+
+    /// The file of a run that goes on; its state must be read, and [`rewind`](History::rewind) called, before a row comes.
+    pub fn reopen(path: &Path, columns: &[Column]) -> Result<Self, WriteError> {
+        Ok(History {
+            file: Grown::open(path)?,
+            columns: columns.len(),
+        })
+    }
+
+    /// [`Grown::rewind`].
+    pub fn rewind(&mut self) -> Result<(), WriteError> {
+        self.file.rewind()
     }
 
     /// Appends a row; it is in the file when this returns. Numbers are written with the fewest digits that
@@ -78,31 +82,25 @@ impl History {
         if values.len() != self.columns {
             let (got, want) = (values.len(), self.columns);
             let error = invalid(format!("{got} values for {want} columns"));
-            return Err(WriteError::at("append to", &self.path)(error));
+            return Err(WriteError::at("append to", self.file.path())(error));
         }
         let mut row = step.to_string();
         for value in values {
             row += &format!(",{value:?}");
         }
         row += "\n";
-        if let Err(error) = self.file.write_all(row.as_bytes()) {
-            self.cut_torn_row();
-            return Err(WriteError::at("append to", &self.path)(error));
-        }
-        self.length += row.len() as u64;
-        Ok(())
-    }
-
-    /// A torn row is worse than a missing one. If cutting it off fails too, the error of the row tells more.
-    fn cut_torn_row(&self) {
-        let _ = self.file.set_len(self.length);
+        self.file.push(|w| w.write_all(row.as_bytes()))
     }
 
     /// Waits until all rows are on the disk.
     pub fn finish(self) -> Result<(), WriteError> {
-        self.file
-            .sync_all()
-            .map_err(WriteError::at("write", &self.path))
+        self.file.finish()
+    }
+}
+
+impl Owner for History {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.part("file", &mut self.file);
     }
 }
 
@@ -207,39 +205,6 @@ mod tests {
                 .contains("1 values for 3 columns")
         );
         history.finish().unwrap();
-    }
-
-    #[test]
-    fn a_row_that_fails_is_cut_off() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("history.csv");
-        let mut history = History::create(&path, &columns()).unwrap();
-        history.push(1, &[1.0, 2.0, 3.0]).unwrap();
-        let whole = std::fs::read(&path).unwrap();
-        // half a row got out before the disk was full
-        history.file.write_all(b"2,0.").unwrap();
-        history.cut_torn_row();
-        history.push(2, &[4.0, 5.0, 6.0]).unwrap();
-        let text = std::fs::read(&path).unwrap();
-        assert_eq!(text, [&whole[..], b"2,4.0,5.0,6.0\n"].concat());
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn a_full_disk_is_told_with_path_and_reason() {
-        let path = PathBuf::from("/dev/full");
-        let file = open_to_append(&path).unwrap();
-        let mut history = History {
-            path,
-            file,
-            columns: 1,
-            length: 0,
-        };
-        let text = history.push(1, &[1.0]).unwrap_err().to_string();
-        assert!(
-            text.starts_with("cannot append to `/dev/full`: No space left on device"),
-            "{text}"
-        );
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 pub mod atomic;
 pub mod card;
+pub mod checkpoint;
 pub mod conservation;
 pub mod continuum;
 pub mod data;
@@ -12,6 +13,7 @@ pub mod extxyz;
 pub mod fields;
 pub mod folder;
 mod font;
+mod grown;
 pub mod history;
 pub mod linear;
 pub mod npz;
@@ -29,4 +31,5 @@ pub mod trajectory;
 pub mod vtu;
 
 pub use atomic::WriteError;
+pub use grown::Grown;
 pub use series::{Series, SeriesOptions};

@@ -7,6 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::atomic::{WriteError, write_file};
+use peridyne::state::{Archive, Owner};
 
 /// A collection file and what it lists.
 #[derive(Debug, Clone)]
@@ -28,11 +29,21 @@ impl Pvd {
         &self.path
     }
 
+    /// Names of the files that it lists.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.entries.iter().map(|(_, file)| &**file)
+    }
+
     /// Adds a file (relative to the collection) at a time and rewrites the collection. A file that is listed
     /// already gets the new time.
     pub fn push(&mut self, time: f64, file: &str) -> Result<(), WriteError> {
         self.entries.retain(|(_, listed)| listed != file);
         self.entries.push((time, file.to_string()));
+        self.write()
+    }
+
+    /// Writes what it lists.
+    pub fn write(&self) -> Result<(), WriteError> {
         write_file(&self.path, |w| {
             writeln!(w, r#"<?xml version="1.0"?>"#)?;
             writeln!(
@@ -49,6 +60,16 @@ impl Pvd {
             }
             writeln!(w, "</Collection>\n</VTKFile>")
         })
+    }
+}
+
+impl Owner for Pvd {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let none = || (0.0, String::new());
+        archive.items("files", &mut self.entries, none, |(time, file), archive| {
+            archive.one("time", time);
+            archive.text("name", file);
+        });
     }
 }
 

@@ -3,7 +3,9 @@
 use std::fmt;
 use std::path::Path;
 
-use peridyne::observe::Ledger;
+use peridyne::observe::{Ledger, StateHash};
+use peridyne::state::{Archive, Owner};
+use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 use sha2::{Digest, Sha256};
 
@@ -44,6 +46,9 @@ pub struct RunReport {
     pub broken_directed_bonds: u64,
     /// Connected components, when they were counted.
     pub fragments: Option<u64>,
+    /// Of the last state, as `state_hash` and `ledger_hash`.
+    #[serde(flatten, serialize_with = "digits")]
+    pub hash: StateHash,
     pub threads: usize,
     /// Instruction set of the hot loop ("avx512", "avx2", "portable").
     pub simd: String,
@@ -66,6 +71,8 @@ pub struct Spent {
     pub fields: f64,
     /// Pictures and films.
     pub pictures: f64,
+    /// States to go on from.
+    pub checkpoints: f64,
     /// The report; it is made of `run.json`, which does not know.
     #[serde(skip)]
     pub report: f64,
@@ -79,6 +86,7 @@ impl Spent {
             ("frames", self.frames),
             ("fields", self.fields),
             ("pictures", self.pictures),
+            ("checkpoints", self.checkpoints),
             ("report", self.report),
         ];
         let there = parts.iter().filter(|(_, seconds)| *seconds >= 0.005);
@@ -144,6 +152,17 @@ pub struct RigidNote {
     /// Of each of these the axes, rows from its own to space; none of one that never turns.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<[[f64; 3]; 3]>,
+}
+
+impl Owner for RigidNote {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.one("radius", &mut self.radius);
+        archive.list("corners", &mut self.corner);
+        archive.list("faces", &mut self.face);
+        archive.one("plane", &mut self.plane);
+        archive.list("path", &mut self.path);
+        archive.list("axes", &mut self.axes);
+    }
 }
 
 /// Triangles of a body in a report.
@@ -295,6 +314,15 @@ impl From<&Ledger> for EnergyReport {
     }
 }
 
+/// `state_hash` and `ledger_hash` in 16 hexadecimal digits each; `null`: there is none.
+pub fn digits<S: Serializer>(hash: &StateHash, serializer: S) -> Result<S::Ok, S::Error> {
+    let digits = |hash: u64| format!("{hash:016x}");
+    let mut map = serializer.serialize_map(Some(2))?;
+    map.serialize_entry("state_hash", &digits(hash.state))?;
+    map.serialize_entry("ledger_hash", &hash.ledger.map(digits))?;
+    map.end()
+}
+
 impl RunReport {
     /// How it ended, in a word or three.
     pub fn outcome(&self) -> String {
@@ -366,6 +394,10 @@ mod tests {
             peak_memory_bytes: None,
             broken_directed_bonds: 12,
             fragments: Some(3),
+            hash: StateHash {
+                state: 0xab,
+                ledger: None,
+            },
             threads: 2,
             simd: "avx512".into(),
             energy: EnergyReport::from(&Ledger {
@@ -400,6 +432,8 @@ mod tests {
             ("peak_memory_bytes", Value::Null),
             ("broken_directed_bonds", json!(12)),
             ("fragments", json!(3)),
+            ("state_hash", json!("00000000000000ab")),
+            ("ledger_hash", Value::Null),
             ("threads", json!(2)),
             ("simd", json!("avx512")),
             ("status", json!("done")),
@@ -428,6 +462,7 @@ mod tests {
             all: 9.5,
             fields: 4.0,
             pictures: 0.25,
+            checkpoints: 0.0,
             report: 1.0,
             frames: 0.001,
         };

@@ -5,18 +5,23 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use peridyne::observe::Snapshot;
+use peridyne::state::{Archive, Owner};
 
 use super::atomic::{WriteError, create_directory, write_file};
 use super::dump::{DumpBox, write_frame};
 use super::earlier::{sweep_frames, told};
+use super::folder::{CHECKPOINT, WAITING};
+use super::grown::{Grown, changed};
 use super::picture::film::{Film, HURRY};
 use super::picture::rigid::Placed;
 use super::picture::shown::About;
 use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
-use super::trajectory::Frames;
 use super::vtu::{write_bonds, write_cells, write_points};
 use crate::read::Cells;
+
+/// What frames are of.
+const KINDS: [&str; 3] = ["points", "cells", "bonds"];
 
 /// Which files a series writes.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +67,7 @@ pub struct Series {
     cells: Pvd,
     bonds: Pvd,
     /// The dump and the step of its last frame.
-    dump: Option<(Frames, Option<u64>)>,
+    dump: Option<(Grown, Option<u64>)>,
     /// One for each picture that asks for it.
     films: Vec<Option<Film>>,
     /// Films are drawn short.
@@ -71,29 +76,58 @@ pub struct Series {
     strange: Vec<String>,
 }
 
+impl Owner for Series {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        for list in [&mut self.points, &mut self.cells, &mut self.bonds] {
+            archive.part("frames", list);
+        }
+        archive.given("dump", &mut self.dump, |(file, step), archive| {
+            archive.part("file", file);
+            archive.one("step", step);
+        });
+        for film in self.films.iter_mut().flatten() {
+            archive.part("film", film);
+        }
+    }
+}
+
 impl Series {
     /// Creates the directory and its parents; frames of an earlier run are removed.
     pub fn new(dir: impl Into<PathBuf>, options: SeriesOptions) -> Result<Self, WriteError> {
         let dir = dir.into();
         create_directory(&dir)?;
-        let mut strange = sweep_frames(&dir, "points")?;
-        strange.extend(sweep_frames(&dir, "cells")?);
-        strange.extend(sweep_frames(&dir, "bonds")?);
-        let [points, cells, bonds] =
-            ["points.pvd", "cells.pvd", "bonds.pvd"].map(|name| Pvd::new(dir.join(name)));
+        let mut strange = vec![];
+        for kind in KINDS {
+            strange.extend(sweep_frames(&dir, kind, &[])?);
+        }
+        let dump = |path: &Path| Grown::create(path, b"");
+        Self::made(dir, options, strange, dump, Film::new)
+    }
+
+    /// The series of a run that goes on; its state must be read, and [`rewind`](Series::rewind) called, before a snapshot comes.
+    pub fn reopen(dir: impl Into<PathBuf>, options: SeriesOptions) -> Result<Self, WriteError> {
+        Self::made(dir.into(), options, vec![], Grown::open, Film::reopen)
+    }
+
+    fn made(
+        dir: PathBuf,
+        options: SeriesOptions,
+        strange: Vec<String>,
+        dump: impl Fn(&Path) -> Result<Grown, WriteError>,
+        film: impl Fn(&Path) -> Result<Film, WriteError>,
+    ) -> Result<Self, WriteError> {
+        let [points, cells, bonds] = KINDS.map(|kind| Pvd::new(dir.join(format!("{kind}.pvd"))));
         let dump = match &options.dump {
-            Some((name, _)) => Some((Frames::create(&dir.join(name))?, None)),
+            Some((name, _)) => Some((dump(&dir.join(name))?, None)),
             None => None,
         };
-        let films = options
-            .pictures
-            .iter()
-            .map(|p| p.film.then(|| Film::new(&dir)).transpose());
-        let films: std::io::Result<Vec<Option<Film>>> = films.collect();
-        let films = films.map_err(WriteError::at("make a film in", &dir))?;
+        let films = options.pictures.iter().enumerate().map(|(n, p)| {
+            let waiting = dir.join(CHECKPOINT).join(format!("film_{n}.{WAITING}"));
+            p.film.then(|| film(&waiting)).transpose()
+        });
         Ok(Series {
             hurried: false,
-            films,
+            films: films.collect::<Result<_, _>>()?,
             strange,
             dir,
             options,
@@ -102,6 +136,32 @@ impl Series {
             bonds,
             dump,
         })
+    }
+
+    /// Takes away what came after the state that was read; this is the snapshot of that state.
+    ///
+    /// # Errors
+    /// The operating system's; what is left is not what was written.
+    pub fn rewind(&mut self, now: &Snapshot) -> Result<(), WriteError> {
+        for (kind, list) in KINDS.iter().zip([&self.points, &self.cells, &self.bonds]) {
+            let kept: Vec<&str> = list.files().collect();
+            sweep_frames(&self.dir, kind, &kept)?;
+            if let Some(gone) = kept.iter().find(|f| !self.dir.join(f).is_file()) {
+                return Err(changed(&self.dir.join(gone)));
+            }
+            if !kept.is_empty() {
+                list.write()?;
+            }
+        }
+        if let Some((dump, _)) = &mut self.dump {
+            dump.rewind()?;
+        }
+        for (film, picture) in self.films.iter_mut().zip(&self.options.pictures) {
+            if let Some(film) = film {
+                film.rewind(now, picture)?;
+            }
+        }
+        Ok(())
     }
 
     pub fn dir(&self) -> &Path {
@@ -141,16 +201,12 @@ impl Series {
         if let (Some((dump, last)), Some((_, cell))) = (&mut self.dump, &self.options.dump)
             && *last != Some(s.step)
         {
-            dump.push(|w| write_frame(w, s, cell))?;
+            dump.push(|mut w| write_frame(&mut w, s, cell))?;
             *last = Some(s.step);
         }
         for (film, picture) in self.films.iter_mut().zip(&self.options.pictures) {
             if let Some(film) = film {
-                let failed = WriteError::at("make a film in", &self.dir);
-                let component = picture.component.as_deref();
-                let shown = (picture.field(About::Motion), component);
-                film.push(s, bodies, shown, picture.arrows.as_deref())
-                    .map_err(failed)?;
+                film.push(s, bodies, picture)?;
             }
         }
         Ok(())

@@ -1,15 +1,15 @@
 //! Trajectories: frames of atoms appended to one file, extended XYZ or LAMMPS dump.
 //!
-//! Frames are whole or not there: the part of a frame that did not fit (disk full) is cut off again. The
-//! file can be read at any time between frames.
+//! Frames are whole or not there ([`Grown`]).
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
+use std::path::Path;
 
-use super::atomic::{WriteError, open_to_append, write_file};
+use super::Grown;
+use super::atomic::{WriteError, write_file};
 use super::{dump, extxyz};
 use crate::read::Atoms;
+use peridyne::state::{Archive, Owner};
 
 /// Format of a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,26 +38,37 @@ pub fn write_atoms(path: &Path, format: Format, frames: &[Atoms]) -> Result<(), 
 /// An open trajectory.
 #[derive(Debug)]
 pub struct Trajectory {
-    frames: Frames,
+    frames: Grown,
     format: Format,
     /// How much velocity one of ASE is.
     ase_velocity: f64,
+}
+
+impl Owner for Trajectory {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.part("frames", &mut self.frames);
+    }
 }
 
 impl Trajectory {
     /// Starts an empty file; an older one is replaced.
     pub fn create(path: &Path, format: Format) -> Result<Self, WriteError> {
         Ok(Trajectory {
-            frames: Frames::create(path)?,
+            frames: Grown::create(path, b"")?,
             format,
             ase_velocity: 1.0,
         })
     }
 
+    /// [`Grown::rewind`], of a file that was [appended](Trajectory::append) to and whose state was read.
+    pub fn rewind(&mut self) -> Result<(), WriteError> {
+        self.frames.rewind()
+    }
+
     /// Goes on with an existing file.
     pub fn append(path: &Path, format: Format) -> Result<Self, WriteError> {
         Ok(Trajectory {
-            frames: Frames::append(path)?,
+            frames: Grown::open(path)?,
             format,
             ase_velocity: 1.0,
         })
@@ -69,7 +80,7 @@ impl Trajectory {
     /// The operating system's, and those of the format; the file then ends with the frame before.
     pub fn push(&mut self, atoms: &Atoms) -> Result<(), WriteError> {
         let (format, unit) = (self.format, self.ase_velocity);
-        self.frames.push(|w| format.write(w, atoms, unit))
+        self.frames.push(|mut w| format.write(&mut w, atoms, unit))
     }
 
     /// The velocities to come are in other units than ASE's: `unit` is how much one of those is.
@@ -81,61 +92,5 @@ impl Trajectory {
     /// Waits until all frames are on the disk.
     pub fn finish(self) -> Result<(), WriteError> {
         self.frames.finish()
-    }
-}
-
-/// A file that grows frame by frame.
-#[derive(Debug)]
-pub(super) struct Frames {
-    path: PathBuf,
-    file: File,
-    /// Length of the file in bytes, whole frames only.
-    length: u64,
-}
-
-impl Frames {
-    /// Starts an empty file; an older one is replaced.
-    pub fn create(path: &Path) -> Result<Self, WriteError> {
-        write_file(path, |_| Ok(()))?;
-        Frames::append(path)
-    }
-
-    fn append(path: &Path) -> Result<Self, WriteError> {
-        let file = open_to_append(path)?;
-        let length = file
-            .metadata()
-            .map_err(WriteError::at("append to", path))?
-            .len();
-        Ok(Frames {
-            path: path.to_path_buf(),
-            file,
-            length,
-        })
-    }
-
-    /// Appends what `write` writes, or nothing.
-    pub fn push(
-        &mut self,
-        write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
-    ) -> Result<(), WriteError> {
-        let mut w = BufWriter::with_capacity(1 << 18, &self.file);
-        let done = write(&mut w).and_then(|()| w.flush());
-        // what is buffered of a failed frame must not follow when the writer is dropped
-        drop(w.into_parts());
-        if let Err(error) = done {
-            // if cutting fails too, the error of the frame tells more
-            let _ = self.file.set_len(self.length);
-            return Err(WriteError::at("append to", &self.path)(error));
-        }
-        let end = self.file.metadata();
-        self.length = end.map_err(WriteError::at("append to", &self.path))?.len();
-        Ok(())
-    }
-
-    /// Waits until all frames are on the disk.
-    pub fn finish(self) -> Result<(), WriteError> {
-        self.file
-            .sync_all()
-            .map_err(WriteError::at("write", &self.path))
     }
 }

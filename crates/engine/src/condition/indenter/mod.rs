@@ -8,14 +8,17 @@
 mod rub;
 mod surface;
 
+use super::force_field::ForceField;
 use super::reaction::Reaction;
 use super::rigid::{Kept, NewmarkStep, Path, Rigid, Wrench};
 use crate::body::{Body, Field};
+use crate::interaction::Evaluation;
 use crate::interaction::coulomb::Coefficients;
 use crate::interaction::friction::Pressed;
 use crate::space::rigid::RigidShape;
 use crate::space::{Point, cross, full};
 use crate::spec::{CohesionSpec, FrictionSpec, IndenterSpec};
+use crate::state::{Archive, Owner};
 use rub::{Departure, Touched};
 use std::collections::HashMap;
 pub use surface::{Form, Push};
@@ -55,6 +58,54 @@ pub struct Indenter<const D: usize> {
     kept: Option<(Kept, f64, f64)>,
     /// Of an increment of statics: where it and the points were.
     from: Option<Departure<D>>,
+}
+
+impl<const D: usize> Owner for Indenter<D> {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.part("rigid", &mut self.rigid);
+        archive.list("touched", &mut self.touched);
+        archive.list("rubbed", &mut self.rubbed);
+        archive.list("rubbed_before", &mut self.rubbed_before);
+        let mut pressed: Vec<(u32, f64)> = self.pressed.iter().map(|(s, d)| (*s, *d)).collect();
+        pressed.sort_unstable_by_key(|(slot, _)| *slot);
+        archive.list("pressed", &mut pressed);
+        for (name, x) in [
+            ("work", &mut self.work),
+            ("work_of_friction", &mut self.rubbed_work),
+            ("stored", &mut self.stored),
+            ("stiffest", &mut self.stiff),
+            ("energy", &mut self.reaction.energy),
+        ] {
+            archive.one(name, x);
+        }
+        for (name, x) in [
+            ("reaction", &mut self.reaction.force),
+            ("force", &mut self.force),
+            ("torque", &mut self.torque),
+        ] {
+            archive.one(name, x);
+        }
+        let rigid = self.rigid.keep();
+        let departure = || Departure {
+            rigid,
+            u: crate::body::zeros(0),
+            touched: vec![],
+            pressed: Pressed::Now,
+        };
+        archive.option("departure", &mut self.from, departure, |from, archive| {
+            archive.one("rigid", &mut from.rigid);
+            for c in &mut from.u {
+                archive.part("displacement", c);
+            }
+            let mut held = from.pressed == Pressed::Held;
+            archive.one("held", &mut held);
+            from.pressed = if held { Pressed::Held } else { Pressed::Now };
+        });
+        if archive.loads() {
+            self.pressed = pressed.into_iter().collect();
+            self.look_again();
+        }
+    }
 }
 
 impl<const D: usize> Indenter<D> {
@@ -140,35 +191,9 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
-    /// Points have the slots that `keep` holds for only, from now on.
-    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
-        if let Some(members) = &mut self.members {
-            members.retain(|s| keep(*s));
-        }
-        self.touched.retain(|(s, _)| keep(*s));
-        self.rubbed.clear();
-        self.rubbed_before.clear();
-        self.look_again();
-    }
-
     /// The gap below which the surface does something.
     fn range(&self) -> f64 {
         self.cohesion.as_ref().map_or(0.0, CohesionSpec::range)
-    }
-
-    /// Move to the end of a step and account for half of the old force's work. `moved` bounds the path of any point.
-    pub fn begin(&mut self, body: &Body<D>, v: &Field<D>, t: f64, dt: f64, moved: f64) {
-        self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
-        for (s, f) in &self.touched {
-            let i = *s as usize;
-            self.work += 0.5 * dt * body.volume.at(i) * (0..D).map(|a| f[a] * v[a][i]).sum::<f64>();
-        }
-        self.rigid.kick(dt);
-        self.rub_away(body, v, dt);
-        std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
-        let path = self.rigid.advance(t, dt);
-        self.slack -= moved;
-        self.went(path);
     }
 
     /// It has gone so far since the last look around.
@@ -182,117 +207,8 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
-    /// An increment of statics or an implicit step begins, from these displacements.
-    pub fn depart(&mut self, u: &Field<D>, pressed: Pressed) {
-        self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
-        std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
-        self.from = Some(Departure {
-            rigid: self.rigid.keep(),
-            u: u.clone(),
-            pressed,
-        });
-    }
-
-    /// Back to before the last [`Indenter::begin`] or [`Indenter::depart`].
-    pub fn retreat(&mut self) {
-        if let Some((rigid, work, rubbed)) = self.kept.take() {
-            self.rigid.retreat(&rigid);
-            std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
-            (self.work, self.rubbed_work) = (work, rubbed);
-            self.look_again();
-        }
-    }
-
-    /// Adds the force density at the current positions to `f`; `dt` is the step that ends, 0 at the start of a run, `step` that which begins, `t` the
-    /// time.
-    pub fn add(
-        &mut self,
-        body: &Body<D>,
-        [u, v]: [&Field<D>; 2],
-        f: &mut Field<D>,
-        t: f64,
-        [dt, step]: [f64; 2],
-    ) {
-        self.rigid.arrive();
-        if dt == 0.0 {
-            self.rigid.look_ahead(t, step);
-            if self.from.is_none() {
-                std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
-            }
-        }
-        self.look_around(body, u);
-        self.touched.clear();
-        self.rubbed.clear();
-        (self.force, self.torque, self.stiff) = ([0.0; 3], [0.0; 3], 0.0);
-        let mut reaction = Reaction::default();
-        let (range, mut mobile) = (self.range(), 0.0);
-        let candidates = std::mem::take(&mut self.candidates);
-        for &s in &candidates {
-            let i = s as usize;
-            let Some(near) = self.surface.near(&self.rigid, body, u, i, range) else {
-                continue;
-            };
-            let Near {
-                arm,
-                r,
-                gap,
-                normal,
-            } = near;
-            if gap >= range || r == 0.0 {
-                continue;
-            }
-            let volume = body.volume.at(i);
-            // force density along the normal, its slope, and the energy density
-            let (along, slope, energy) = match gap < 0.0 {
-                true => {
-                    let deep = self.stiffness * gap * gap;
-                    let energy = self.stiffness / 3.0 * (-gap).powi(3);
-                    (
-                        deep,
-                        -2.0 * self.stiffness * gap,
-                        energy - self.adhesion(body, i),
-                    )
-                }
-                false => self.pull(body, i, gap),
-            };
-            let force: [f64; D] = match &self.surface {
-                Surface::Aligned(form, push, _) => form.force(*push, self.stiffness, &near),
-                Surface::Turned(_) => normal.map(|c| along * c),
-            };
-            reaction.energy += energy;
-            for a in 0..D {
-                reaction.force[a] -= force[a];
-                f[a][i] += force[a];
-                self.work += 0.5 * dt * volume * force[a] * v[a][i];
-            }
-            self.bear(&arm, &force, volume);
-            let square: f64 = arm.iter().map(|c| c * c).sum();
-            mobile += slope * volume * self.rigid.mobility(square);
-            self.stiff = self.stiff.max(slope / body.density.at(i));
-            self.touched.push((s, force));
-            if self.friction.is_some() {
-                self.rubbed.push(Touched {
-                    slot: s,
-                    near,
-                    way: [0.0; D],
-                    depth: 0.0,
-                    kept: 1.0,
-                    rub: [0.0; D],
-                });
-            }
-        }
-        self.candidates = candidates;
-        self.stiff += mobile;
-        self.reaction = reaction;
-        if let Some(law) = &self.friction {
-            let now = Coefficients::new(law, t);
-            self.rub(body, [u, v], f, now, dt);
-        }
-        self.rigid.push(self.force, self.torque, t, dt);
-    }
-
     /// Looks for the points that may be touched soon.
-    fn look_around(&mut self, body: &Body<D>, u: &Field<D>) {
+    pub fn look_around(&mut self, body: &Body<D>, u: &Field<D>) {
         // what turns without an end is looked at in every step
         let endless = matches!(self.surface, Surface::Turned(RigidShape::Plane { .. }));
         if self.slack > 0.0 && !(endless && self.rigid.turns()) {
@@ -362,11 +278,6 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
-    /// No point has gone further than `path` (length) since the last call.
-    pub fn moved(&mut self, path: f64) {
-        self.slack -= path;
-    }
-
     /// Where it is at this time, in statics; what is near is looked for again.
     pub fn place(&mut self, t: f64) {
         if self.rigid.place(t) {
@@ -375,7 +286,7 @@ impl<const D: usize> Indenter<D> {
     }
 
     /// Adds what it resists with at each point that it pushes or pulls (force / length) to sums by slot, at the displacements of the last
-    /// [`Indenter::add`].
+    /// [`ForceField::add`].
     pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
         for &s in &self.candidates {
             let i = s as usize;
@@ -391,7 +302,7 @@ impl<const D: usize> Indenter<D> {
     }
 
     /// Visits points (slots) with the arm of their place on the body and what resists there (force / length), at the displacements of the last
-    /// [`Indenter::add`]; without what would not be positive: how the normal turns with the surface, and cohesion beyond its greatest pull.
+    /// [`ForceField::add`]; without what would not be positive: how the normal turns with the surface, and cohesion beyond its greatest pull.
     pub fn each_tangent(
         &self,
         body: &Body<D>,
@@ -419,7 +330,7 @@ impl<const D: usize> Indenter<D> {
         self.each_rubbing(body, &mut visit);
     }
 
-    /// The end of an implicit step of a body with mass, as [`Rigid::step_implicitly`], from where [`Indenter::depart`] left it.
+    /// The end of an implicit step of a body with mass, as [`Rigid::step_implicitly`], from where [`ForceField::depart`] left it.
     pub fn step_implicitly(&mut self, ends: [&Wrench; 2], by: NewmarkStep) {
         let Some(from) = &self.from else { return };
         let path = self.rigid.step_implicitly(&from.rigid, ends, by);
@@ -436,23 +347,159 @@ impl<const D: usize> Indenter<D> {
         self.rigid.is_free()
     }
 
-    /// The points that it pushes, with the force densities on them.
-    pub fn pushed(&self) -> &[(u32, [f64; D])] {
-        &self.touched
+    /// Forget which points are near, after something else moved them.
+    fn look_again(&mut self) {
+        self.slack = 0.0;
+    }
+}
+
+impl<const D: usize> ForceField<D> for Indenter<D> {
+    /// It moves to the end of the step, too.
+    fn begin_step(&mut self, body: &Body<D>, v: &Field<D>, [t, dt]: [f64; 2], moved: f64) {
+        self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
+        for (s, f) in &self.touched {
+            let i = *s as usize;
+            self.work += 0.5 * dt * body.volume.at(i) * (0..D).map(|a| f[a] * v[a][i]).sum::<f64>();
+        }
+        self.rigid.kick(dt);
+        self.rub_away(body, v, dt);
+        std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
+        let path = self.rigid.advance(t, dt);
+        self.slack -= moved;
+        self.went(path);
     }
 
-    /// Work over an increment of statics by the trapezoidal rule: forces of before and of now, displacements of before and of now.
-    pub fn account(&mut self, before: &[(u32, [f64; D])], body: &Body<D>, u: [&Field<D>; 2]) {
-        for (s, f) in before.iter().chain(&self.touched) {
+    fn add(
+        &mut self,
+        body: &Body<D>,
+        [u, v]: [&Field<D>; 2],
+        f: &mut Field<D>,
+        t: f64,
+        at: Evaluation,
+        _: Option<&Field<D>>,
+    ) {
+        self.rigid.arrive();
+        let (at, dt) = (at.of(self.from.is_some()), at.ended());
+        match at {
+            Evaluation::Start { next } => {
+                self.rigid.look_ahead(t, next);
+                std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
+            }
+            Evaluation::Trial { step } => self.rigid.look_ahead(t, step),
+            Evaluation::StepEnd { .. } => {}
+        }
+        self.look_around(body, u);
+        self.touched.clear();
+        self.rubbed.clear();
+        (self.force, self.torque, self.stiff) = ([0.0; 3], [0.0; 3], 0.0);
+        let mut reaction = Reaction::default();
+        let (range, mut mobile) = (self.range(), 0.0);
+        let candidates = std::mem::take(&mut self.candidates);
+        for &s in &candidates {
+            let i = s as usize;
+            let Some(near) = self.surface.near(&self.rigid, body, u, i, range) else {
+                continue;
+            };
+            let Near {
+                arm,
+                r,
+                gap,
+                normal,
+            } = near;
+            if gap >= range || r == 0.0 {
+                continue;
+            }
+            let volume = body.volume.at(i);
+            // force density along the normal, its slope, and the energy density
+            let (along, slope, energy) = match gap < 0.0 {
+                true => {
+                    let deep = self.stiffness * gap * gap;
+                    let energy = self.stiffness / 3.0 * (-gap).powi(3);
+                    (
+                        deep,
+                        -2.0 * self.stiffness * gap,
+                        energy - self.adhesion(body, i),
+                    )
+                }
+                false => self.pull(body, i, gap),
+            };
+            let force: [f64; D] = match &self.surface {
+                Surface::Aligned(form, push, _) => form.force(*push, self.stiffness, &near),
+                Surface::Turned(_) => normal.map(|c| along * c),
+            };
+            reaction.energy += energy;
+            for a in 0..D {
+                reaction.force[a] -= force[a];
+                f[a][i] += force[a];
+                self.work += 0.5 * dt * volume * force[a] * v[a][i];
+            }
+            self.bear(&arm, &force, volume);
+            let square: f64 = arm.iter().map(|c| c * c).sum();
+            mobile += slope * volume * self.rigid.mobility(square);
+            self.stiff = self.stiff.max(slope / body.density.at(i));
+            self.touched.push((s, force));
+            if self.friction.is_some() {
+                self.rubbed.push(Touched {
+                    slot: s,
+                    near,
+                    way: [0.0; D],
+                    depth: 0.0,
+                    kept: 1.0,
+                    rub: [0.0; D],
+                });
+            }
+        }
+        self.candidates = candidates;
+        self.stiff += mobile;
+        self.reaction = reaction;
+        if let Some(law) = &self.friction {
+            let now = Coefficients::new(law, t);
+            self.rub(body, [u, v], f, now, at);
+        }
+        self.rigid.push(self.force, self.torque, t, dt);
+    }
+
+    fn depart(&mut self, u: &Field<D>, pressed: Pressed) {
+        self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
+        std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
+        self.from = Some(Departure {
+            rigid: self.rigid.keep(),
+            u: u.clone(),
+            touched: self.touched.clone(),
+            pressed,
+        });
+    }
+
+    fn arrive(&mut self, body: &Body<D>, [_, u]: [&Field<D>; 2]) {
+        let Some(from) = &self.from else { return };
+        for (s, f) in from.touched.iter().chain(&self.touched) {
             let i = *s as usize;
-            let path = (0..D).map(|a| f[a] * (u[1][a][i] - u[0][a][i]));
+            let path = (0..D).map(|a| f[a] * (u[a][i] - from.u[a][i]));
             self.work += 0.5 * body.volume.at(i) * path.sum::<f64>();
         }
-        self.account_rubbing(body, u[1]);
+        self.account_rubbing(body, u);
     }
 
-    /// Forget which points are near, after something else moved them.
-    pub fn look_again(&mut self) {
-        self.slack = 0.0;
+    fn retreat(&mut self) {
+        if let Some((rigid, work, rubbed)) = self.kept.take() {
+            self.rigid.retreat(&rigid);
+            std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
+            (self.work, self.rubbed_work) = (work, rubbed);
+            self.look_again();
+        }
+    }
+
+    fn moved(&mut self, path: f64) {
+        self.slack -= path;
+    }
+
+    fn retain(&mut self, keep: &dyn Fn(u32) -> bool) {
+        if let Some(members) = &mut self.members {
+            members.retain(|s| keep(*s));
+        }
+        self.touched.retain(|(s, _)| keep(*s));
+        self.rubbed.clear();
+        self.rubbed_before.clear();
+        self.look_again();
     }
 }

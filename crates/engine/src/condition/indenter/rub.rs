@@ -6,11 +6,13 @@ use super::Indenter;
 use super::surface::Near;
 use crate::body::{Body, Field};
 use crate::condition::rigid::Kept;
+use crate::interaction::Evaluation;
 use crate::interaction::coulomb::{
     Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped,
 };
 use crate::interaction::friction::Pressed;
 use crate::space::full;
+use crate::state::words;
 use std::collections::HashMap;
 
 /// Where an increment of statics or an implicit step began.
@@ -18,6 +20,8 @@ use std::collections::HashMap;
 pub(super) struct Departure<const D: usize> {
     pub rigid: Kept,
     pub u: Field<D>,
+    /// Points touched there, with the force density on them.
+    pub touched: Vec<(u32, [f64; D])>,
     pub pressed: Pressed,
 }
 
@@ -33,6 +37,15 @@ pub(super) struct Touched<const D: usize> {
     pub kept: f64,
     pub rub: [f64; D],
 }
+
+words!([const D: usize] Touched<D> {
+    slot: u32,
+    near: Near<D>,
+    way: [f64; D],
+    depth: f64,
+    kept: f64,
+    rub: [f64; D],
+});
 
 impl<const D: usize> Indenter<D> {
     /// Sliding of a point on the surface: along it, of the surface against the point.
@@ -52,15 +65,17 @@ impl<const D: usize> Indenter<D> {
         [u, v]: [&Field<D>; 2],
         f: &mut Field<D>,
         now: Coefficients,
-        dt: f64,
+        at: Evaluation,
     ) {
+        let dt = at.ended();
         let mut rubbed = std::mem::take(&mut self.rubbed);
         let old = std::mem::take(&mut self.rubbed_before);
         let before: HashMap<u32, &Touched<D>> = old.iter().map(|t| (t.slot, t)).collect();
         self.stored = 0.0;
         for (n, touched) in rubbed.iter_mut().enumerate() {
             let i = touched.slot as usize;
-            let held = { self.from.as_ref() }.is_some_and(|f| f.pressed == Pressed::Held);
+            let from = at.since(&self.from);
+            let held = from.is_some_and(|f| f.pressed == Pressed::Held);
             let depth = match held {
                 true => self.pressed.get(&touched.slot).copied().unwrap_or(0.0),
                 false => -touched.near.gap,
@@ -75,11 +90,13 @@ impl<const D: usize> Indenter<D> {
                 false => length(&w),
             };
             let most = now.at(speed) * depth / (2.0 * TANGENTIAL);
-            (touched.way, touched.kept) = match (&self.from, before.get(&touched.slot)) {
-                (None, before) if dt == 0.0 && before.is_none_or(|t| t.way == [0.0; D]) => {
-                    (begun(&w, most), 1.0)
-                }
-                (from, before) => {
+            let before = before.get(&touched.slot);
+            let sticks = before.is_some_and(|t| t.way != [0.0; D]);
+            (touched.way, touched.kept) = match at {
+                Evaluation::Start { .. } if !sticks => (begun(&w, most), 1.0),
+                Evaluation::Start { .. }
+                | Evaluation::StepEnd { .. }
+                | Evaluation::Trial { .. } => {
                     let start = before.map_or([0.0; D], |t| {
                         // the force stays where the spring grows stiffer
                         let softer = t.depth / depth;

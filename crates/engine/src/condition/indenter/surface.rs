@@ -5,6 +5,7 @@ use crate::condition::rigid::Rigid;
 use crate::space::full;
 use crate::space::rigid::RigidShape;
 use crate::space::rotation::{times, transposed_times};
+use crate::state::words;
 
 /// The surface of an indenter along the axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,6 +114,8 @@ pub(super) struct Near<const D: usize> {
     /// Along which it is pushed out, of length 1.
     pub normal: [f64; D],
 }
+
+words!([const D: usize] Near<D> { arm: [f64; D], r: f64, gap: f64, normal: [f64; D] });
 
 impl Surface {
     /// Where a point is beside the surface; `None`: further away than `most` for sure.

@@ -21,6 +21,7 @@ use crate::body::{Body, Field};
 use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
+use crate::state::Archive;
 use build::Block;
 use ghosts::Ghost;
 
@@ -198,6 +199,41 @@ impl<const D: usize> NearList<D> {
     pub fn positions_at(&self, u: &Field<D>, simd: Simd) -> Option<Vec<[f64; 4]>> {
         let mut position = self.position.clone();
         (self.valid && self.place(u, simd, &mut position)).then_some(position)
+    }
+
+    /// The list as it is, since the order of its atoms is that of the places where it was made: of a body with so many slots.
+    pub fn archive(&mut self, slots: usize, archive: &mut Archive<'_>) {
+        archive.list("order", &mut self.order);
+        archive.list("kinds", &mut self.kind);
+        archive.list("base", &mut self.base);
+        archive.list("made_at", &mut self.then);
+        archive.list("ghosts", &mut self.ghosts);
+        archive.list("positions", &mut self.position);
+        archive.parts("blocks", &mut self.blocks);
+        archive.one("valid", &mut self.valid);
+        archive.one("builds", &mut self.builds);
+        if archive.loads() && !self.is_sound(slots) {
+            archive.refuse("list");
+        }
+    }
+
+    /// Kernels look at nothing again: does everything name what is there?
+    fn is_sound(&self, slots: usize) -> bool {
+        let (own, all) = (self.order.len(), self.position.len());
+        let tiles = |b: usize| own.div_ceil(TILE).saturating_sub(b * BLOCK).min(BLOCK);
+        let mut blocks = self.blocks.iter().enumerate();
+        own.div_ceil(TILE) <= self.blocks.len() * BLOCK
+            && { self.order.iter() }.all(|s| *s == NOBODY || (*s as usize) < slots)
+            && self.base.len() == own
+            && self.then.len() == own
+            && all == self.first_ghost() + self.ghosts.len() + 1
+            && self.ghosts.iter().all(|g| (g.of as usize) < own)
+            && (self.kind.len() == all || self.kind.is_empty() && self.reaches.kinds == 1)
+            && self
+                .kind
+                .iter()
+                .all(|k| usize::from(*k) < self.reaches.kinds)
+            && blocks.all(|(b, block)| block.is_sound(tiles(b), self.groups(), all))
     }
 
     /// Write positions; does the list hold for them?

@@ -14,6 +14,7 @@ use crate::execute::simd::Simd;
 use crate::law::blocks::Quadratic;
 use crate::law::bonded::{Tangents, special_pairs};
 use crate::spec::BondedSpec;
+use crate::state::Archive;
 use kernel::{BLOCK, Evaluate, Gather, Says, Term};
 use std::sync::Arc;
 
@@ -301,6 +302,15 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
         self.inner.columns()
     }
 
+    fn each_directed(
+        &self,
+        body: &Body<D>,
+        name: &str,
+        visit: &mut dyn FnMut(usize, usize, [f64; D]),
+    ) {
+        self.inner.each_directed(body, name, visit);
+    }
+
     fn each_force(
         &mut self,
         body: &Body<D>,
@@ -309,6 +319,10 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     ) -> bool {
         self.tangents(body, u, &mut |bond| visit(bond.force()));
         true
+    }
+
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        self.inner.archive(body, archive);
     }
 
     fn bytes(&self) -> usize {

@@ -23,6 +23,7 @@ use crate::interaction::{
 };
 use crate::interaction::{Motion, Released, Toughness};
 use crate::spec::{CrackKind, Release};
+use crate::state::Archive;
 use kernel::{Add, Test};
 
 /// What bonds of potentials break by.
@@ -256,7 +257,7 @@ impl<const D: usize> Breaking<D> {
     }
 
     /// All directed bonds of the reference, in order of slots: slots, ξ and place.
-    fn each_directed(&self, body: &Body<D>, mut visit: impl FnMut(usize, usize, [f64; D], usize)) {
+    fn each_place(&self, body: &Body<D>, mut visit: impl FnMut(usize, usize, [f64; D], usize)) {
         let list = self.inner.list();
         for &slot in &body.slots {
             let own = self.own[slot as usize] as usize;
@@ -392,7 +393,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
-        self.each_directed(body, |i, j, xi, place| {
+        self.each_place(body, |i, j, xi, place| {
             if i < j {
                 let state = match self.is_whole(place) {
                     true => BondState::Whole,
@@ -438,7 +439,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {
         let mut family = vec![0.0; body.len];
         out.fill(0.0);
-        self.each_directed(body, |i, j, _, place| {
+        self.each_place(body, |i, j, _, place| {
             let volume = body.volume.at(j);
             family[i] += volume;
             out[i] += if self.is_whole(place) { volume } else { 0.0 };
@@ -455,7 +456,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
     ) -> u64 {
         let mut places = vec![];
-        self.each_directed(body, |i, j, xi, place| {
+        self.each_place(body, |i, j, xi, place| {
             let [from, to] = [i, j].map(|slot| {
                 let x = body.position(slot);
                 std::array::from_fn(|a| x[a])
@@ -496,11 +497,11 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     fn read_column(&self, body: &Body<D>, _: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
         out.clear();
         match (name, &self.work) {
-            (history::WHOLE, _) => self.each_directed(body, |_, _, _, place| {
+            (history::WHOLE, _) => self.each_place(body, |_, _, _, place| {
                 out.push(f64::from(u8::from(self.is_whole(place))));
             }),
             (history::DONE, Some(work)) => {
-                self.each_directed(body, |_, _, _, place| out.push(work.done[place]));
+                self.each_place(body, |_, _, _, place| out.push(work.done[place]));
             }
             _ => {
                 let mut critical = vec![0.0; body.len];
@@ -513,11 +514,20 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         true
     }
 
+    fn each_directed(
+        &self,
+        body: &Body<D>,
+        _: &str,
+        visit: &mut dyn FnMut(usize, usize, [f64; D]),
+    ) {
+        self.each_place(body, |i, j, xi, _| visit(i, j, xi));
+    }
+
     fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
         let mut places = vec![];
         match name {
             history::WHOLE | history::DONE => {
-                self.each_directed(body, |_, _, _, place| places.push(place));
+                self.each_place(body, |_, _, _, place| places.push(place));
                 if values.len() != places.len() {
                     return false;
                 }
@@ -551,6 +561,16 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
             _ => return false,
         }
         true
+    }
+
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        self.inner.archive(body, archive);
+        archive.all("reference", &mut self.reference);
+        archive.given("work", &mut self.work, |work, archive| {
+            archive.all("done", &mut work.done);
+            archive.all("at", &mut work.at);
+            archive.all("pulls", &mut work.before);
+        });
     }
 
     fn bytes(&self) -> usize {

@@ -16,6 +16,7 @@ use crate::interaction::{
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
+use crate::state::Archive;
 use kernel::{Density, Energies, Forces, View};
 
 /// Margin of the list, in cut-offs.
@@ -387,6 +388,10 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
 
     fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
         self.family[slot] as usize
+    }
+
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        self.list.archive(body.len, archive);
     }
 
     fn bytes(&self) -> usize {

@@ -24,6 +24,7 @@ use crate::interaction::{
 };
 use crate::law::fan::{Fan, tangents};
 use crate::law::terms::Near;
+use crate::state::Archive;
 use back::{Back, Ends};
 use gather::Gather;
 use kernel::{Centres, View};
@@ -393,6 +394,13 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
 
     fn family_size(&self, _: &Body<3>, slot: usize) -> usize {
         self.family[slot] as usize
+    }
+
+    fn archive(&mut self, body: &Body<3>, archive: &mut Archive<'_>) {
+        self.list.archive(body.len, archive);
+        if archive.loads() {
+            self.back = Back::of(&self.list, self.simd);
+        }
     }
 
     fn bytes(&self) -> usize {

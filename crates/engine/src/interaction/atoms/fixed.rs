@@ -13,6 +13,7 @@ use crate::interaction::{
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
+use crate::state::Archive;
 use kernel::{Density, Energies, Forces, View};
 
 /// A potential on a stencil.
@@ -245,6 +246,9 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
         self.links.family_size(body, slot)
     }
+
+    /// Nothing is remembered.
+    fn archive(&mut self, _: &Body<D>, _: &mut Archive<'_>) {}
 
     fn bytes(&self) -> usize {
         self.links.bytes() + 8 * self.slope.len()

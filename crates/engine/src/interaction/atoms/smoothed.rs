@@ -19,6 +19,7 @@ use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
 use crate::spec::CrackKind;
+use crate::state::Archive;
 use std::collections::BTreeMap;
 
 /// An interaction of atoms that nodes carry along.
@@ -457,6 +458,10 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
 
     fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
         self.sizes[slot] as usize
+    }
+
+    fn archive(&mut self, _: &Body<D>, archive: &mut Archive<'_>) {
+        self.inner.archive(&self.atoms, archive);
     }
 
     fn bytes(&self) -> usize {

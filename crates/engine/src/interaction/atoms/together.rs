@@ -6,6 +6,7 @@ use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
 use crate::spec::CrackKind;
+use crate::state::Archive;
 
 /// Potentials whose energies are added.
 pub struct Together<const D: usize> {
@@ -225,6 +226,13 @@ impl<const D: usize> Interaction<D> for Together<D> {
 
     fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
         usize::from(self.family[slot])
+    }
+
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        for part in &mut self.parts {
+            archive.within("part", |archive| part.archive(body, archive));
+        }
+        archive.one("broken", &mut self.broken);
     }
 
     fn bytes(&self) -> usize {

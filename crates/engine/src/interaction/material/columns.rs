@@ -2,12 +2,14 @@
 
 use super::MaterialInteraction;
 use super::family::{Family, Slots};
+use super::measured::Before;
 use super::store::Store;
-use crate::body::{Body, Field};
+use crate::body::{Body, Column, Field};
 use crate::columns::{Declaration, Dimension, On, Shape};
 use crate::execute::lane::TILE;
 use crate::interaction::history;
 use crate::law::material::{Columns, Material, Numbers};
+use crate::state::Archive;
 
 /// Columns of criteria.
 const LIFE: &str = "remaining_life";
@@ -105,12 +107,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         out.clear();
         if name == history::WHOLE {
             let bit = |(at, l): (usize, usize)| f64::from(self.alive[at] >> l & 1);
-            out.extend(self.bits().into_iter().map(bit));
+            out.extend(self.bits().map(bit));
             return true;
         }
         if let Some(values) = self.beside(name) {
-            let places = self.places_of(0, 1, 1);
-            out.extend(places.into_iter().map(|at| values[at]));
+            out.extend(self.places_of(0, 1, 1).map(|at| values[at]));
             return true;
         }
         if name == INTEGRITY && !self.integrity.is_empty() {
@@ -144,9 +145,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 }
             }
             Place::Memory(first) => {
-                for at in self.memory_of(first, numbers) {
-                    out.push(self.memory[at]);
-                }
+                let places = self.memory_of(first, numbers);
+                out.extend(places.map(|at| self.memory[at]));
             }
         }
         true
@@ -154,7 +154,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     pub(super) fn write_named(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
         if name == history::WHOLE {
-            let bits = self.bits();
+            let bits: Vec<_> = self.bits().collect();
             if bits.len() != values.len() {
                 return false;
             }
@@ -170,7 +170,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             return true;
         }
         if self.beside(name).is_some() {
-            let places = self.places_of(0, 1, 1);
+            let places: Vec<_> = self.places_of(0, 1, 1).collect();
             if values.len() != places.len() {
                 return false;
             }
@@ -218,7 +218,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 true
             }
             (Place::Memory(first), On::Bonds) => {
-                let places = self.memory_of(first, numbers);
+                let places: Vec<_> = self.memory_of(first, numbers).collect();
                 if values.len() != places.len() {
                     return false;
                 }
@@ -235,8 +235,45 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         }
     }
 
+    /// [`archive`](crate::interaction::Interaction::archive).
+    pub(super) fn archive_memory(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        archive.all("whole", &mut self.alive);
+        archive.all("past", &mut self.past.data);
+        archive.all("points", &mut self.point.data);
+        archive.all("memory", &mut self.memory);
+        archive.all("critical", &mut self.critical);
+        archive.all("damage", &mut self.damage);
+        archive.all("work", &mut self.work);
+        archive.all("life", &mut self.life);
+        archive.all("integrity", &mut self.integrity);
+        archive.part("expansion", &mut self.expansion);
+        let records = self.room.records.len();
+        let before = || Before {
+            u: crate::body::zeros(body.len),
+            records: vec![0.0; records],
+            expansion: Column::default(),
+        };
+        archive.option("before", &mut self.before, before, |before, archive| {
+            archive.columns("displacement", &mut before.u);
+            archive.all("records", &mut before.records);
+            archive.part("expansion", &mut before.expansion);
+        });
+        archive.one("step", &mut self.step);
+        archive.one("degraded", &mut self.degraded);
+        for each in &mut self.stiffness {
+            archive.list("stiffness", each);
+        }
+        archive.one("stiffened", &mut self.stiffened);
+        if archive.loads() {
+            // kernels follow every bit
+            let there = self.counted.iter();
+            self.alive.iter_mut().zip(there).for_each(|(a, t)| *a &= t);
+            self.look_forms(body);
+        }
+    }
+
     /// Directed bonds of the reference family, in order of slots: group, bond and lane.
-    fn directed(&self) -> Vec<(usize, usize, usize)> {
+    pub(super) fn directed(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let mut rows = vec![];
         for group in 0..self.family.groups() {
             for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
@@ -244,31 +281,29 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
         }
         rows.sort_unstable();
-        let bonds = |(_, group, l): (usize, usize, usize)| {
+        rows.into_iter().flat_map(move |(_, group, l)| {
             let there = move |k: &usize| self.counted[self.family.byte(group, *k)] >> l & 1 == 1;
             (0..self.family.bonds(group))
                 .filter(there)
                 .map(move |k| (group, k, l))
-        };
-        rows.into_iter().flat_map(bonds).collect()
+        })
     }
 
     /// Where their bits are: byte and lane.
-    fn bits(&self) -> Vec<(usize, usize)> {
-        let at = |(group, k, l): (usize, usize, usize)| (self.family.byte(group, k), l);
-        self.directed().into_iter().map(at).collect()
+    fn bits(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.directed()
+            .map(|(group, k, l)| (self.family.byte(group, k), l))
     }
 
     /// Places of what they remember.
-    fn memory_of(&self, first: usize, numbers: usize) -> Vec<usize> {
+    fn memory_of(&self, first: usize, numbers: usize) -> impl Iterator<Item = usize> {
         self.places_of(first, numbers, <M::Memory<f64> as Numbers<f64>>::COUNT)
     }
 
     /// The same of `count` numbers for each.
-    fn places_of(&self, first: usize, numbers: usize, count: usize) -> Vec<usize> {
-        let of = |(group, k, l): (usize, usize, usize)| {
+    fn places_of(&self, first: usize, numbers: usize, count: usize) -> impl Iterator<Item = usize> {
+        self.directed().flat_map(move |(group, k, l)| {
             (0..numbers).map(move |n| self.family.own(group, k, first + n, count) + l)
-        };
-        self.directed().into_iter().flat_map(of).collect()
+        })
     }
 }

@@ -13,6 +13,7 @@ use crate::interaction::{
 use crate::law::BondFactors;
 use crate::law::material::Material;
 use crate::spec::{CrackKind, Cycles, Release};
+use crate::state::Archive;
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialInteraction<D, F, M> {
     fn made_for(&self) -> Identity {
@@ -356,6 +357,24 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
     fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
         self.check(body, &[]);
         self.write_named(body, name, values)
+    }
+
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        self.archive_memory(body, archive);
+    }
+
+    fn each_directed(
+        &self,
+        body: &Body<D>,
+        _: &str,
+        visit: &mut dyn FnMut(usize, usize, [f64; D]),
+    ) {
+        let original = body.originals();
+        for (group, k, l) in self.directed() {
+            let i = self.family.rows(group).slot(l);
+            let j = original(self.family.ends(group, k).slot(l));
+            visit(i, j, self.family.bond(group, k, l).0);
+        }
     }
 
     fn memory(&self) -> (&[u8], &[f64]) {

@@ -629,6 +629,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     /// What points know of their families, from the bonds that are whole now.
     fn look(&mut self, body: &Body<D>) {
         self.look_stiffness(body, &crate::body::zeros(0), |_, _| true);
+        self.look_forms(body);
+    }
+
+    /// Forms by the bonds that are whole.
+    fn look_forms(&mut self, body: &Body<D>) {
         let count = <M::Form<f64> as Numbers<f64>>::COUNT;
         if count == 0 {
             return;

@@ -12,6 +12,7 @@ use crate::law::Law;
 use std::ops::Range;
 
 /// A point in its tile.
+#[derive(Clone, Copy)]
 pub(super) struct Place {
     /// Place of the tile among those that have points.
     pub n: usize,
@@ -86,11 +87,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         &self.alive[n * self.width..(n + 1) * self.width]
     }
 
-    /// Where the bits of all directed bonds are between points that there are: byte and lane.
-    pub(super) fn bits<'a>(
-        &'a self,
-        body: &'a Body<D>,
-    ) -> impl Iterator<Item = (usize, usize)> + 'a {
+    /// All directed bonds between points that there are: the point, and the number of the bond in its stencil.
+    fn directed<'a>(&'a self, body: &'a Body<D>) -> impl Iterator<Item = (Place, usize)> + 'a {
         let grid = body.grid();
         self.places(grid).flat_map(move |p| {
             let partners = &self.partners[p.sublattice];
@@ -98,11 +96,26 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 grid.neighbour(p.slot, partners[*k].cell, partners[*k].to)
                     .is_some()
             };
-            let first = p.n * self.width;
-            (0..partners.len())
-                .filter(there)
-                .map(move |k| (first + k, p.lane))
+            (0..partners.len()).filter(there).map(move |k| (p, k))
         })
+    }
+
+    /// Where their bits are: byte and lane.
+    pub(super) fn bits<'a>(
+        &'a self,
+        body: &'a Body<D>,
+    ) -> impl Iterator<Item = (usize, usize)> + 'a {
+        self.directed(body)
+            .map(|(p, k)| (p.n * self.width + k, p.lane))
+    }
+
+    /// Slots and ξ of all directed bonds.
+    pub(super) fn each_end(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        let original = body.originals();
+        for (p, k) in self.directed(body) {
+            let b = &self.bonds[p.sublattice][k];
+            visit(p.slot, original(b.to(p.slot)), b.back.map(|x| -x));
+        }
     }
 
     fn field(&self, slot: usize) -> [f64; 2] {

@@ -6,6 +6,7 @@ use crate::execute::lane::TILE;
 use crate::interaction::history::{self, Crosses};
 use crate::law::Law;
 use crate::spec::CrackKind;
+use crate::state::Archive;
 
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
     pub(super) fn damages(&self, body: &Body<D>, out: &mut [f64]) {
@@ -114,15 +115,40 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         }
     }
 
+    /// [`archive`](crate::interaction::Interaction::archive).
+    pub(super) fn archive_memory(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        archive.all("whole", &mut self.alive);
+        archive.all("critical", &mut self.critical);
+        if !archive.loads() {
+            return;
+        }
+        let mut there = vec![0; self.alive.len()];
+        for (at, l) in self.bits(body) {
+            history::set(&mut there[at], l, true);
+        }
+        // kernels follow every bit
+        self.alive.iter_mut().zip(there).for_each(|(a, t)| *a &= t);
+        self.look_critical(body);
+        self.look(body.grid());
+    }
+
+    /// What follows from critical stretches.
+    fn look_critical(&mut self, body: &Body<D>) {
+        if !self.critical.is_empty() {
+            body.fill_images(&mut self.critical);
+        }
+        let known = body.slots.iter().map(|s| self.critical.get(*s as usize));
+        let known = known.flatten().copied();
+        self.least_critical = known.fold(f64::INFINITY, f64::min);
+        self.settled = false;
+    }
+
     pub(super) fn write_named(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
         if name != history::WHOLE {
             if !history::write_critical(body, &mut self.critical, name, values) {
                 return false;
             }
-            body.fill_images(&mut self.critical);
-            let known = body.slots.iter().map(|s| self.critical[*s as usize]);
-            self.least_critical = known.fold(f64::INFINITY, f64::min);
-            self.settled = false;
+            self.look_critical(body);
             return true;
         }
         let bits: Vec<_> = self.bits(body).collect();

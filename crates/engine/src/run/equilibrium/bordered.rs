@@ -36,7 +36,7 @@ impl<const D: usize> Model<D> {
             inertia: vec![],
             radius: vec![],
         };
-        let bodies: Vec<&Indenter<D>> = self.indenters.iter().filter(|i| i.is_free()).collect();
+        let bodies: Vec<&Indenter<D>> = self.applied.free().collect();
         let all = bodies.len() * each.len();
         for (n, body) in bodies.iter().enumerate() {
             let mass = body.rigid.inertia(inertia.acceleration);
@@ -71,7 +71,7 @@ impl<const D: usize> Model<D> {
 
     /// Bodies with mass go where they are tried.
     pub(in crate::run) fn place_bodies(&mut self, tried: &Tried<D>, inertia: &Inertia<D>) {
-        let free = self.indenters.iter_mut().filter(|i| i.is_free());
+        let free = self.applied.rigid.iter_mut().filter(|i| i.is_free());
         for ((body, start), end) in free.zip(&inertia.bodies).zip(&tried.bodies) {
             body.step_implicitly([start, end], inertia.newmark());
         }
@@ -83,7 +83,7 @@ impl<const D: usize> Model<D> {
         tried: &Tried<D>,
         inertia: &Inertia<D>,
     ) -> (Vec<Wrench>, [f64; 2]) {
-        let free = self.indenters.iter().filter(|i| i.is_free());
+        let free = self.applied.free();
         let (mut rest, mut left, mut scale) = (vec![], 0.0f64, 0.0f64);
         for (n, (body, end)) in free.zip(&tried.bodies).enumerate() {
             let (acting, radius) = (body.rigid.wrench(), body.rigid.gyration());

@@ -9,24 +9,21 @@ use crate::run::model::Model;
 use crate::spec::LinearBody;
 use crate::statics::cg::{self, Goal};
 use crate::statics::{
-    self, Assembled, Block, Direct, LinearOperator, Shifted, Solved, Support, Swept, Touching, norm,
+    self, Assembled, Block, Direct, LinearOperator, Shifted, Solved, Support, Swept, norm,
 };
 
 impl<const D: usize> Model<D> {
     /// The linear body about the displacements of now, points that touch too.
     pub(super) fn tangent_now(&mut self) -> LinearBody<D> {
         self.refresh_images();
-        let touch = Touching {
-            contact: self.contact.as_ref(),
-            friction: self.friction.as_ref(),
-        };
-        statics::linear_body_touching(&self.body, self.interaction.as_mut(), touch, &self.u)
+        let (bonds, contact) = (self.interaction.as_mut(), self.contact.as_ref());
+        statics::linear_body_touching(&self.body, bonds, contact, &self.u)
     }
 
     /// What indenters resist with at points.
     fn pushed(&self) -> Vec<Block<D>> {
         let mut sum = vec![[[0.0; D]; D]; self.body.len];
-        for indenter in &self.indenters {
+        for indenter in &self.applied.rigid {
             indenter.each_tangent(&self.body, &self.u, |slot, _, block| {
                 for a in 0..D {
                     for b in 0..D {

@@ -1,6 +1,6 @@
 //! What holds a body in equilibrium, and what nothing holds.
 
-use crate::condition::constraint::Constraint;
+use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::error::{Loose, SolveError};
 use crate::fracture::fragments::Fragments;
 use crate::run::model::Model;
@@ -15,21 +15,17 @@ pub(super) struct Held<const D: usize> {
 }
 
 impl<const D: usize> Model<D> {
-    /// Which components the conditions leave free.
-    pub(in crate::run) fn support(&self) -> Support<D> {
-        self.support_of(&self.constraints)
+    /// Which components forces move.
+    pub(in crate::run) fn held(&self) -> Support<D> {
+        self.held_by(&self.prescribed)
     }
 
-    pub(super) fn support_of(&self, constraints: &[Constraint<D>]) -> Support<D> {
+    /// The same under this motion.
+    pub(super) fn held_by(&self, prescribed: &PrescribedMotion<D>) -> Support<D> {
         let id = self.ids();
         let mut support = Support::none(self.body.points());
-        for c in constraints {
-            for (slot, held) in c.holds() {
-                for a in (0..D).filter(|a| held[*a]) {
-                    support.free[id[slot] as usize][a] = false;
-                }
-            }
-        }
+        let mut hold = |slot, a| support.free[id[slot] as usize][a] = false;
+        prescribed.all().for_each(|p| p.each_held(&mut hold));
         support
     }
 
@@ -45,10 +41,10 @@ impl<const D: usize> Model<D> {
     /// # Errors
     /// A load acts on it: there is no equilibrium.
     pub(super) fn support_now(&mut self, options: Statics) -> Result<Held<D>, SolveError> {
-        let support = self.support();
+        let support = self.held();
         let resting = vec![];
         // what touches may hold, too
-        if self.broken == 0 || self.contact.is_some() || !self.indenters.is_empty() {
+        if self.accounts.broken == 0 || self.contact.is_some() || !self.applied.rigid.is_empty() {
             return Ok(Held { support, resting });
         }
         let (places, period) = (self.reference_places(), self.body.period);

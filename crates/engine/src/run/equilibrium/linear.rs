@@ -83,15 +83,15 @@ impl<const D: usize> Model<D> {
 
     /// Breaks the bonds that a linear solution stretches too far: they release what the linear body loses. Forces are those of what is left.
     pub(super) fn tear_linear(&mut self) {
-        let (broken, released) = (self.broken, self.released);
+        let (broken, released) = (self.accounts.broken, self.accounts.released);
         let held: f64 = self.quadratic_energy().iter().sum();
-        self.forces(true, 0.0);
-        if self.broken > broken {
+        self.forces(true, self.clock.trial());
+        if self.accounts.broken > broken {
             let kept: f64 = self.quadratic_energy().iter().sum();
-            self.released = released;
-            self.released.book(held - kept);
+            self.accounts.released = released;
+            self.accounts.released.book(held - kept);
         }
         self.linear_forces();
-        self.other_forces(0.0);
+        self.other_forces(self.clock.trial());
     }
 }

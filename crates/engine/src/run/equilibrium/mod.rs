@@ -13,9 +13,9 @@ mod system;
 pub(super) mod tried;
 
 use self::state::StaticState;
+use super::clock::Clock;
 use super::model::Model;
 use crate::body::{Field, zeros};
-use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
@@ -24,7 +24,6 @@ use crate::interaction::friction::Pressed;
 use crate::law::descriptor::Memory;
 use crate::message;
 use crate::quantity::{Dimension, rounded};
-use crate::run::Simulation;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
 use crate::spec::{Cycles, LinearBody, Method, Solver, Statics};
@@ -76,7 +75,7 @@ impl<const D: usize> Model<D> {
                 .help("write method = \"newton\" or \"relaxation\""));
             }
         }
-        let support = self.support();
+        let support = self.held();
         if support.unknowns() == 0 {
             return Err(BuildError::ill_posed(
                 "conditions",
@@ -95,13 +94,15 @@ impl<const D: usize> Model<D> {
             )
             .help("prescribe displacements that hold every connected part: D translations and its rotations"));
         }
-        let moving = self.constraints.iter().any(|c| c.is_velocity());
+        let mut constraints = self.prescribed.constraints.iter();
+        let moving = constraints.any(|c| c.is_velocity());
         let replaced = self
+            .applied
             .loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::Replace(_)));
         let own = |l: &Load<D>| matches!(l.kind, LoadKind::Own(_));
-        if self.loads.iter().any(own) {
+        if self.applied.loads.iter().any(own) {
             return Err(BuildError::unsupported(
                 "conditions",
                 "a force of the program has no tangent, which equilibrium needs",
@@ -115,7 +116,7 @@ impl<const D: usize> Model<D> {
             }
             _ => None,
         };
-        if self.indenters.iter().any(Indenter::is_free) {
+        if self.applied.free().next().is_some() {
             return Err(BuildError::unsupported(
                 "indenter",
                 "an indenter with a mass moves in time, and statics has none",
@@ -133,7 +134,7 @@ impl<const D: usize> Model<D> {
             self.enough_memory_for_rows()?;
         }
         if options.method != Method::Relaxation
-            && (self.contact.is_some() || !self.indenters.is_empty())
+            && (self.contact.is_some() || !self.applied.rigid.is_empty())
         {
             return Err(BuildError::unsupported(
                 "statics.method",
@@ -221,8 +222,7 @@ impl<const D: usize> Model<D> {
         self.stale = false;
         self.learn_strength();
         // energy that came in from outside counts as initial
-        let now = self.energy_now();
-        self.initial_energy = Some(now.base());
+        self.accounts.initial = Some(self.energy_now().base());
     }
 
     /// Forces from which the next increment sets out; before the first one nothing acts but bonds.
@@ -235,8 +235,8 @@ impl<const D: usize> Model<D> {
             self.interaction
                 .forces(body, u, &mut self.f, Sweep::Hold, None);
         }
-        if self.step > self.origin.0 {
-            self.other_forces(0.0);
+        if self.clock.has_gone_on() {
+            self.other_forces(self.clock.trial());
         }
     }
 
@@ -260,16 +260,15 @@ impl<const D: usize> Model<D> {
         let tally = self
             .interaction
             .forces(&self.body, &rest, &mut f, sweep, None);
-        self.broken += tally.broken;
-        self.released += tally.released;
-        self.past_work[0] += tally.dissipated;
+        self.accounts.book(&tally);
         self.take_heat_of_flow();
     }
 
     /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.
     pub(super) fn increment(&mut self) -> Result<(), RunError> {
-        self.update_toughness(self.time() + self.dt)?;
-        self.spread(self.time(), self.dt)?;
+        let (t, dt) = (self.clock.time(), self.clock.dt());
+        self.update_toughness(t + dt)?;
+        self.spread(t, dt)?;
         self.pay(0.5, 0.0);
         let Some(mut state) = self.statics.take() else {
             return Ok(());
@@ -277,20 +276,19 @@ impl<const D: usize> Model<D> {
         self.wear(state.options.cycles);
         let (u, f) = (self.u.clone(), self.f.clone());
         // nothing acts before the first increment
-        let first = self.step == self.origin.0 && !Self::follows_a_path(state.options);
+        let first = !self.clock.has_gone_on() && !Self::follows_a_path(state.options);
         let external = match first {
             true => zeros(self.body.len),
             false => self.external(),
         };
-        let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
-        self.touch_departs(Pressed::Held);
-        self.step += 1;
+        self.acting_depart(Pressed::Held);
+        let clock = self.clock;
+        self.clock.forward();
         if Self::breaks_in_turn(state.options) {
-            return self.break_next(state, u, f);
+            return self.break_next(state, clock, u, f);
         }
-        let origin = self.origin;
         if state.options.timed {
-            self.interaction.last(self.dt);
+            self.interaction.last(self.clock.dt());
         }
         let result = match Self::follows_a_path(state.options) {
             true => self.settle_path(&mut state, [&u, &f, &external]),
@@ -298,11 +296,10 @@ impl<const D: usize> Model<D> {
         };
         self.interaction.last(0.0);
         if let Err(error) = result {
-            self.step -= 1;
-            self.origin = origin;
+            self.clock = clock;
             self.retreat_transfers();
             (self.u, self.f) = (u, f);
-            self.touch_retreats();
+            self.acting_retreat();
             self.refresh_images();
             self.statics = Some(state);
             return Err(self.unsolved(error));
@@ -312,33 +309,37 @@ impl<const D: usize> Model<D> {
             self.warn_of_start(way.relaxed);
         }
         state.solved = solved;
-        self.past_work[0] += way.lost;
-        self.past_work[1] += way.work;
+        self.accounts.past.dissipated += way.lost;
+        self.accounts.past.conditions += way.work;
         self.statics = Some(state);
-        for (indenter, before) in self.indenters.iter_mut().zip(&pushed) {
-            indenter.account(before, &self.body, [&u, &self.u]);
-        }
-        if let Some(friction) = &mut self.friction {
-            friction.arrive(&self.body, &self.u);
-        }
+        self.acting_arrive(&u);
         self.pay(0.5, 0.0);
         Ok(())
     }
 
-    /// Whatever rubs or is rubbed remembers where an increment or a step began.
-    pub(super) fn touch_departs(&mut self, pressed: Pressed) {
-        let u = &self.u;
-        self.indenters.iter_mut().for_each(|i| i.depart(u, pressed));
-        if let Some(friction) = &mut self.friction {
-            friction.depart(u, pressed);
+    /// All that acts remembers where an increment or a step began.
+    pub(super) fn acting_depart(&mut self, pressed: Pressed) {
+        self.applied.all().for_each(|x| x.depart(&self.u, pressed));
+        if let Some(contact) = &mut self.contact {
+            contact.depart(&self.u, pressed);
+        }
+    }
+
+    /// It has ended, from these displacements on.
+    pub(super) fn acting_arrive(&mut self, then: &Field<D>) {
+        let between = [then, &self.u];
+        let all = self.applied.all();
+        all.for_each(|x| x.arrive(&self.body, between));
+        if let Some(contact) = &mut self.contact {
+            contact.arrive(&self.body, &self.u);
         }
     }
 
     /// It goes back there.
-    pub(super) fn touch_retreats(&mut self) {
-        self.indenters.iter_mut().for_each(Indenter::retreat);
-        if let Some(friction) = &mut self.friction {
-            friction.retreat();
+    pub(super) fn acting_retreat(&mut self) {
+        self.applied.all().for_each(|x| x.retreat());
+        if let Some(contact) = &mut self.contact {
+            contact.retreat();
         }
     }
 
@@ -346,10 +347,10 @@ impl<const D: usize> Model<D> {
     fn break_next(
         &mut self,
         mut state: StaticState<D>,
+        clock: Clock,
         u: Field<D>,
         f: Field<D>,
     ) -> Result<(), RunError> {
-        let origin = self.origin;
         match self.settle_sequence(&mut state) {
             Ok(solved) => {
                 state.solved = solved;
@@ -357,8 +358,7 @@ impl<const D: usize> Model<D> {
                 Ok(())
             }
             Err(error) => {
-                self.step -= 1;
-                (self.u, self.f, self.origin) = (u, f, origin);
+                (self.clock, self.u, self.f) = (clock, u, f);
                 self.refresh_images();
                 self.statics = Some(state);
                 Err(self.unsolved(error))
@@ -368,7 +368,7 @@ impl<const D: usize> Model<D> {
 
     pub(super) fn unsolved(&self, error: SolveError) -> RunError {
         RunError::Equilibrium {
-            step: self.step + 1,
+            step: self.clock.step() + 1,
             position: self.place_of(&error),
             error,
         }
@@ -387,13 +387,13 @@ impl<const D: usize> Model<D> {
 
     /// Cycles of the load that holds the body where it is; bonds that are worn out break at the first look for the next equilibrium.
     fn wear(&mut self, cycles: Option<Cycles>) {
-        let Some(cycles) = cycles.filter(|_| self.step > self.origin.0) else {
+        let Some(cycles) = cycles.filter(|_| self.clock.has_gone_on()) else {
             return;
         };
         self.refresh_images();
-        let left = (cycles.most - self.cycles).max(0.0);
+        let left = (cycles.most - self.accounts.cycles).max(0.0);
         let passed = self.interaction.wear(&self.body, &self.u, &cycles, left);
-        self.cycles += passed.unwrap_or(0.0);
+        self.accounts.cycles += passed.unwrap_or(0.0);
     }
 
     /// Equilibrium, and again after bonds broke, until none breaks; what it did is counted from the displacements, forces and loads before.
@@ -411,13 +411,11 @@ impl<const D: usize> Model<D> {
         let mut way = Way::default();
         let mut from = [u.clone(), f.clone(), external.clone()];
         for round in 0..ROUNDS {
-            let t = self.time();
-            for c in &self.constraints {
-                c.place(&mut self.u, t);
-            }
-            self.indenters.iter_mut().for_each(|i| i.place(t));
+            let t = self.clock.time();
+            self.prescribed.place(&mut self.u, t);
+            self.applied.rigid.iter_mut().for_each(|i| i.place(t));
             self.look_again();
-            let before = self.broken;
+            let before = self.accounts.broken;
             let solved = match method {
                 Method::Linear => self.solve_linear(state, &support)?,
                 Method::Newton => self.solve_newton(state, &support)?,
@@ -433,9 +431,9 @@ impl<const D: usize> Model<D> {
             }
             match linear {
                 true => self.tear_linear(),
-                false => self.forces(true, 0.0),
+                false => self.forces(true, self.clock.trial()),
             }
-            if self.broken == before {
+            if self.accounts.broken == before {
                 return Ok((total, way));
             }
             // the next solution is that of another body
@@ -463,7 +461,7 @@ impl<const D: usize> Model<D> {
                     .forces(&self.body, &self.u, &mut self.f, Sweep::Hold, None);
             }
         }
-        self.other_forces(0.0);
+        self.other_forces(self.clock.trial());
     }
 
     /// Linear increments solve once, and look once which bonds break.
@@ -531,10 +529,8 @@ impl<const D: usize> Model<D> {
     /// # Errors
     /// Those of the factorisation.
     pub(super) fn lowest_modes(&mut self, count: usize) -> Result<Vec<Mode<D>>, SolveError> {
-        let support = match self.preload.as_ref().filter(|_| self.is_loaded()) {
-            Some(waits) => self.support_of(&waits.constraints),
-            None => self.support(),
-        };
+        let waits = self.preload.as_ref().filter(|_| self.clock.is_loaded());
+        let support = self.held_by(waits.map_or(&self.prescribed, |waits| &waits.prescribed));
         let body = self.linear_now();
         modes::lowest(&body, &support, count)
     }

@@ -130,7 +130,7 @@ impl<const D: usize> Model<D> {
         if support.unknowns() == 0 {
             return Err(SolveError::NothingFree);
         }
-        let before = self.origin.1;
+        let before = self.clock.origin();
         let start = self.values(u);
         let asked = state
             .followed
@@ -158,7 +158,7 @@ impl<const D: usize> Model<D> {
             false,
             &mut way,
         );
-        self.forces(true, 0.0);
+        self.forces(true, self.clock.trial());
         state.followed = Some(followed);
         Ok((solved, way))
     }
@@ -255,7 +255,7 @@ impl<const D: usize> Model<D> {
         most: &mut f64,
     ) -> Result<Trial<D>, SolveError> {
         let mut r = vec![[0.0; D]; way.len()];
-        self.origin = (self.step, before + factor);
+        self.clock.set(before + factor);
         let scale = self.imbalance(&further(start, &way, 1.0), &mut r, support);
         *most = scale.max(*most);
         let size = norm(&r);
@@ -272,11 +272,10 @@ impl<const D: usize> Model<D> {
 
     /// Forces on the free components and displacements of the others under the load of 1.
     fn unit_load(&mut self, support: &Support<D>) -> Vec<[f64; D]> {
-        let origin = std::mem::replace(&mut self.origin, (self.step, 1.0));
+        let clock = self.clock;
+        self.clock.set(1.0);
         let mut u = self.body.at_rest();
-        for c in &self.constraints {
-            c.place(&mut u, 1.0);
-        }
+        self.prescribed.place(&mut u, 1.0);
         let load = self.external();
         let (mut unit, load) = (self.values(&u), self.per_point(&load));
         for ((unit, load), free) in unit.iter_mut().zip(&load).zip(&support.free) {
@@ -284,7 +283,7 @@ impl<const D: usize> Model<D> {
                 unit[a] = load[a];
             }
         }
-        self.origin = origin;
+        self.clock = clock;
         unit
     }
 

@@ -85,14 +85,14 @@ impl<const D: usize> Model<D> {
 
     /// Raises masses where points touch: they stay light enough to settle elsewhere. `sum` is room for a number per slot.
     fn weigh(&self, sum: &mut [f64], own: &[f64], mass: &mut [f64]) {
-        if self.contact.is_none() && self.indenters.is_empty() {
+        if self.contact.is_none() && self.applied.rigid.is_empty() {
             return;
         }
         sum.fill(0.0);
         if let Some(contact) = &self.contact {
-            contact.add_stiffness(&self.body, &self.u, sum);
+            contact.central.add_stiffness(&self.body, &self.u, sum);
         }
-        for indenter in &self.indenters {
+        for indenter in &self.applied.rigid {
             indenter.add_stiffness(&self.body, &self.u, sum);
         }
         for ((m, own), &s) in mass.iter_mut().zip(own).zip(&self.body.slots) {
@@ -111,7 +111,7 @@ impl<const D: usize> Model<D> {
         let mut sum = vec![0.0; self.body.len];
         self.interaction.each_bond(&self.body, &mut |i, j, xi, _| {
             let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
-            if let Some(stiffness) = contact.first_stiffness(&self.body, [i, j], r0) {
+            if let Some(stiffness) = contact.central.first_stiffness(&self.body, [i, j], r0) {
                 sum[i] += stiffness;
                 sum[j] += stiffness;
             }
@@ -123,14 +123,14 @@ impl<const D: usize> Model<D> {
 
     /// What rubs is pressed as it is now.
     fn press(&mut self) {
-        if let Some(friction) = &mut self.friction {
+        if let Some(friction) = self.contact.as_mut().and_then(|c| c.friction.as_mut()) {
             friction.press();
         }
-        self.indenters.iter_mut().for_each(Indenter::press);
+        self.applied.rigid.iter_mut().for_each(Indenter::press);
     }
 
     fn rubs(&self) -> bool {
-        self.friction.as_ref().is_some_and(Friction::rubs)
-            || self.indenters.iter().any(Indenter::rubs)
+        let friction = self.contact.as_ref().and_then(|c| c.friction.as_ref());
+        friction.is_some_and(Friction::rubs) || self.applied.rigid.iter().any(Indenter::rubs)
     }
 }

@@ -13,7 +13,7 @@
 
 use super::held::Held;
 use super::state::{Critical, Sequence, StaticState};
-use crate::body::{Field, zeros};
+use crate::body::Field;
 use crate::error::{BuildError, SolveError};
 use crate::interaction::bond::critical_stretch;
 use crate::interaction::{BondState, history};
@@ -119,16 +119,11 @@ impl<const D: usize> Model<D> {
     }
 
     fn loads_are_proportional(&mut self) -> bool {
+        let trial = self.clock.trial();
         let mut at = |t: f64| {
             let mut u = self.body.at_rest();
-            for c in &self.constraints {
-                c.place(&mut u, t);
-            }
-            let mut f = zeros(self.body.len);
-            let v = zeros(self.body.len);
-            for load in &mut self.loads {
-                load.add(&self.body, [&u, &v], &mut f, t, 0.0, None);
-            }
+            self.prescribed.place(&mut u, t);
+            let f = self.applied.external(&self.body, &u, t, trial);
             [u, f]
         };
         let [none, half, whole] = [0.0, 0.5, 1.0].map(&mut at);
@@ -151,7 +146,7 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
     ) -> Result<Solved, SolveError> {
         self.tell_toughness();
-        let (broken, released) = (self.broken, self.released);
+        let accounts = self.accounts;
         let last = state.sequence.take();
         let mut whole = vec![];
         if let Some(last) = &last {
@@ -166,7 +161,7 @@ impl<const D: usize> Model<D> {
                 self.interaction
                     .write_column(&self.body, history::WHOLE, &whole);
             }
-            (self.broken, self.released) = (broken, released);
+            self.accounts = accounts;
             state.sequence = last;
             state.forget();
         }
@@ -186,9 +181,9 @@ impl<const D: usize> Model<D> {
             ends.iter()
                 .any(|[a, b]| (same(a, &from) && same(b, &to)) || (same(b, &from) && same(a, &to)))
         };
-        self.broken += self.interaction.cut(&self.body, CrackKind::Broken, &is);
+        self.accounts.broken += self.interaction.cut(&self.body, CrackKind::Broken, &is);
         let kept: f64 = self.quadratic_energy().iter().sum();
-        self.released.book(held - kept);
+        self.accounts.released.book(held - kept);
     }
 
     fn next_equilibrium(
@@ -198,11 +193,9 @@ impl<const D: usize> Model<D> {
     ) -> Result<Solved, SolveError> {
         let before = self.u.clone();
         // under the load 1
-        self.origin = (self.step, 1.0);
+        self.clock.set(1.0);
         let Held { support, resting } = self.support_now(state.options)?;
-        for c in &self.constraints {
-            c.place(&mut self.u, 1.0);
-        }
+        self.prescribed.place(&mut self.u, 1.0);
         let load = self.external();
         let b = self.per_point(&load);
         let mut x = self.values(&self.u);
@@ -229,11 +222,9 @@ impl<const D: usize> Model<D> {
         }
         self.refresh_images();
         self.f = f.clone();
-        self.origin = (self.step, factor);
-        for c in &self.constraints {
-            c.place(&mut self.u, factor);
-        }
-        self.other_forces(0.0);
+        self.clock.set(factor);
+        self.prescribed.place(&mut self.u, factor);
+        self.other_forces(self.clock.trial());
         state.sequence = Some(Sequence { next, f, factor });
         Ok(solved)
     }
@@ -319,7 +310,7 @@ impl<const D: usize> Model<D> {
                 });
         }
         work += 0.5 * (factor * factor - from * from) * stiffness;
-        self.past_work[1] += work;
+        self.accounts.past.conditions += work;
     }
 
     /// Is it an analysis of this kind?

@@ -8,7 +8,6 @@ use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::interaction::Sweep;
 use crate::law::descriptor::Memory;
-use crate::run::Simulation;
 use crate::run::constitutive::Laws;
 use crate::run::model::Model;
 use crate::spec::{Solver, Statics};
@@ -37,12 +36,8 @@ const SMALL_STRETCH: f64 = 0.01;
 impl<const D: usize> Model<D> {
     /// Force densities of the loads at this time.
     pub(super) fn external(&mut self) -> Field<D> {
-        let mut f = zeros(self.body.len);
-        let (v, t) = (zeros(self.body.len), self.time());
-        for load in &mut self.loads {
-            load.add(&self.body, [&self.u, &v], &mut f, t, 0.0, None);
-        }
-        f
+        let (t, at) = (self.clock.time(), self.clock.trial());
+        self.applied.external(&self.body, &self.u, t, at)
     }
 
     /// Forces per point of force densities.
@@ -72,9 +67,9 @@ impl<const D: usize> Model<D> {
         // who keeps track of what is near is told of every trial
         let path = square.sqrt();
         if let Some(contact) = &mut self.contact {
-            contact.moved(path);
+            contact.central.moved(path);
         }
-        self.indenters.iter_mut().for_each(|i| i.moved(path));
+        self.applied.all().for_each(|x| x.moved(path));
     }
 
     pub(in crate::run) fn factored(&self, options: Statics, support: &Support<D>) -> bool {
@@ -348,7 +343,7 @@ impl<const D: usize> Model<D> {
         support: &Support<D>,
     ) -> f64 {
         self.set_values(x);
-        self.forces_held();
+        self.forces_held(self.clock.trial());
         let all = self.per_point(&self.f);
         let loads = self.external();
         let loads = self.per_point(&loads);

@@ -1,9 +1,10 @@
 //! What statics keeps between increments.
 
 use super::system::Equations;
-use crate::body::Field;
-use crate::spec::{LinearBody, Statics};
-use crate::statics::{Direct, Solved};
+use crate::body::{Field, zeros};
+use crate::spec::{Control, LinearBody, Statics};
+use crate::state::{Archive, words};
+use crate::statics::{Direct, Solved, Support};
 
 pub(in crate::run) struct StaticState<const D: usize> {
     pub options: Statics,
@@ -37,11 +38,60 @@ impl<const D: usize> StaticState<D> {
         }
     }
 
+    /// Is t a factor that may fall?
+    pub fn load_may_fall(&self) -> bool {
+        self.options.control != Control::Load
+    }
+
     /// Factors belong to other equations.
     pub fn forget(&mut self) {
         self.factors = None;
         self.step = None;
         self.asymmetry = None;
+    }
+}
+
+impl<const D: usize> StaticState<D> {
+    /// What later increments read, of a body with so many slots; factors of the reference are found anew.
+    pub fn archive(&mut self, slots: usize, archive: &mut Archive<'_>) {
+        let sequence = || Sequence {
+            next: vec![],
+            f: zeros(slots),
+            factor: 0.0,
+        };
+        archive.option("sequence", &mut self.sequence, sequence, |s, archive| {
+            archive.list("next", &mut s.next);
+            archive.columns("force_density", &mut s.f);
+            archive.one("factor", &mut s.factor);
+        });
+        let followed = || Followed {
+            way: vec![],
+            factor: 0.0,
+            part: 0.0,
+            most: 0.0,
+        };
+        archive.option("followed", &mut self.followed, followed, |f, archive| {
+            archive.list("way", &mut f.way);
+            archive.one("factor", &mut f.factor);
+            archive.one("part", &mut f.part);
+            archive.one("most", &mut f.most);
+        });
+        archive.list("masses", &mut self.masses);
+        archive.one("solved", &mut self.solved);
+    }
+
+    /// Equations of a step in time that may serve the next, factored anew with what was held.
+    pub fn archive_kept(
+        &mut self,
+        period: [Option<f64>; D],
+        held: &Support<D>,
+        archive: &mut Archive<'_>,
+    ) {
+        let none = || Equations::none(period);
+        archive.option("kept", &mut self.step, none, |kept, archive| {
+            kept.archive(held, archive);
+        });
+        archive.one("solved", &mut self.solved);
     }
 }
 
@@ -53,6 +103,8 @@ pub(in crate::run) struct Critical<const D: usize> {
     pub xi: [f64; D],
     pub stretch: f64,
 }
+
+words!([const D: usize] Critical<D> { i: usize, j: usize, xi: [f64; D], stretch: f64 });
 
 /// What the last equilibrium left to be done.
 pub(in crate::run) struct Sequence<const D: usize> {

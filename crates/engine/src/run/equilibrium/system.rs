@@ -3,6 +3,7 @@
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::spec::LinearBody;
+use crate::state::Archive;
 use crate::statics::{Block, Direct, Support, dot};
 use peridyne_algebra::Factors;
 
@@ -26,6 +27,71 @@ pub(super) struct Equations<const D: usize> {
 }
 
 impl<const D: usize> Equations<D> {
+    /// Those of no body.
+    pub fn none(period: [Option<f64>; D]) -> Self {
+        Equations {
+            body: Some(LinearBody {
+                position: vec![],
+                volume: vec![],
+                density: vec![],
+                period,
+                start: vec![],
+                partner: vec![],
+                block: vec![],
+                carriers: None,
+                mass: None,
+            }),
+            factors: None,
+            resisted: None,
+            added: vec![],
+            border: None,
+            acceleration: 0.0,
+            unstable: false,
+            old: true,
+        }
+    }
+
+    /// Equations with factors, of a step in time.
+    pub fn archive(&mut self, held: &Support<D>, archive: &mut Archive<'_>) {
+        archive.given("tangent", &mut self.body, |body, archive| {
+            archive.list("position", &mut body.position);
+            archive.list("volume", &mut body.volume);
+            archive.list("density", &mut body.density);
+            archive.list("start", &mut body.start);
+            archive.list("partner", &mut body.partner);
+            archive.list("block", &mut body.block);
+        });
+        archive.list("added", &mut self.added);
+        let border = || Border {
+            columns: vec![],
+            own: vec![],
+            inertia: vec![],
+            radius: vec![],
+        };
+        archive.option("border", &mut self.border, border, |border, archive| {
+            archive.lists("columns", &mut border.columns);
+            archive.lists("own", &mut border.own);
+            archive.list("inertia", &mut border.inertia);
+            archive.list("radius", &mut border.radius);
+        });
+        archive.one("acceleration", &mut self.acceleration);
+        if !archive.loads() {
+            return;
+        }
+        let made = self
+            .body
+            .as_ref()
+            .filter(|b| b.check().is_ok())
+            .map(|body| {
+                // as they were made
+                Direct::against(body, held, &self.added)
+            });
+        match made {
+            Some(Ok(factors)) => self.factors = Some(factors),
+            Some(Err(_)) | None => archive.refuse("tangent"),
+        }
+    }
+
     pub fn factored(&self) -> bool {
         self.factors.is_some()
     }

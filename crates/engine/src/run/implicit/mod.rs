@@ -17,13 +17,9 @@
 pub(super) mod state;
 
 use self::state::Implicit;
-use super::Simulation;
 use super::equilibrium::tried::{Inertia, Tried};
 use super::model::Model;
 use crate::body::Field;
-use crate::condition::driven::Driven;
-use crate::condition::indenter::Indenter;
-use crate::condition::load::{Load, LoadKind};
 use crate::condition::rigid::Wrench;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::interaction::friction::Pressed;
@@ -35,18 +31,6 @@ use crate::statics::{self, Support};
 pub(super) fn breaks(spec: &Spec) -> bool {
     spec.materials.iter().any(|m| m.fracture.is_some())
         || spec.interfaces.iter().any(|i| i.fracture.is_some())
-}
-
-/// Loads of the spec and those from outside.
-fn loads<'a, const D: usize>(
-    own: &'a [Load<D>],
-    driven: &'a [Driven<D>],
-) -> impl Iterator<Item = &'a Load<D>> {
-    let driven = driven.iter().filter_map(|d| match d {
-        Driven::Load(l) => Some(l),
-        Driven::Indenter(_) => None,
-    });
-    own.iter().chain(driven)
 }
 
 impl<const D: usize> Model<D> {
@@ -90,14 +74,14 @@ impl<const D: usize> Model<D> {
             )
             .help("leave release out, or take integrator = \"verlet\""));
         }
-        if self.indenters.iter().any(Indenter::is_free) && self.held().unknowns() == 0 {
+        if self.applied.free().next().is_some() && self.held().unknowns() == 0 {
             return Err(BuildError::unsupported(
                 "indenters",
                 "an indenter with a mass moves implicitly beside points that are free, and all are held",
             )
             .help("take integrator = \"verlet\""));
         }
-        if let Err(SolveError::NoTangent { what }) = self.all_have_tangents() {
+        if let Some(what) = self.applied.without_tangent() {
             return Err(BuildError::unsupported(
                 "conditions",
                 format!("{what} has no tangent, which an implicit step needs"),
@@ -119,44 +103,9 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
-    fn all_have_tangents(&self) -> Result<(), SolveError> {
-        let replaces = |l: &Load<D>| matches!(l.kind, LoadKind::Replace(_));
-        let driven = self.driven.iter().any(|d| match d {
-            Driven::Indenter(_) => true,
-            Driven::Load(l) => replaces(l),
-        });
-        let own = |l: &Load<D>| matches!(l.kind, LoadKind::Own(_));
-        let what = match () {
-            () if self.loads.iter().any(own) => "a force of the program",
-            () if self.loads.iter().any(replaces) => "a force that replaces all others",
-            () if driven => "an indenter or a force from outside",
-            () => return Ok(()),
-        };
-        Err(SolveError::NoTangent { what })
-    }
-
-    /// Which components the forces move.
-    pub(in crate::run) fn held(&self) -> Support<D> {
-        let mut support = self.support();
-        let still = self.still.slots().iter().map(|s| *s as usize);
-        let still = still.flat_map(|s| (0..D).map(move |a| (s, a)));
-        let carried = self.carried.holds().filter(|(_, a)| *a < D);
-        let told: Vec<(usize, usize)> = still.chain(carried).collect();
-        if !told.is_empty() {
-            let mut id = vec![0u32; self.body.len];
-            for (n, &s) in self.body.slots.iter().enumerate() {
-                id[s as usize] = n as u32;
-            }
-            for (slot, a) in told {
-                support.free[id[slot] as usize][a] = false;
-            }
-        }
-        support
-    }
-
     /// One step. On an error the state is that of the step before.
     pub(super) fn implicit_step(&mut self) -> Result<(), RunError> {
-        let (t, dt) = (self.time(), self.dt);
+        let (t, dt) = (self.clock.time(), self.clock.dt());
         self.update_toughness(t + dt)?;
         self.spread(t, dt)?;
         self.pay(0.5, 0.0);
@@ -165,11 +114,7 @@ impl<const D: usize> Model<D> {
         };
         let (u, v, f) = (self.u.clone(), self.v.clone(), self.f.clone());
         let (accelerations, bodies) = (state.acceleration.clone(), state.bodies.clone());
-        let before: Vec<Vec<[f64; D]>> = loads(&self.loads, &self.driven)
-            .map(|l| l.acting().to_vec())
-            .collect();
-        let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
-        self.touch_departs(Pressed::Now);
+        self.acting_depart(Pressed::Now);
         self.interaction.last(dt);
         let moved = self.move_implicitly(&mut state);
         let error = match (moved, self.fault) {
@@ -184,34 +129,19 @@ impl<const D: usize> Model<D> {
             state.equations.forget();
             self.implicit = Some(state);
             self.retreat_transfers();
-            self.step -= 1;
-            self.touch_retreats();
+            self.clock.back();
+            self.acting_retreat();
             // and the forces of before are found from there
-            self.touch_departs(Pressed::Now);
+            self.acting_depart(Pressed::Now);
             self.look_again();
-            self.forces_held();
+            self.forces_held(self.clock.trial());
             return Err(error);
         }
-        let (body, now) = (&self.body, &self.u);
-        let driven = self.driven.iter_mut().filter_map(|d| match d {
-            Driven::Load(l) => Some(l),
-            Driven::Indenter(_) => None,
-        });
-        for (load, before) in self.loads.iter_mut().chain(driven).zip(&before) {
-            load.account(body, before, |i| {
-                std::array::from_fn(|a| now[a][i] - u[a][i])
-            });
-        }
-        for (indenter, before) in self.indenters.iter_mut().zip(&pushed) {
-            indenter.account(before, body, [&u, now]);
-        }
-        if let Some(friction) = &mut self.friction {
-            friction.arrive(body, now);
-        }
-        let end = self.time();
+        self.acting_arrive(&u);
+        let end = self.clock.time();
         let change = self.coupled_change(&v);
         self.account_constraints(end, dt, change.as_ref());
-        self.numerical += self.taken([&u, &v, &f], change.as_ref(), &state.held);
+        self.accounts.numerical += self.taken([&u, &v, &f], change.as_ref(), &state.held);
         if state.breaks {
             self.let_go(&mut state);
         }
@@ -248,14 +178,14 @@ impl<const D: usize> Model<D> {
 
     /// Breaks the bonds that the end of a step stretched too far, and lets forces and accelerations jump.
     fn let_go(&mut self, state: &mut Implicit<D>) {
-        let before = self.broken;
+        let before = self.accounts.broken;
         let whole = self.f.clone();
         self.evolve();
-        if self.broken == before {
+        if self.accounts.broken == before {
             return;
         }
         state.equations.forget();
-        self.forces_held();
+        self.forces_held(self.clock.trial());
         for (a, &s) in state.acceleration.iter_mut().zip(&self.body.slots) {
             let i = s as usize;
             let rho = self.body.density.at(i);
@@ -267,7 +197,7 @@ impl<const D: usize> Model<D> {
 
     /// Displacements, velocities and forces of the step's end, before bonds break; told points go where they are told.
     fn move_implicitly(&mut self, state: &mut Implicit<D>) -> Result<(), SolveError> {
-        let (t, dt) = (self.time(), self.dt);
+        let (t, dt) = (self.clock.time(), self.clock.dt());
         let alpha = state.options.alpha;
         let f = self.f.clone();
         let coupled = match self.inertia.take() {
@@ -278,15 +208,15 @@ impl<const D: usize> Model<D> {
                 Some(a)
             }
         };
-        for c in &mut self.constraints {
-            c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
-        }
-        self.still.begin(&mut self.v, &mut self.f, true);
-        self.carried.begin(&self.u, &mut self.v, &mut self.f, dt);
-        self.step += 1;
+        let (u, v, force) = (&self.u, &mut self.v, &mut self.f);
+        let all = self.prescribed.all_mut();
+        all.for_each(|p| p.before_drift(u, v, force, [t, dt], true));
+        self.clock.forward();
         self.fault = None;
-        self.all_have_tangents()?;
-        let t = self.time();
+        if let Some(what) = self.applied.without_tangent() {
+            return Err(SolveError::NoTangent { what });
+        }
+        let t = self.clock.time();
         let support = self.held();
         if state.held != support {
             state.equations.forget();
@@ -310,14 +240,11 @@ impl<const D: usize> Model<D> {
         if coupled.is_some() {
             self.prescribed_accelerations(&mut a);
         }
-        for c in &self.constraints {
-            c.drift(&mut self.u, t, dt);
-            c.settle(&mut self.v, t, dt);
+        for p in self.prescribed.all() {
+            p.after_drift(&mut self.u, [t, dt]);
+            p.whole_velocity(&mut self.v, [t, dt]);
         }
-        self.carried.drift(&mut self.u);
-        self.still.settle(&mut self.v);
-        self.carried.settle(&mut self.v);
-        self.indenters.iter_mut().for_each(|i| i.place(t));
+        self.applied.rigid.iter_mut().for_each(|i| i.place(t));
         self.look_again();
         let start = Tried {
             x: self.values(&self.u),
@@ -340,31 +267,27 @@ impl<const D: usize> Model<D> {
             }
         }
         match state.breaks {
-            true => self.forces_held(),
+            true => self.forces_held(self.clock.trial()),
             // with whole velocities: nothing is added to them
-            false => self.forces(true, 0.0),
+            false => self.forces(true, self.clock.trial()),
         }
         Ok(())
     }
 
     /// `(m a, dL/dt)` of rigid bodies with mass where the step began.
     fn bodies_before(&self, state: &Implicit<D>) -> Vec<Wrench> {
-        let free = self.indenters.iter().filter(|i| i.is_free());
         let known = |n: usize| state.bodies.get(n).copied();
-        let each = free.enumerate();
+        let each = self.applied.free().enumerate();
         each.map(|(n, i)| known(n).unwrap_or_else(|| i.departed_under()))
             .collect()
     }
 
     /// `f` are the force densities at the start of the step.
-    fn inertia(&self, state: &Implicit<D>, t: f64, f: &Field<D>) -> Inertia<D> {
+    fn inertia(&mut self, state: &Implicit<D>, t: f64, f: &Field<D>) -> Inertia<D> {
         let options = state.options;
-        let velocity = options.gamma / (options.beta * self.dt);
-        let acceleration = 1.0 / (options.beta * self.dt * self.dt);
-        let mut viscosity = vec![0.0; self.body.len];
-        for load in loads(&self.loads, &self.driven) {
-            load.each_viscosity(t, |slot, c| viscosity[slot] += c);
-        }
+        let velocity = options.gamma / (options.beta * self.clock.dt());
+        let acceleration = 1.0 / (options.beta * self.clock.dt() * self.clock.dt());
+        let viscosity = self.applied.viscosity(&self.body, t);
         let volume = |i: usize| self.body.volume.at(i);
         let weight = 1.0 / (1.0 + options.alpha);
         let mass = self.by_id(|i| weight * self.body.density.at(i) * volume(i));
@@ -375,7 +298,7 @@ impl<const D: usize> Model<D> {
                 .by_id(|i| std::array::from_fn(|a| options.alpha * weight * volume(i) * f[a][i])),
             false => vec![],
         };
-        let free = self.indenters.iter().filter(|i| i.is_free());
+        let free = self.applied.free();
         let part = options.alpha * weight;
         let bodies_before = free.map(|i| i.departed_under().map(|f| part * f)).collect();
         let coupled = self.inertia.as_ref().map(|i| i.masses.clone());
@@ -388,7 +311,7 @@ impl<const D: usize> Model<D> {
             weight,
             velocity,
             acceleration,
-            step: self.dt,
+            step: self.clock.dt(),
             bodies: self.bodies_before(state),
             bodies_before,
         }
@@ -396,7 +319,7 @@ impl<const D: usize> Model<D> {
 
     fn not_solved(&self, error: SolveError) -> RunError {
         RunError::Implicit {
-            step: self.step,
+            step: self.clock.step(),
             position: self.place_of(&error),
             error,
         }

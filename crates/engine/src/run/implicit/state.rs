@@ -1,8 +1,10 @@
 //! What the implicit stepper keeps between steps.
 
+use crate::body::Body;
 use crate::condition::rigid::Wrench;
 use crate::run::equilibrium::state::StaticState;
 use crate::spec::{Control, Method, Newmark, Statics};
+use crate::state::Archive;
 use crate::statics::Support;
 
 /// Factors that may serve again, and for whom.
@@ -20,6 +22,14 @@ pub(in crate::run) struct Implicit<const D: usize> {
 }
 
 impl<const D: usize> Implicit<D> {
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        archive.list("acceleration", &mut self.acceleration);
+        archive.list("rigid_bodies", &mut self.bodies);
+        archive.list("free", &mut self.held.free);
+        self.equations
+            .archive_kept(body.period, &self.held, archive);
+    }
+
     pub fn new(options: Newmark) -> Self {
         let equations = StaticState::new(Statics {
             method: Method::Newton,

@@ -4,7 +4,6 @@
 pub(super) mod state;
 
 use self::state::Inertia;
-use super::Simulation;
 use super::model::Model;
 use crate::body::{Field, zeros};
 use crate::condition::constraint::Constraint;
@@ -20,7 +19,7 @@ impl<const D: usize> Model<D> {
         };
         let a = self.accelerations(&mut inertia);
         // who holds points asks what these take
-        let taken = match self.constraints.is_empty() {
+        let taken = match self.prescribed.constraints.is_empty() {
             true => vec![],
             false => inertia.masses.times(&a),
         };
@@ -53,9 +52,11 @@ impl<const D: usize> Model<D> {
     /// Those of now, of components whose motion is prescribed; points that stand still, or are carried from outside, have none.
     pub(super) fn prescribed_accelerations(&self, a: &mut [[f64; D]]) {
         let id = self.ids();
-        let (t, dt) = (self.time(), self.dt);
-        for c in &self.constraints {
-            c.each(|k, slot, axis| a[id[slot] as usize][axis] = c.acceleration(axis, k, t, dt));
+        let (t, dt) = (self.clock.time(), self.clock.dt());
+        for c in &self.prescribed.constraints {
+            for (k, slot, axis) in c.each() {
+                a[id[slot] as usize][axis] = c.acceleration(axis, k, t, dt);
+            }
         }
     }
 
@@ -96,8 +97,7 @@ impl<const D: usize> Model<D> {
             None => Constraint::<D>::gained(body, i, v),
             Some(change) => 0.5 * (v[0] + v[1]) * change[a][i],
         };
-        for c in &mut self.constraints {
-            c.end(body, &self.u, &self.f, &gained, t, dt);
-        }
+        let state = [&self.u, &self.f];
+        self.prescribed.after_forces(body, state, &gained, [t, dt]);
     }
 }

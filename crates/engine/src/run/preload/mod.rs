@@ -4,18 +4,17 @@
 pub(super) mod state;
 
 use self::state::Preload;
-use super::Simulation;
 use super::constitutive::Laws;
 use super::equilibrium::state::StaticState;
 use super::model::Model;
-use crate::condition::constraint::Constraint;
-use crate::condition::indenter::Indenter;
+use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
 use crate::message;
 use crate::quantity::{Dimension, place};
 use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Statics, Stepper};
 use crate::statics::Solved;
+use std::collections::HashMap;
 
 /// Distances (spacings) that are round-off.
 const NEAR: f64 = 1e-9;
@@ -106,38 +105,31 @@ impl<const D: usize> Model<D> {
         });
         let cuts = cuts.collect::<Result<Vec<_>, _>>()?;
         let within = |e: BuildError| e.within("preload");
-        let (loads, constraints) = self
-            .loads_and_constraints(&preload.conditions, sets)
+        let (forces, constraints) = self
+            .acting(&preload.conditions, &preload.indenters, sets)
             .map_err(within)?;
-        self.agrees(&constraints, preload.end())?;
-        let indenters = preload.indenters.iter().map(Indenter::new).collect();
+        let prescribed = PrescribedMotion {
+            constraints,
+            ..PrescribedMotion::default()
+        };
+        self.agrees(&prescribed, preload.end())?;
         let knows_contact = statics.method == Method::Relaxation;
         let waits = Preload {
-            increments: preload.increments,
-            shown: match preload.duration {
-                Some(all) => all / preload.increments as f64,
-                None => self.dt,
-            },
-            loads: std::mem::replace(&mut self.loads, loads),
-            constraints: std::mem::replace(&mut self.constraints, constraints),
-            indenters: std::mem::replace(&mut self.indenters, indenters),
-            contact: match knows_contact {
-                true => None,
-                false => self.contact.take(),
-            },
-            friction: self.friction.take(),
+            applied: std::mem::replace(&mut self.applied, forces),
+            prescribed: std::mem::replace(&mut self.prescribed, prescribed),
+            contact: self.contact.take_if(|_| !knows_contact),
+            friction: self.contact.as_mut().and_then(|c| c.friction.take()),
             velocity: self.v.clone(),
-            dt: self.dt,
             implicit: self.implicit.take(),
             cuts,
         };
-        self.dt = preload.end() / preload.increments as f64;
+        self.clock.load_first(preload);
         self.check_agreement(&preload.conditions, preload.end())
             .map_err(within)?;
         self.check_statics(statics).map_err(within)?;
         let told = Self::tell_loads(
             &self.body,
-            &mut self.loads,
+            &mut self.applied.loads,
             &preload.conditions,
             preload.end(),
         );
@@ -149,26 +141,13 @@ impl<const D: usize> Model<D> {
     }
 
     /// Do points that both stages hold begin their motion where statics leaves them?
-    fn agrees(&self, before: &[Constraint<D>], end: f64) -> Result<(), BuildError> {
-        let mut left = std::collections::HashMap::new();
-        for c in before {
-            c.each(|k, slot, a| {
-                if let Some(x) = c.displaced(a, k, end) {
-                    left.insert((slot, a), x);
-                }
-            });
-        }
-        let mut jump = None;
-        for c in &self.constraints {
-            c.each(|k, slot, a| {
-                if let (Some(x), Some(from)) = (c.displaced(a, k, 0.0), left.get(&(slot, a)))
-                    && self.apart(x, *from)
-                    && jump.is_none()
-                {
-                    jump = Some((slot, a, x, *from));
-                }
-            });
-        }
+    fn agrees(&self, before: &PrescribedMotion<D>, end: f64) -> Result<(), BuildError> {
+        let left = before.displaced(end).map(|(slot, a, x)| ((slot, a), x));
+        let left: HashMap<_, _> = left.collect();
+        let jump = self.prescribed.displaced(0.0).find_map(|(slot, a, x)| {
+            let from = *left.get(&(slot, a))?;
+            self.apart(x, from).then_some((slot, a, x, from))
+        });
         let Some((slot, a, x, from)) = jump else {
             return Ok(());
         };
@@ -191,28 +170,6 @@ impl<const D: usize> Model<D> {
         !((x - y).abs() <= NEAR * (self.body.spacing + x.abs().max(y.abs())))
     }
 
-    /// Is the next step the first of the motion?
-    pub(super) fn is_loaded(&self) -> bool {
-        { self.preload.as_ref() }.is_some_and(|p| self.step >= p.increments)
-    }
-
-    /// Time as records show it: motion begins at 0, and statics is before.
-    pub(super) fn shown_time(&self) -> f64 {
-        match &self.preload {
-            Some(p) => (self.step as f64 - p.increments as f64) * p.shown,
-            None => self.time(),
-        }
-    }
-
-    /// Time of a frame, which only grows: where t is a factor that may fall, the number of the equilibrium.
-    pub(super) fn frame_time(&self) -> f64 {
-        let falls = |s: &StaticState<D>| s.options.control != Control::Load;
-        match self.statics.as_ref().is_some_and(falls) {
-            true => self.step as f64,
-            false => self.shown_time(),
-        }
-    }
-
     /// From the last equilibrium to motion: what waited takes the place of what loaded the body. On an error nothing is changed.
     pub(super) fn set_in_motion(&mut self) -> Result<(), RunError> {
         let Some(mut waits) = self.preload.take() else {
@@ -226,22 +183,11 @@ impl<const D: usize> Model<D> {
         if let Some(state) = self.statics.take() {
             self.loaded = Some(state.solved);
         }
-        self.past_work = [now.dissipated, now.work_conditions, now.work_indenter];
-        self.driven.clear();
-        self.loads = waits.loads;
-        self.constraints = waits.constraints;
-        self.indenters = waits.indenters;
-        if waits.contact.is_some() {
-            self.contact = waits.contact;
-        }
-        self.friction = waits.friction;
-        self.implicit = waits.implicit;
-        self.dt = waits.dt;
-        self.origin = (self.step, 0.0);
-        self.v = waits.velocity;
-        if !waits.cuts.is_empty() {
+        self.accounts.pass(&now);
+        let cuts = self.take_over(waits);
+        if !cuts.is_empty() {
             let held: f64 = self.interaction.energy(&self.body, &self.u).iter().sum();
-            for crack in &waits.cuts {
+            for crack in &cuts {
                 self.info.cut +=
                     self.interaction
                         .cut(&self.body, CrackKind::Broken, &|from, to| {
@@ -249,54 +195,56 @@ impl<const D: usize> Model<D> {
                         });
             }
             let kept: f64 = self.interaction.energy(&self.body, &self.u).iter().sum();
-            self.released.book(held - kept);
+            self.accounts.released.book(held - kept);
         }
-        let (t, dt) = (self.time(), self.dt);
-        for c in &mut self.constraints {
-            c.start(&mut self.u, &mut self.v, t, dt);
-        }
+        let step = [self.clock.time(), self.clock.dt()];
+        self.prescribed.start(&mut self.u, &mut self.v, step);
         self.look_again();
-        self.forces(true, 0.0);
+        self.forces(true, self.given());
         // velocities were given, not made by forces
         let given = self.energy_now().kinetic;
-        if let Some(initial) = &mut self.initial_energy {
+        if let Some(initial) = &mut self.accounts.initial {
             *initial += given;
         }
         Ok(())
     }
 
+    /// What waited takes its place; the cracks that are cut now.
+    pub(super) fn take_over(&mut self, waits: Preload<D>) -> Vec<Crack<D>> {
+        self.applied = waits.applied;
+        self.prescribed = waits.prescribed;
+        match &mut self.contact {
+            Some(contact) => contact.friction = waits.friction,
+            None => self.contact = waits.contact,
+        }
+        self.implicit = waits.implicit;
+        self.clock.begin_motion();
+        self.v = waits.velocity;
+        waits.cuts
+    }
+
     /// Does motion begin where statics ended?
     fn can_move(&mut self, waits: &mut Preload<D>) -> Result<(), RunError> {
-        let mut jump = None;
-        for c in &waits.constraints {
-            c.each(|k, slot, axis| {
-                if let Some(asked) = c.displaced(axis, k, 0.0)
-                    && self.apart(asked, self.u[axis][slot])
-                    && jump.is_none()
-                {
-                    jump = Some(RunError::Jump {
-                        step: self.step,
-                        position: self.body.position(slot),
-                        axis: ["x", "y", "z"][axis],
-                        asked,
-                        found: self.u[axis][slot],
-                    });
-                }
+        let mut told = waits.prescribed.displaced(0.0);
+        let jump = told.find(|(slot, axis, asked)| self.apart(*asked, self.u[*axis][*slot]));
+        if let Some((slot, axis, asked)) = jump {
+            return Err(RunError::Jump {
+                step: self.clock.step(),
+                position: self.body.position(slot),
+                axis: ["x", "y", "z"][axis],
+                asked,
+                found: self.u[axis][slot],
             });
         }
-        if let Some(jump) = jump {
-            return Err(jump);
-        }
         if let Some(contact) = &mut waits.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            contact.look_again();
-            contact.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+            contact.central.look_again();
+            contact.find(&self.body, &self.u, self.interaction.as_ref());
             // those that attract each other, too
             let mut pairs = 0;
-            contact.each_pull(&self.u, |_| pairs += 1);
+            contact.central.each_pull(&self.u, |_| pairs += 1);
             if pairs > 0 {
                 return Err(RunError::Touching {
-                    step: self.step,
+                    step: self.clock.step(),
                     pairs,
                 });
             }

@@ -86,12 +86,15 @@ impl<const D: usize> Model<D> {
             let x = self.body.position(s);
             (0..2).all(|a| x[a] > spec.low[a] && x[a] < spec.high[a])
         };
-        let held = self.constraints.iter().flat_map(|c| c.holds());
+        let mut held = vec![];
+        let mut hold = |slot, _| held.push(slot);
+        self.prescribed.all().for_each(|p| p.each_held(&mut hold));
         let loaded = self
+            .applied
             .loads
             .iter()
             .flat_map(|l| l.slots().iter().map(|s| *s as usize));
-        if held.map(|(s, _)| s).chain(loaded).any(inside) {
+        if held.into_iter().chain(loaded).any(inside) {
             let message = "points inside the rectangle are held or loaded, and what that does would count as energy of the crack";
             return Err(BuildError::conflict(at("corners"), message)
                 .help("move the corners away from them"));

@@ -4,7 +4,6 @@ use super::state::{Kind, Probe};
 use crate::columns::{Dimension, Shape};
 use crate::error::BuildError;
 use crate::observe::{Column, ProbeColumn};
-use crate::run::Simulation;
 use crate::run::model::Model;
 use crate::space::Point;
 use crate::spec::{Fold, Measure, Part, ProbeSpec};
@@ -248,16 +247,16 @@ impl<const D: usize> Model<D> {
             .collect();
         // a component that two constraints hold is held once
         let mut held: Vec<[Option<f64>; D]> = vec![[None; D]; ids.len()];
-        let t = self.time();
-        for constraint in &self.constraints {
-            constraint.each(|k, slot, a| {
-                let Some(n) = wanted.get(&slot) else { return };
+        let t = self.clock.time();
+        for constraint in &self.prescribed.constraints {
+            for (k, slot, a) in constraint.each() {
+                let Some(n) = wanted.get(&slot) else { continue };
                 let acceleration = match self.statics.is_some() {
                     true => 0.0,
-                    false => constraint.acceleration(a, k, t, self.dt),
+                    false => constraint.acceleration(a, k, t, self.clock.dt()),
                 };
                 held[*n][a] = Some(acceleration);
-            });
+            }
         }
         let mut forces = vec![];
         for (id, held) in ids.iter().zip(held) {

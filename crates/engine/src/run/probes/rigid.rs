@@ -69,9 +69,9 @@ impl<const D: usize> Model<D> {
         of: Option<RigidQuantity>,
         path: &str,
     ) -> Result<(Kind, Vec<ProbeColumn>), BuildError> {
-        let found = self.indenters.iter().position(|i| i.name == indenter);
+        let found = self.applied.rigid.iter().position(|i| i.name == indenter);
         let Some(n) = found.filter(|_| !indenter.is_empty()) else {
-            let named = self.indenters.iter().filter(|i| !i.name.is_empty());
+            let named = self.applied.rigid.iter().filter(|i| !i.name.is_empty());
             let names: Vec<&str> = named.map(|i| i.name.as_str()).collect();
             let message = format!("there is no indenter `{indenter}`");
             let help = match names.is_empty() {
@@ -92,7 +92,7 @@ impl<const D: usize> Model<D> {
     }
 
     pub(super) fn rigid_values(&self, indenter: usize, of: &[RigidQuantity]) -> Vec<f64> {
-        let found = self.indenters.get(indenter);
+        let found = self.applied.rigid.get(indenter);
         // conditions that were replaced since took the body away
         let value = |q: &RigidQuantity| match found {
             Some(indenter) => q.of(indenter),

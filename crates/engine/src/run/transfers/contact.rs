@@ -96,11 +96,11 @@ impl<const D: usize> Model<D> {
         let (Some(touching), Some(contact)) = (touching, &mut self.contact) else {
             return;
         };
-        let (body, interaction) = (&self.body, &self.interaction);
-        contact.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+        let body = &self.body;
+        contact.find(body, &self.u, self.interaction.as_ref());
         let place = &self.transfers.place;
         touching.clear();
-        contact.each_near(&self.u, |ends, weight| {
+        contact.central.each_near(&self.u, |ends, weight| {
             let bodies = ends.map(|s| body.piece_of(s) as u32);
             touching.add(ends.map(|s| place[s]), bodies, weight);
         });

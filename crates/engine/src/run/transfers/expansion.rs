@@ -114,7 +114,7 @@ impl<const D: usize> Model<D> {
         self.interaction.expand(body, &transfers.strain);
         let price = part * (self.interaction.energy(body, &u)[0] - past);
         transfers.price += price;
-        self.past_work[1] += price;
+        self.accounts.past.conditions += price;
     }
 
     /// What deformation heats.

@@ -6,6 +6,7 @@ use crate::family::stencil::Stencil;
 use crate::message;
 use crate::quantity::Dimension;
 use crate::run::LoadInfo;
+use crate::run::clock::Clock;
 use crate::run::model::Model;
 use crate::run::surface::Factors;
 use crate::space::Point;
@@ -94,7 +95,7 @@ impl<const D: usize> Model<D> {
                 Dimension::TIME.of(self.info.transfers[0].spread),
             ]));
         }
-        self.dt = dt;
+        self.clock = Clock::new(dt);
         self.info.time_step = dt;
         Ok(())
     }

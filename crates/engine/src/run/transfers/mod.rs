@@ -9,7 +9,6 @@ mod warmth;
 pub(super) use expansion::expanding;
 pub use state::TransferInfo;
 
-use super::Simulation;
 use super::model::Model;
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::error::RunError;
@@ -39,7 +38,7 @@ impl Quantity {
 impl<const D: usize> Model<D> {
     /// Values and accounts at the start of a run.
     pub(super) fn start_transfers(&mut self) {
-        let t = self.time();
+        let t = self.clock.time();
         self.break_transfers();
         for transfer in &mut self.transfers.all {
             transfer.start(t);
@@ -50,7 +49,7 @@ impl<const D: usize> Model<D> {
 
     /// The bonds that are whole now conduct, where others broke or healed since.
     pub(super) fn break_transfers(&mut self) {
-        self.transfers.seen = self.broken;
+        self.transfers.seen = self.accounts.broken;
         if self.transfers.all.is_empty() {
             return;
         }
@@ -77,7 +76,7 @@ impl<const D: usize> Model<D> {
     ) -> Result<(), RunError> {
         self.transfers.all.iter_mut().for_each(Transfer::keep);
         self.heat_by_deformation(pressed);
-        if self.transfers.seen != self.broken {
+        if self.transfers.seen != self.accounts.broken {
             self.break_transfers();
         }
         self.conduct_contact();
@@ -85,7 +84,7 @@ impl<const D: usize> Model<D> {
             if let Err(error) = self.transfers.all[n].advance(t, dt) {
                 self.transfers.all.iter_mut().for_each(Transfer::retreat);
                 return Err(RunError::Transfer {
-                    step: self.step + 1,
+                    step: self.clock.step() + 1,
                     quantity: self.transfers.all[n].quantity.name(),
                     error,
                 });
@@ -102,7 +101,7 @@ impl<const D: usize> Model<D> {
         self.transfers.all.iter_mut().for_each(Transfer::retreat);
         self.contract();
         self.warm();
-        self.past_work[1] -= std::mem::take(&mut self.transfers.price);
+        self.accounts.past.conditions -= std::mem::take(&mut self.transfers.price);
     }
 
     pub(super) fn transfer_columns(&self) -> Vec<Declaration> {

@@ -1,6 +1,7 @@
 //! What a model keeps of what spreads.
 
 use crate::spec::{Quantity, TransferMethod};
+use crate::state::{Archive, Owner};
 use crate::transfer::Transfer;
 
 /// What is told of a quantity that spreads.
@@ -35,6 +36,18 @@ pub(in crate::run) struct Transfers {
     pub(super) warmth: Option<Warmth>,
     /// The transfer that deformation heats, by its place, and its strain per value of each material.
     pub(super) heated: Option<(usize, Vec<f64>)>,
+}
+
+impl Owner for Transfers {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.parts("each", &mut self.all);
+        archive.list("strain", &mut self.strain);
+        archive.list("strain_before", &mut self.past);
+        archive.one("price", &mut self.price);
+        archive.given("warmth", &mut self.warmth, |warmth, archive| {
+            archive.all("above", &mut warmth.above);
+        });
+    }
 }
 
 /// The temperature that laws share with the body.

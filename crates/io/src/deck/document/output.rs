@@ -47,11 +47,24 @@ pub struct Output {
     pub space_time: Option<At<Or<SpaceTimes, SpaceTime>>>,
     /// report.html at the end, the run in one file for browsers; true when left out.
     pub report: Option<bool>,
+    /// How often a state is written from which `peridyne resume` goes on, in the folder `checkpoint` of the results: { every = "10 min",
+    /// keep = 2 } when left out, so that runs which are shorter write none; false: only where a run is ended early.
+    pub checkpoint: Option<At<Or<bool, Checkpoint>>>,
     /// Atoms only: one file with all frames, positions, velocities, forces and energies; .extxyz, or .lammpstrj for a
     /// LAMMPS dump.
     pub trajectory: Option<At<String>>,
     /// Atoms only: LAMMPS data file (`atom_style atomic`, with velocities) of the last state.
     pub data: Option<At<String>>,
+}
+
+/// States from which a run goes on.
+#[derive(Debug, Default, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Checkpoint {
+    /// Time on the clock of the machine between two, such as "10 min" or "2 h"; 10 min when left out.
+    pub every: Option<At<String>>,
+    /// How many stay, the newest; 2 when left out.
+    pub keep: Option<At<u64>>,
 }
 
 /// One field by name, or tables of several.

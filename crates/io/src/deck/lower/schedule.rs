@@ -2,13 +2,14 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::{
-    ControlName, Document, IntegratorName, LoadCycles, MethodName, Output, Picture, Run, Safety,
-    SolverName, SpaceTimes, Statics,
+    Checkpoint, ControlName, Document, IntegratorName, LoadCycles, MethodName, Output, Picture,
+    Run, Safety, SolverName, SpaceTimes, Statics,
 };
-use crate::deck::units::{Dim, short};
+use crate::deck::units::{Dim, clock_time, short};
 use crate::deck::value::{At, Number, Or, Written};
 use crate::deck::{OutputSpec, PictureSpec, SpaceTimeSpec};
 use crate::drive::refused_threads;
+use crate::write::checkpoint::CheckpointSchedule;
 use crate::write::folder::stays;
 use crate::write::space_time::Window;
 use crate::write::trajectory::Format;
@@ -475,6 +476,7 @@ pub(super) fn output(
         }
     }
     super::names::apart(context, written)?;
+    let checkpoints = checkpoints(context, written)?;
     let names = [
         ("dir", written.dir.as_ref()),
         ("dump", written.dump.as_ref().map(|n| &n.value)),
@@ -515,9 +517,41 @@ pub(super) fn output(
         pictures,
         space_time: space_times(context, written, moves)?,
         report: written.report.unwrap_or(true),
+        checkpoints,
         trajectories,
         data,
     })
+}
+
+/// When states are written.
+///
+/// # Errors
+/// A time that is none, or not a single one stays.
+fn checkpoints(context: &Context, written: &Output) -> Result<Option<CheckpointSchedule>> {
+    let mut schedule = CheckpointSchedule::default();
+    match written.checkpoint.as_ref().map(|at| &at.value) {
+        Some(Or::Bare(false)) => return Ok(None),
+        None | Some(Or::Bare(true)) => {}
+        Some(Or::Table(Checkpoint { every, keep })) => {
+            if let Some(every) = every {
+                schedule.every = clock_time(&every.value).map_err(|why| {
+                    context.error_with(&every.span, why, "write every = \"10 min\"")
+                })?;
+            }
+            match keep {
+                Some(keep) if keep.value == 0 => {
+                    return Err(context.error_with(
+                        &keep.span,
+                        "no state stays",
+                        "write keep = 1 or more, or checkpoint = false",
+                    ));
+                }
+                Some(keep) => schedule.keep = keep.value as usize,
+                None => {}
+            }
+        }
+    }
+    Ok(Some(schedule))
 }
 
 /// Fields over place and time.

@@ -6,7 +6,7 @@ mod table;
 mod write;
 
 pub use measure::{Dimensions, Kind, Variables, factor_help};
-pub use parse::{split, unit};
+pub use parse::{clock_time, split, unit};
 pub use peridyne::quantity::rounded;
 pub use write::counted;
 pub(in crate::deck) use write::short;

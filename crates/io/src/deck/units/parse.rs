@@ -4,6 +4,7 @@ use super::Dim;
 use super::table::{Unit, named, unknown};
 use peridyne::expression::Misfit;
 use std::ops::Range;
+use std::time::Duration;
 
 /// A unit such as `kg/m^3`, `N/m²`, `J/m^2/s`, `eV/Å^3`, `kg/m3`; each `/` divides by what follows it only.
 pub fn unit(text: &str) -> Result<Unit, String> {
@@ -58,6 +59,26 @@ pub fn unit(text: &str) -> Result<Unit, String> {
             Some(after) => (-1, after.trim_start()),
             None => (1, rest.strip_prefix('*').unwrap_or(rest).trim_start()),
         };
+    }
+}
+
+/// A time on the clock of the machine, `10 min`, `47 h`, `90 s`, in any system of units.
+///
+/// # Errors
+/// It is none, or not above 0.
+pub fn clock_time(text: &str) -> Result<Duration, String> {
+    let end = text.find(|c: char| c.is_alphabetic() && c != 'e' && c != 'E');
+    let (number, name) = text.split_at(end.unwrap_or(text.len()));
+    let none = || format!("`{text}` is no time, expected a number and s, min or h");
+    let number: f64 = number.trim().parse().map_err(|_| none())?;
+    let unit = unit(name).map_err(|_| none())?;
+    if unit.dim != Dim::TIME {
+        return Err(none());
+    }
+    let time = Duration::try_from_secs_f64(unit.si(number)).map_err(|_| none())?;
+    match time.is_zero() {
+        true => Err(format!("`{text}` is no time at all")),
+        false => Ok(time),
     }
 }
 

@@ -5,7 +5,9 @@ use super::slice::SliceFilm;
 use super::{Table, write_arrays, write_image, write_profiles, write_slice, write_table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, create_directory, write_file};
+use crate::write::grown::changed;
 use crate::write::pvd::Pvd;
+use peridyne::state::{Archive, Owner};
 use peridyne_fields::average::Average;
 use peridyne_fields::residuals::Residuals;
 use peridyne_fields::{Cell, Fields, Method, Quantity};
@@ -57,6 +59,50 @@ impl Collected {
     pub fn hurry(&mut self) {
         if let Some(film) = &mut self.film {
             film.hurry();
+        }
+    }
+
+    /// Passes what was collected through an archive; tables are of this grid.
+    pub fn archive(&mut self, grid: Option<([usize; 3], Cell)>, archive: &mut Archive<'_>) {
+        archive.given("film", &mut self.film, |film, a| film.archive(a));
+        archive.items("frames", &mut self.read, Frame::none, |f, a| f.archive(a));
+        archive.part("average", &mut self.average);
+        let none = || {
+            let table = Table {
+                points: vec![],
+                grid,
+                columns: vec![],
+            };
+            (table, None)
+        };
+        archive.option("last", &mut self.last, none, |(table, time), archive| {
+            archive.part("table", table);
+            archive.one("time", time);
+        });
+        archive.part("list", &mut self.pvd);
+    }
+
+    /// Writes the list of frames as it was when the state was saved, and takes away frames that came after it.
+    ///
+    /// # Errors
+    /// The operating system's; a frame is missing.
+    pub fn rewind(&mut self) -> Result<(), WriteError> {
+        let kept: Vec<&str> = self.pvd.files().collect();
+        if let Some(gone) = kept.iter().find(|f| !self.dir.join(f).is_file()) {
+            return Err(changed(&self.dir.join(gone)));
+        }
+        if self.each {
+            // frames are counted: those beyond are of later states
+            for index in self.read.len().. {
+                let names = ["vti", "vts", "csv"].map(|end| format!("frame.{index:06}.{end}"));
+                let there = names.iter().map(|n| self.dir.join(n)).find(|p| p.is_file());
+                let Some(path) = there else { break };
+                std::fs::remove_file(&path).map_err(WriteError::at("take back", &path))?;
+            }
+        }
+        match kept.is_empty() {
+            true => Ok(()),
+            false => self.pvd.write(),
         }
     }
 
@@ -240,7 +286,7 @@ pub fn examined(found: &Fields, of: &Origin, residuals: Result<Residuals, String
         step: of.step,
         time: of.time,
         atoms: found.force.len(),
-        totals: found.totals.clone(),
+        totals: found.totals,
         volume: of.cell.volume(),
         residuals,
         asymmetry: over(off, largest(stress)),

@@ -3,6 +3,7 @@
 use super::Table;
 use super::components;
 use crate::continuum::Units;
+use peridyne::state::{Archive, Owner};
 use peridyne_fields::fields::Totals;
 use peridyne_fields::residuals::{Residual, Residuals};
 use peridyne_fields::{Method, Quantity};
@@ -27,6 +28,45 @@ pub struct Frame {
     pub churning: Option<f64>,
     /// Largest difference of a force from that of the file over the largest force, where the file has them.
     pub forces: Option<f64>,
+}
+
+impl Frame {
+    /// Of nothing.
+    pub(super) fn none() -> Frame {
+        Frame {
+            index: 0,
+            step: None,
+            time: None,
+            atoms: 0,
+            totals: Totals::default(),
+            volume: 0.0,
+            residuals: Err(String::new()),
+            asymmetry: 0.0,
+            virial: None,
+            churning: None,
+            forces: None,
+        }
+    }
+}
+
+impl Owner for Frame {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.one("index", &mut self.index);
+        archive.one("step", &mut self.step);
+        archive.one("time", &mut self.time);
+        archive.one("atoms", &mut self.atoms);
+        archive.one("totals", &mut self.totals);
+        archive.one("volume", &mut self.volume);
+        let mut measured = self.residuals.as_ref().ok().copied();
+        let mut why = self.residuals.as_ref().err().cloned().unwrap_or_default();
+        archive.one("residuals", &mut measured);
+        archive.text("why_none", &mut why);
+        self.residuals = measured.ok_or(why);
+        archive.one("asymmetry", &mut self.asymmetry);
+        archive.one("virial", &mut self.virial);
+        archive.one("churning", &mut self.churning);
+        archive.one("forces", &mut self.forces);
+    }
 }
 
 /// All that is the same for all frames.

@@ -17,6 +17,7 @@ pub use slice::write_slice;
 pub use table::write_table;
 
 use crate::continuum::Units;
+use peridyne::state::{Archive, Owner};
 use peridyne_fields::average::Average;
 use peridyne_fields::fields::{NO_VELOCITIES, Part};
 use peridyne_fields::{Cell, Fields, Quantity};
@@ -67,6 +68,46 @@ fn asked(pressure: bool, places: bool) -> impl Iterator<Item = Quantity> {
     let more = pressure.then_some(Quantity::Pressure);
     let of_places = Quantity::PLACES.into_iter().filter(move |_| places);
     ORDER.into_iter().chain(more).chain(of_places)
+}
+
+impl Owner for Column {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let all = Quantity::ALL;
+        let mut number = all.iter().position(|q| *q == self.quantity).unwrap_or(0);
+        archive.one("quantity", &mut number);
+        match all.get(number) {
+            Some(quantity) => self.quantity = *quantity,
+            None => archive.refuse("quantity"),
+        }
+        archive.text("name", &mut self.name);
+        archive.text("unit", &mut self.unit);
+        let mut values = self.values.as_ref().ok().cloned();
+        let mut why = self.values.as_ref().err().map_or("", |w| w).to_string();
+        archive.option("values", &mut values, Vec::new, |x, a| a.list("all", x));
+        archive.text("why_none", &mut why);
+        if archive.loads() {
+            // a few sentences, once
+            self.values = values.ok_or_else(|| &*why.leak());
+        }
+        archive.option("errors", &mut self.errors, Vec::new, |x, a| {
+            a.list("all", x)
+        });
+    }
+}
+
+impl Owner for Table {
+    /// The grid is the caller's.
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.list("points", &mut self.points);
+        let none = || Column {
+            quantity: Quantity::Density,
+            name: String::new(),
+            unit: String::new(),
+            values: Err(""),
+            errors: None,
+        };
+        archive.items("columns", &mut self.columns, none, |c, a| c.archive(a));
+    }
 }
 
 impl Table {

@@ -7,12 +7,13 @@ use crate::write::atomic::{WriteError, write_file};
 use crate::write::picture::film::{HURRY, animate, stride};
 use crate::write::picture::label;
 use crate::write::plot::{ColorMap, Map};
+use peridyne::state::{Archive, Owner};
 use peridyne_fields::Quantity;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// A slice across the shortest axis of a grid.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Slice {
     /// Names of its files, and what it shows.
     name: &'static str,
@@ -59,11 +60,8 @@ fn slices(table: &Table) -> Vec<Slice> {
     };
     let stress = find(Quantity::Stress).or_else(|| find(Quantity::StressPotential));
     let temperature = find(Quantity::Temperature);
-    let all = [
-        ("stress", "mean normal stress", stress, true),
-        ("temperature", "kinetic temperature", temperature, false),
-    ];
-    let of = |(name, title, found, trace): (_, _, Option<(&Column, &Vec<f64>)>, bool)| {
+    let all = [(KINDS[0], stress, true), (KINDS[1], temperature, false)];
+    let of = |((name, title), found, trace): (_, Option<(&Column, &Vec<f64>)>, bool)| {
         let (column, all) = found?;
         let value = |p: usize| match trace {
             true => (all[9 * p] + all[9 * p + 4] + all[9 * p + 8]) / 3.0,
@@ -137,6 +135,49 @@ pub fn write_slice(dir: &Path, table: &Table, units: Units) -> Result<Vec<PathBu
     Ok(made)
 }
 
+/// Which kinds of slices there are: names and titles.
+const KINDS: [(&str, &str); 2] = [
+    ("stress", "mean normal stress"),
+    ("temperature", "kinetic temperature"),
+];
+
+impl Owner for Slice {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let mut kind = KINDS.iter().position(|k| k.0 == self.name).unwrap_or(0);
+        archive.one("kind", &mut kind);
+        match KINDS.get(kind) {
+            Some((name, title)) => (self.name, self.title) = (name, title),
+            None => archive.refuse("kind"),
+        }
+        archive.one("across", &mut self.across);
+        archive.one("along", &mut self.along);
+        archive.one("range", &mut self.range);
+        archive.one("columns", &mut self.columns);
+        archive.list("values", &mut self.values);
+        archive.text("unit", &mut self.unit);
+        archive.one("signed", &mut self.signed);
+        let axes = self.across < 3 && self.along.iter().all(|a| *a < 3);
+        if archive.loads() && !axes {
+            archive.refuse("across");
+        }
+    }
+}
+
+impl Owner for SliceFilm {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let none = || (None, Slice::default());
+        archive.items(
+            "frames",
+            &mut self.frames,
+            none,
+            |(time, slice), archive| {
+                archive.one("time", time);
+                slice.archive(archive);
+            },
+        );
+    }
+}
+
 /// Slices of frames, kept until the ends of the colours are known.
 #[derive(Debug, Clone, Default)]
 pub struct SliceFilm {
@@ -163,7 +204,7 @@ impl SliceFilm {
     /// The operating system's.
     pub fn finish(self, dir: &Path, units: Units) -> Result<Vec<PathBuf>, WriteError> {
         let mut made = vec![];
-        for name in ["stress", "temperature"] {
+        for (name, _) in KINDS {
             let own: Vec<&(Option<f64>, Slice)> =
                 self.frames.iter().filter(|(_, s)| s.name == name).collect();
             let Some((_, first)) = own.first() else {

@@ -1,21 +1,23 @@
-//! A film of the frames of a run, as an animated PNG. Frames wait in a temporary file beside it, small, until the run has ended: then
+//! A film of the frames of a run, as an animated PNG. Frames wait in a file of their own, small, until the run has ended: then
 //! the ends of the colours are known, and how many frames there are.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::time::Duration;
 
-use tempfile::NamedTempFile;
-
 use peridyne::columns::Declaration;
 use peridyne::observe::{Column, Snapshot, Values};
+use peridyne::space::Point;
+use peridyne::space::rotation::Axes;
+use peridyne::state::{Archive, Owner};
 
-use super::super::atomic::{WriteError, temporary_in, write_file};
+use super::super::Grown;
+use super::super::atomic::{WriteError, create_directory, write_file};
 use super::arrows::Arrows;
 use super::image::Image;
-use super::rigid::Placed;
-use super::shown::{Shown, range};
+use super::rigid::{Form, Placed};
+use super::shown::{About, Shown, range};
 use super::{PictureOptions, Sight, draw, invalid};
 
 /// Width of a frame (pixels); narrower than a picture, so that a film stays small.
@@ -26,35 +28,109 @@ const DELAY: u16 = 80;
 /// Frames so far.
 #[derive(Debug)]
 pub struct Film {
-    waiting: BufWriter<NamedTempFile>,
-    /// What is the same in all: the first snapshot with its displacements only.
-    first: Option<Snapshot>,
-    /// Name, dimension and values of what is shown; the values are those of the last frame.
-    shown: Option<Shown>,
-    /// Name and dimension of what is drawn as arrows; its vectors are those of the last frame, the longest that of all.
-    arrows: Option<Arrows>,
-    /// Lowest and highest value so far.
+    waiting: Grown,
+    same: Option<Same>,
+    /// Lowest and highest value so far, and the longest arrow.
     ends: [f64; 2],
+    longest: f64,
+    /// Step and time.
     frames: Vec<(u64, f64)>,
-    /// Rigid bodies of each.
-    bodies: Vec<Vec<Placed>>,
+    /// Of each the rigid bodies: which of these forms they have, centres and axes.
+    bodies: Vec<Vec<(u32, (Point, Axes))>>,
+    forms: Vec<Form>,
+}
+
+/// What is the same in all frames.
+#[derive(Debug)]
+struct Same {
+    /// A snapshot without columns.
+    still: Snapshot,
+    /// Name, dimension and colours of what is shown; the values are those of some frame.
+    shown: Shown,
+    /// Name and dimension of what is drawn as arrows, the same.
+    arrows: Option<Arrows>,
+}
+
+impl Same {
+    fn of(s: &Snapshot, options: &PictureOptions) -> io::Result<Same> {
+        let component = options.component.as_deref();
+        let arrows = options.arrows.as_deref();
+        Ok(Same {
+            shown: Shown::of(s, options.field(About::Motion), component)?,
+            arrows: arrows.map(|field| Arrows::of(s, field)).transpose()?,
+            still: Snapshot {
+                columns: vec![],
+                bonds: None,
+                ..s.clone()
+            },
+        })
+    }
+}
+
+impl Owner for Film {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.part("waiting", &mut self.waiting);
+        archive.one("ends", &mut self.ends);
+        archive.one("longest", &mut self.longest);
+        archive.list("frames", &mut self.frames);
+        archive.lists("bodies", &mut self.bodies);
+        archive.items(
+            "forms",
+            &mut self.forms,
+            || Form::Ball(0.0),
+            |form, a| {
+                form.archive(a);
+            },
+        );
+        let forms = self.forms.len();
+        let known = self.bodies.iter().flatten().all(|b| (b.0 as usize) < forms);
+        if archive.loads() && !(known && self.bodies.len() == self.frames.len()) {
+            archive.refuse("bodies");
+        }
+    }
 }
 
 impl Film {
-    /// Of frames that wait in this folder.
+    /// Of frames that wait in this file, whose folder is made.
     ///
     /// # Errors
-    /// No temporary file.
-    pub fn new(dir: &Path) -> io::Result<Film> {
-        Ok(Film {
-            waiting: BufWriter::new(temporary_in(dir)?),
-            first: None,
-            shown: None,
-            arrows: None,
+    /// It cannot be written.
+    pub fn new(waiting: &Path) -> Result<Film, WriteError> {
+        waiting.parent().map_or(Ok(()), create_directory)?;
+        Grown::create(waiting, b"").map(Film::of)
+    }
+
+    /// Of a run that goes on; its state must be read, and [`rewind`](Film::rewind) called, before a frame comes.
+    ///
+    /// # Errors
+    /// There is no such file.
+    pub fn reopen(waiting: &Path) -> Result<Film, WriteError> {
+        Grown::open(waiting).map(Film::of)
+    }
+
+    fn of(waiting: Grown) -> Film {
+        Film {
+            waiting,
+            same: None,
             ends: [f64::INFINITY, f64::NEG_INFINITY],
+            longest: 0.0,
             frames: vec![],
             bodies: vec![],
-        })
+            forms: vec![],
+        }
+    }
+
+    /// Takes away what came after the state that was read; this is the snapshot of that state.
+    ///
+    /// # Errors
+    /// The operating system's; what is left is not what was written.
+    pub fn rewind(&mut self, now: &Snapshot, options: &PictureOptions) -> Result<(), WriteError> {
+        self.waiting.rewind()?;
+        if !self.frames.is_empty() {
+            let same = Same::of(now, options);
+            self.same = Some(same.map_err(WriteError::at("draw", self.waiting.path()))?);
+        }
+        Ok(())
     }
 
     /// The next frame; one of the step of the last is left out.
@@ -65,39 +141,39 @@ impl Film {
         &mut self,
         s: &Snapshot,
         bodies: &[Placed],
-        (field, component): (&str, Option<&str>),
-        arrows: Option<&str>,
-    ) -> io::Result<()> {
+        options: &PictureOptions,
+    ) -> Result<(), WriteError> {
         if self.frames.last().is_some_and(|(step, _)| *step == s.step) {
             return Ok(());
         }
-        let shown = Shown::of(s, field, component)?;
-        let arrows = arrows.map(|field| Arrows::of(s, field)).transpose()?;
-        let [low, high] = shown.ends;
+        let now = Same::of(s, options).map_err(WriteError::at("draw", self.waiting.path()))?;
+        let arrows = now.arrows.as_ref();
+        self.waiting.push(|w| {
+            for (u, value) in s.displacement().iter().zip(&now.shown.values) {
+                for number in [u[0], u[1], u[2], *value] {
+                    w.write_all(&(number as f32).to_le_bytes())?;
+                }
+            }
+            let arrows = arrows.iter().flat_map(|a| a.vectors.iter().flatten());
+            arrows
+                .map(|x| (*x as f32).to_le_bytes())
+                .try_for_each(|x| w.write_all(&x))
+        })?;
+        let [low, high] = now.shown.ends;
         self.ends = [self.ends[0].min(low), self.ends[1].max(high)];
-        for (u, value) in s.displacement().iter().zip(&shown.values) {
-            for number in [u[0], u[1], u[2], *value] {
-                self.waiting.write_all(&(number as f32).to_le_bytes())?;
-            }
-        }
-        if let Some(mut arrows) = arrows {
-            for number in arrows.vectors.iter().flatten() {
-                self.waiting.write_all(&(*number as f32).to_le_bytes())?;
-            }
-            let before = self.arrows.as_ref().map_or(0.0, |a| a.longest);
-            arrows.longest = arrows.longest.max(before);
-            self.arrows = Some(arrows);
-        }
-        if self.first.is_none() {
-            self.first = Some(Snapshot {
-                columns: vec![],
-                bonds: None,
-                ..s.clone()
-            });
-        }
-        self.shown = Some(shown);
+        self.longest = self.longest.max(arrows.map_or(0.0, |a| a.longest));
+        self.same = Some(now);
         self.frames.push((s.step, s.time));
-        self.bodies.push(bodies.to_vec());
+        let placed = bodies.iter().map(|body| {
+            let known = self.forms.iter().position(|form| *form == body.form);
+            let n = known.unwrap_or_else(|| {
+                self.forms.push(body.form.clone());
+                self.forms.len() - 1
+            });
+            (n as u32, (body.center, body.axes))
+        });
+        let placed = placed.collect();
+        self.bodies.push(placed);
         Ok(())
     }
 
@@ -118,11 +194,11 @@ impl Film {
         scale: f64,
         most: Option<usize>,
     ) -> Result<(), WriteError> {
-        let (Some(first), Some(shown)) = (self.first, self.shown) else {
+        let Some(mut same) = self.same else {
             return Ok(());
         };
-        let file = self.waiting.into_inner().map_err(|e| e.into_error());
-        let file = file.map_err(WriteError::at("draw", path))?;
+        let failed = WriteError::at("draw", self.waiting.path());
+        let file = File::open(self.waiting.path()).map_err(failed)?;
         let ends = options
             .range
             .unwrap_or_else(|| range(field, self.ends[0], self.ends[1]));
@@ -130,15 +206,22 @@ impl Film {
             width: WIDTH,
             ..options.clone()
         };
-        let frames: Vec<Frame> = self.frames.into_iter().zip(self.bodies).collect();
-        let shown = shown.between(ends);
-        let same = Same {
-            first: &first,
-            shown: &shown,
-            arrows: self.arrows.as_ref(),
-        };
+        let forms = &self.forms;
+        let bodies = self.bodies.iter().map(|bodies| {
+            let placed = bodies.iter().map(|(form, (center, axes))| Placed {
+                form: forms[*form as usize].clone(),
+                center: *center,
+                axes: *axes,
+            });
+            placed.collect()
+        });
+        let frames: Vec<Frame> = self.frames.iter().copied().zip(bodies).collect();
+        same.shown = same.shown.between(ends);
+        if let Some(arrows) = &mut same.arrows {
+            arrows.longest = self.longest;
+        }
         let step = stride(frames.len(), most);
-        let sight = same.sight(file.as_file(), &frames, scale);
+        let sight = same.sight(&file, &frames, scale);
         let (sight, mut waiting) = sight.map_err(WriteError::at("draw", path))?;
         let images = frames.iter().enumerate().filter_map(|(n, (when, bodies))| {
             let (snapshot, shown, arrows) = match same.next(&mut waiting, *when) {
@@ -223,14 +306,7 @@ fn numbers(waiting: &mut impl Read, count: usize) -> io::Result<Vec<f64>> {
     Ok(bytes.chunks_exact(4).map(number).collect())
 }
 
-/// What is the same in all frames.
-struct Same<'a> {
-    first: &'a Snapshot,
-    shown: &'a Shown,
-    arrows: Option<&'a Arrows>,
-}
-
-impl Same<'_> {
+impl Same {
     /// Of all frames, so that camera and limits stand still; and the frames again from the first.
     fn sight<'f>(
         &self,
@@ -258,7 +334,7 @@ impl Same<'_> {
         waiting: &mut impl Read,
         (step, time): (u64, f64),
     ) -> io::Result<(Snapshot, Shown, Option<Arrows>)> {
-        let points = self.first.reference.len();
+        let points = self.still.reference.len();
         let each = numbers(waiting, 4 * points)?;
         let each = each.chunks_exact(4);
         let displacement = Column {
@@ -274,13 +350,13 @@ impl Same<'_> {
             step,
             time,
             columns: vec![displacement],
-            ..self.first.clone()
+            ..self.still.clone()
         };
         let shown = Shown {
             values: each.map(|e| e[3]).collect(),
             ..self.shown.clone()
         };
-        let mut arrows = self.arrows.cloned();
+        let mut arrows = self.arrows.clone();
         if let Some(arrows) = &mut arrows {
             let vectors = numbers(waiting, 3 * points)?;
             let vectors = vectors.chunks_exact(3);

@@ -5,6 +5,7 @@ use peridyne::space::rigid::RigidShape;
 use peridyne::space::rotation::{Axes, Quaternion, times};
 use peridyne::space::{Point, cross, length};
 use peridyne::spec::IndenterSpec;
+use peridyne::state::{Archive, Owner};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -73,6 +74,31 @@ pub enum Form {
     Surface(Arc<Surface>),
     /// All that is behind it; the normal points out.
     Plane(Point),
+}
+
+impl Owner for Form {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let (mut kind, mut numbers, mut surface) = match self {
+            Form::Ball(radius) => (0u8, [*radius, 0.0, 0.0], Surface::default()),
+            Form::Surface(surface) => (1, [0.0; 3], (**surface).clone()),
+            Form::Plane(normal) => (2, *normal, Surface::default()),
+        };
+        archive.one("kind", &mut kind);
+        archive.one("numbers", &mut numbers);
+        archive.list("corners", &mut surface.corner);
+        archive.list("faces", &mut surface.face);
+        if !archive.loads() {
+            return;
+        }
+        let corners = surface.corner.len();
+        let sound = { surface.face.iter().flatten() }.all(|n| (*n as usize) < corners);
+        *self = match kind {
+            0 => Form::Ball(numbers[0]),
+            1 if sound => Form::Surface(Arc::new(surface)),
+            2 => Form::Plane(numbers),
+            _ => return archive.refuse("kind"),
+        };
+    }
 }
 
 /// A rigid body at a time.

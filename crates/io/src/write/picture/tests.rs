@@ -2,6 +2,7 @@ use super::image::{Color, WHITE};
 use super::*;
 use crate::write::fields::tests::{of_columns, with};
 use peridyne::observe::{Snapshot, Values};
+use peridyne::state::Archive;
 
 /// A lattice of nx × ny × nz points, spacing 1, all arrays zero.
 fn block(n: [usize; 3], dimension: usize) -> Snapshot {
@@ -408,7 +409,13 @@ fn frames(path: &Path) -> Vec<Image> {
 fn in_a_film_key_scale_and_camera_stand_still_and_bodies_move() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("film.png");
-    let mut film = film::Film::new(dir.path()).unwrap();
+    let waiting = dir.path().join("film.frames");
+    let mut film = film::Film::new(&waiting).unwrap();
+    let options = PictureOptions {
+        field: Some("energy_density".into()),
+        ..PictureOptions::default()
+    };
+    let pass = |film: &mut film::Film, archive: &mut Archive<'_>| archive.part("film", film);
     // a plate grows and its values with it; a ball comes down beside it
     for n in 0..4u64 {
         let s = block([30, 12, 1], 2);
@@ -431,17 +438,28 @@ fn in_a_film_key_scale_and_camera_stand_still_and_bodies_move() {
             }
         }
         let bodies = [ball(2.0, [2.0, 20.0 - 2.0 * n as f64, 0.0])];
-        film.push(&s, &bodies, ("energy_density", None), None)
-            .unwrap();
+        film.push(&s, &bodies, &options).unwrap();
+        if n != 1 {
+            continue;
+        }
+        // the run is ended a frame later, and goes on from here
+        let mut state = vec![];
+        pass(&mut film, &mut Archive::save(&mut state));
+        film.push(
+            &Snapshot {
+                step: 9,
+                ..s.clone()
+            },
+            &[],
+            &options,
+        )
+        .unwrap();
+        film = film::Film::reopen(&waiting).unwrap();
+        pass(&mut film, &mut Archive::load(&mut state.as_slice()));
+        film.rewind(&s, &options).unwrap();
     }
-    film.finish(
-        &path,
-        "energy_density",
-        &PictureOptions::default(),
-        1.0,
-        None,
-    )
-    .unwrap();
+    film.finish(&path, "energy_density", &options, 1.0, None)
+        .unwrap();
     let all = frames(&path);
     assert_eq!(all.len(), 4);
     // the foot, with lengths and colours, is the same in all

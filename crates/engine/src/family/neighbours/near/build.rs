@@ -6,6 +6,7 @@ use crate::body::{Body, Field};
 use crate::execute::blocks::{PerBlock, Shared, for_each_piece, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
+use crate::state::{Archive, Owner};
 
 /// Where atoms that are not there are (in reaches), so that no pair with them counts.
 const NOWHERE: f64 = 1e30;
@@ -17,6 +18,13 @@ pub(super) struct Block {
     lines: Vec<[u32; TILE]>,
     /// `[tile][group]`: where its lines of neighbours of each kind, or of all, end.
     ends: Vec<u32>,
+}
+
+impl Owner for Block {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.list("lines", &mut self.lines);
+        archive.list("ends", &mut self.ends);
+    }
 }
 
 impl Block {
@@ -61,6 +69,18 @@ impl Block {
             n => self.ends[n * groups - 1] as usize,
         };
         first..self.ends[(n + 1) * groups - 1] as usize
+    }
+
+    /// Does it name atoms below `all` only, in so many tiles and groups?
+    pub fn is_sound(&self, tiles: usize, groups: usize, all: usize) -> bool {
+        self.ends.len() == tiles * groups
+            && self.ends.is_sorted()
+            && self.ends.last().map_or(0, |e| *e as usize) == self.lines.len()
+            && self
+                .lines
+                .as_flattened()
+                .iter()
+                .all(|n| (*n as usize) < all)
     }
 
     pub fn bytes(&self) -> usize {

@@ -2,9 +2,12 @@
 
 use peridyne::run::Simulation;
 use peridyne::spec::Stepper;
+use peridyne::state::{Archive, Owner};
+use std::time::Instant;
 
-use super::Plan;
+use super::{Made, Now, Writer};
 use crate::deck::Dim;
+use crate::drive::{DriveError, Plan};
 use crate::write::WriteError;
 use crate::write::folder::SPACE_TIME;
 use crate::write::picture::shown::Shown;
@@ -32,43 +35,75 @@ struct One {
     dimension: Dim,
 }
 
-pub(super) struct SpaceTimes {
+#[derive(Default)]
+pub struct SpaceTimes {
     all: Vec<One>,
-    steps: u64,
+}
+
+impl Owner for SpaceTimes {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        for one in &mut self.all {
+            archive.within("image", |archive| {
+                archive.text("name", &mut one.name);
+                archive.one("dimension", &mut one.dimension);
+                archive.list("times", &mut one.image.times);
+                archive.list("values", &mut one.image.values);
+            });
+        }
+    }
+}
+
+impl Writer for SpaceTimes {
+    fn open(&mut self, now: &mut Now<'_>, _: bool) -> Result<(), DriveError> {
+        let (sim, plan) = (&mut *now.sim, now.plan);
+        if plan.space_time.is_empty() || matches!(sim.info().stepper, Stepper::Statics(_)) {
+            return Ok(());
+        }
+        let reference = sim.vectors("reference");
+        let several = sim.columns().iter().any(|c| c.name == "body");
+        let body = several.then(|| sim.scalars("body"));
+        for options in &plan.space_time {
+            let line = Line::new(&reference, body.as_deref(), options.period);
+            let ends = options.field != DENSITY || options.period.is_some();
+            if let Some(image) = SpaceTime::new(&line, &options.window, ends) {
+                self.all.push(One {
+                    options: options.clone(),
+                    line,
+                    image,
+                    name: options.field.clone(),
+                    dimension: Dim::NUMBER,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn rewind(&mut self, _: &mut Now<'_>) -> Result<(), DriveError> {
+        Ok(())
+    }
+
+    fn look(&mut self, now: &mut Now<'_>) -> Result<(), DriveError> {
+        if !now.due.loads && !now.due.last {
+            let steps = now.plan.steps - now.plan.increments;
+            self.record(now.sim, now.due.moved, steps);
+        }
+        Ok(())
+    }
+
+    fn end(self: Box<Self>, now: &mut Now<'_>, made: &mut Made) -> Result<(), DriveError> {
+        let drawing = Instant::now();
+        made.pictures.extend(self.draw(now.plan)?);
+        now.spent.pictures += drawing.elapsed().as_secs_f64();
+        Ok(())
+    }
 }
 
 impl SpaceTimes {
-    pub fn new(sim: &mut dyn Simulation, plan: &Plan) -> SpaceTimes {
-        let mut all = vec![];
-        if !plan.space_time.is_empty() && !matches!(sim.info().stepper, Stepper::Statics(_)) {
-            let reference = sim.vectors("reference");
-            let several = sim.columns().iter().any(|c| c.name == "body");
-            let body = several.then(|| sim.scalars("body"));
-            for options in &plan.space_time {
-                let line = Line::new(&reference, body.as_deref(), options.period);
-                let ends = options.field != DENSITY || options.period.is_some();
-                if let Some(image) = SpaceTime::new(&line, &options.window, ends) {
-                    all.push(One {
-                        options: options.clone(),
-                        line,
-                        image,
-                        name: options.field.clone(),
-                        dimension: Dim::NUMBER,
-                    });
-                }
-            }
-        }
-        SpaceTimes {
-            all,
-            steps: plan.steps - plan.increments,
-        }
-    }
-
-    /// Looks after so many steps of motion.
-    pub fn look(&mut self, sim: &mut dyn Simulation, step: u64) {
+    /// Looks after so many of all steps of motion.
+    fn record(&mut self, sim: &mut dyn Simulation, step: u64, steps: u64) {
         let dt = sim.info().time_step;
         for one in &mut self.all {
-            if !one.options.window.is_row(step, self.steps, dt) {
+            if !one.options.window.is_row(step, steps, dt) {
                 continue;
             }
             let values = match one.options.field.as_str() {
@@ -93,7 +128,7 @@ impl SpaceTimes {
     }
 
     /// Draws and saves; names of the pictures.
-    pub fn finish(self, plan: &Plan) -> Result<Vec<String>, WriteError> {
+    fn draw(&self, plan: &Plan) -> Result<Vec<String>, WriteError> {
         let (mut stems, mut names) = (vec![], vec![]);
         // a picture of one time has no axis
         for one in self.all.iter().filter(|one| one.image.times.len() > 1) {

@@ -1,0 +1,80 @@
+//! Runs that end before their last step, and what they go on with.
+
+use crate::Input;
+use crate::failure::Failure;
+use peridyne_io::deck::clock_time;
+use peridyne_io::read::source;
+use peridyne_io::write::checkpoint::Asked;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Where a run ends before its last step, as if a signal had come: `peridyne resume` goes on from there.
+#[derive(clap::Args, Debug, Clone, Default)]
+pub struct Early {
+    /// End after this step.
+    #[arg(long, value_name = "STEP")]
+    pub stop_after: Option<u64>,
+    /// End when so much time has gone by, such as "47 h": what a queue gives a job, less what writing takes.
+    #[arg(long = "for", value_name = "TIME", value_parser = time)]
+    pub time: Option<(Duration, String)>,
+}
+
+fn time(text: &str) -> Result<(Duration, String), String> {
+    clock_time(text).map(|time| (time, text.to_string()))
+}
+
+impl Early {
+    /// What ends a run that began then, after so many steps; `None`: nothing does yet.
+    pub fn reached(&self, steps: u64, begun: Instant) -> Option<String> {
+        let step = self.stop_after.filter(|n| steps >= *n);
+        let late = |of: &&(Duration, String)| begun.elapsed() >= of.0;
+        let time = self.time.as_ref().filter(late);
+        let step = step.map(|n| format!("--stop-after {n}"));
+        step.or_else(|| time.map(|(_, text)| format!("--for {text}")))
+    }
+
+    /// Of a script, which has no states to go on from.
+    ///
+    /// # Errors
+    /// It was asked to end early.
+    pub fn refused(&self) -> Result<(), Failure> {
+        match self.stop_after.is_some() || self.time.is_some() {
+            true => Err(Failure::input(
+                "--stop-after and --for end runs of decks, from whose states `peridyne resume` goes on; a script of LAMMPS says itself where it ends",
+            )),
+            false => Ok(()),
+        }
+    }
+}
+
+/// What a state says of how its run was asked for: command, name of the deck and its text.
+pub fn asked(input: &Input, [command, name, text]: [String; 3]) -> Asked {
+    let file = &input.file;
+    let deck = file.canonicalize().unwrap_or_else(|_| file.clone());
+    let mut files = source::sums();
+    files.retain(|(path, _)| *path != deck);
+    Asked {
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        command,
+        name,
+        deck,
+        text,
+        set: input.set.clone(),
+        files,
+        ..Asked::default()
+    }
+}
+
+/// Were the files that the deck names read as they were when the run began?
+///
+/// # Errors
+/// The first that was not.
+pub fn same_files(then: &[(PathBuf, u32)], now: &[(PathBuf, u32)]) -> Result<(), Failure> {
+    match then.iter().find(|file| !now.contains(file)) {
+        Some((path, _)) => Err(Failure::input(format!(
+            "{}: this is not the file that the run began with; put it back, or begin anew",
+            path.display()
+        ))),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,72 @@
+//! What a run has done, which no state of now says any more.
+
+use crate::interaction::{Released, Tally};
+use crate::observe::Ledger;
+use crate::state::{Archive, Owner, words};
+
+/// Work whose doer is gone, or keeps no account (energy).
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::run) struct Past {
+    pub dissipated: f64,
+    pub conditions: f64,
+    pub indenters: f64,
+}
+
+words!([] Past { dissipated: f64, conditions: f64, indenters: f64 });
+
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::run) struct Accounts {
+    /// Directed bonds that broke.
+    pub broken: u64,
+    pub released: Released,
+    /// Cycles of load, where increments are these.
+    pub cycles: f64,
+    pub past: Past,
+    /// Taken by the implicit method (energy).
+    pub numerical: f64,
+    /// Energy at the start; `None`: there was none yet.
+    pub initial: Option<f64>,
+}
+
+impl Owner for Accounts {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.one("broken", &mut self.broken);
+        archive.one("released", &mut self.released);
+        archive.one("cycles", &mut self.cycles);
+        archive.one("past_work", &mut self.past);
+        archive.one("numerical", &mut self.numerical);
+        archive.one("initial_energy", &mut self.initial);
+    }
+}
+
+impl Accounts {
+    /// What bonds did in a sweep.
+    pub fn book(&mut self, tally: &Tally) {
+        self.broken += tally.broken;
+        self.released += tally.released;
+        self.past.dissipated += tally.dissipated;
+    }
+
+    /// Whoever did the work of now gives way to others, whose accounts begin at 0.
+    pub fn pass(&mut self, now: &Ledger) {
+        self.past = Past {
+            dissipated: now.dissipated,
+            conditions: now.work_conditions,
+            indenters: now.work_indenter,
+        };
+    }
+
+    /// What the ledger of any state has of them.
+    pub fn ledger(&self) -> Ledger {
+        Ledger {
+            released: self.released.lost,
+            made: self.released.made,
+            dissipated: self.past.dissipated,
+            numerical: self.numerical,
+            work_conditions: self.past.conditions,
+            work_indenter: self.past.indenters,
+            initial: self.initial.unwrap_or(0.0),
+            ..Ledger::default()
+        }
+    }
+}

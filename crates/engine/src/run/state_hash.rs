@@ -1,0 +1,229 @@
+//! What a model is in two numbers ([`StateHash`]), for a look whether two runs went the same way.
+//!
+//! Points are hashed by id in blocks, bonds by the ids of their ends and the image that they lead to: how points and bonds lie in memory does not
+//! show. A bond that is whole adds nothing, so that a body where nothing broke costs a walk over its bonds.
+
+use super::model::Model;
+use crate::columns::{Life, On};
+use crate::interaction::{BondState, history};
+use crate::observe::state_hash::{Words, hash_of_name};
+use crate::observe::{Ledger, StateHash};
+use crate::transfer::TransferAccount;
+use rayon::prelude::*;
+use std::borrow::Cow;
+
+/// Ids of a block, which has a digest of its own.
+const BLOCK: usize = 1024;
+
+/// Who has a column of points.
+enum Owner {
+    Displacement,
+    Velocity,
+    /// Forces of a step in which bonds broke are found no more.
+    Force,
+    Transfer,
+    /// So many numbers of each point.
+    Law(usize),
+}
+
+/// Chains a column of points, `each` numbers of every id, to the digests of blocks.
+fn chain(
+    digests: &mut [u64],
+    (name, each): (&str, usize),
+    points: usize,
+    value: impl Fn(usize, usize) -> f64 + Sync,
+) {
+    let (name, value) = (hash_of_name(name), &value);
+    digests.par_iter_mut().enumerate().for_each(|(n, digest)| {
+        let ids = n * BLOCK..points.min((n + 1) * BLOCK);
+        let mut words = Words::default();
+        words.put([name]);
+        words.numbers(ids.flat_map(|id| (0..each).map(move |c| value(id, c))));
+        *digest = words.hash(*digest);
+    });
+}
+
+/// What bonds add to the blocks of their points, in any order.
+struct Bonds<'a, const D: usize> {
+    model: &'a Model<D>,
+    /// By slot.
+    id: Vec<u32>,
+    /// Per block.
+    sums: Vec<u64>,
+    words: Words,
+}
+
+impl<const D: usize> Bonds<'_, D> {
+    /// A directed bond between two slots, with numbers of its own in the column of this hash.
+    fn add(&mut self, column: u64, [i, j]: [usize; 2], xi: [f64; D], numbers: &[f64]) {
+        let body = &self.model.body;
+        let [from, to] = [i, j].map(|slot| body.position(slot));
+        let image = (0..D).map(|a| {
+            let further = |period: f64| ((xi[a] - (to[a] - from[a])) / period).round() as i64;
+            body.period[a].map_or(0, further) as u64
+        });
+        let [i, j] = [i, j].map(|slot| self.id[slot]);
+        self.words.put([i, j].map(u64::from));
+        self.words.put(image);
+        self.words.numbers(numbers.iter().copied());
+        let sum = &mut self.sums[i as usize / BLOCK];
+        *sum = sum.wrapping_add(self.words.hash(column));
+    }
+}
+
+impl<const D: usize> Model<D> {
+    pub(super) fn hashed(&mut self) -> StateHash {
+        self.finish();
+        self.refresh_images();
+        StateHash {
+            state: self.hash_of_state(),
+            ledger: self.hash_of_ledger(),
+        }
+    }
+
+    fn hash_of_state(&self) -> u64 {
+        let mut words = Words::default();
+        let points = self.body.points() as u64;
+        words.put([
+            D as u64,
+            points,
+            self.clock.step(),
+            self.clock.shown().to_bits(),
+        ]);
+        for (digest, bonds) in self
+            .digests_of_points()
+            .into_iter()
+            .zip(self.sums_of_bonds())
+        {
+            words.put([digest, bonds]);
+        }
+        for indenter in &self.applied.rigid {
+            words.numbers(indenter.rigid.center);
+        }
+        words.hash(0)
+    }
+
+    /// Of each block, all that its points remember.
+    fn digests_of_points(&self) -> Vec<u64> {
+        let mut columns: Vec<(Cow<str>, Owner)> = vec![
+            ("displacement".into(), Owner::Displacement),
+            ("velocity".into(), Owner::Velocity),
+            ("force_density".into(), Owner::Force),
+        ];
+        let spread = self.transfer_columns().into_iter();
+        columns.extend(spread.map(|c| (c.name, Owner::Transfer)));
+        let of_law = self.interaction.columns().into_iter();
+        let of_law = of_law.filter(|c| c.life == Life::Persistent && c.on == On::Points);
+        columns.extend(of_law.map(|c| (c.name, Owner::Law(c.shape.stored(D)))));
+        columns.sort_by(|a, b| a.0.cmp(&b.0));
+
+        let (body, points) = (&self.body, self.body.points());
+        let mut digests = vec![0; points.div_ceil(BLOCK)];
+        let slot = |id: usize| body.slots[id] as usize;
+        for (name, owner) in columns {
+            let field = match owner {
+                Owner::Displacement => &self.u,
+                Owner::Velocity => &self.v,
+                Owner::Force => &self.f,
+                Owner::Transfer => {
+                    let values = self.transferred(&name).unwrap_or_default();
+                    chain(&mut digests, (&name, 1), points, |id, _| values[id]);
+                    continue;
+                }
+                Owner::Law(each) => {
+                    let values = self.of_law(&name);
+                    let value = |id: usize, c: usize| values[each * slot(id) + c];
+                    chain(&mut digests, (&name, each), points, value);
+                    continue;
+                }
+            };
+            chain(&mut digests, (&name, D), points, |id, a| field[a][slot(id)]);
+        }
+        digests
+    }
+
+    /// A column that the law declares, as it lies.
+    fn of_law(&self, name: &str) -> Vec<f64> {
+        let mut values = vec![];
+        let known = (self.interaction).read_column(&self.body, &self.u, name, &mut values);
+        assert!(known, "{name} is declared and cannot be read");
+        values
+    }
+
+    /// Of each block, which bonds of its points are broken, and what the others of its bonds' columns say.
+    fn sums_of_bonds(&self) -> Vec<u64> {
+        let mut bonds = Bonds {
+            model: self,
+            id: self.ids(),
+            sums: vec![0; self.body.points().div_ceil(BLOCK)],
+            words: Words::default(),
+        };
+        let whole = hash_of_name(history::WHOLE);
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, xi, state| {
+                if state == BondState::Broken {
+                    bonds.add(whole, [i, j], xi, &[]);
+                    bonds.add(whole, [j, i], xi.map(|x| -x), &[]);
+                }
+            });
+        for column in self.interaction.columns() {
+            let kept = column.life == Life::Persistent && column.on == On::Bonds;
+            if !kept || column.name == history::WHOLE {
+                continue;
+            }
+            let hash = hash_of_name(&column.name);
+            let values = self.of_law(&column.name);
+            let mut rows = values.chunks_exact(column.shape.stored(D));
+            self.interaction
+                .each_directed(&self.body, &column.name, &mut |i, j, xi| {
+                    let row = rows.next().expect("a value of each bond");
+                    bonds.add(hash, [i, j], xi, row);
+                });
+            assert!(rows.next().is_none(), "a bond of each value");
+        }
+        bonds.sums
+    }
+
+    fn hash_of_ledger(&mut self) -> Option<u64> {
+        let Ledger {
+            kinetic,
+            strain,
+            contact,
+            released,
+            made,
+            dissipated,
+            numerical,
+            work_conditions,
+            work_indenter,
+            initial,
+        } = self.balance().ok()?;
+        let mut words = Words::default();
+        words.numbers([
+            kinetic,
+            strain,
+            contact,
+            released,
+            made,
+            dissipated,
+            numerical,
+            work_conditions,
+            work_indenter,
+            initial,
+        ]);
+        for (quantity, account) in self.transfer_accounts() {
+            let TransferAccount {
+                content,
+                initial,
+                supplied,
+                exchanged,
+                held,
+                made,
+                through_contact,
+            } = account;
+            words.put([hash_of_name(quantity.column())]);
+            words.numbers([content, initial, supplied, exchanged, held, made]);
+            words.numbers(through_contact);
+        }
+        Some(words.hash(0))
+    }
+}

@@ -1,0 +1,18 @@
+//! What a model cannot find again: everything that a step reads and an earlier step wrote, and that does not follow to the last bit
+//! from other such numbers.
+//!
+//! Whoever owns such numbers passes them through an [`Archive`], which writes them down or reads them back in place: one text for
+//! both, so that what is saved is what is loaded. Numbers keep their kind and their layout (bits of bonds stay bits). What was read
+//! is followed by what follows from it: an owner looks again at whatever it derives.
+
+mod archive;
+mod words;
+
+pub use archive::{Archive, StateError};
+pub use words::{Word, words};
+
+/// Has numbers that cannot be found again.
+pub trait Owner {
+    /// Passes them through an archive, always in the same order; after reading, what follows from them is found anew.
+    fn archive(&mut self, archive: &mut Archive<'_>);
+}
