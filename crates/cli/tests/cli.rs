@@ -635,3 +635,49 @@ fn a_state_that_cannot_be_written_costs_no_run() {
     let kept = std::fs::read_to_string(out.join("checkpoint")).unwrap();
     assert_eq!(kept, "a file of somebody");
 }
+
+/// Nothing in this deck depends on t: begun anew from a state it moves as it would have gone on, to the last bit.
+#[test]
+fn a_run_that_begins_anew_from_a_state_moves_as_the_one_before() {
+    let dir = TempDir::new().unwrap();
+    let chain = deck("good/spring_chain.toml");
+    let every = ["--set", "output.history=1"];
+    let energies = |out: &Path| -> Vec<String> {
+        let text = std::fs::read_to_string(out.join("history.csv")).unwrap();
+        let row = |line: &str| {
+            line.split(',')
+                .skip(2)
+                .take(2)
+                .collect::<Vec<_>>()
+                .join(" ")
+        };
+        text.lines().skip(1).map(row).collect()
+    };
+    let [whole, part, anew] = ["whole", "part", "anew"].map(|name| dir.path().join(name));
+    good(run(&chain, &whole, &every));
+    good(run(
+        &chain,
+        &part,
+        &[&every[..], &["--stop-after", "30"]].concat(),
+    ));
+    // its deck has no `output.history`: a row for each of so few steps anyway
+    let [from, to] = [&part, &anew].map(|p| p.to_str().unwrap());
+    let again = [
+        "resume",
+        from,
+        "--as-initial",
+        chain.to_str().unwrap(),
+        "--out",
+        to,
+    ];
+    good(peridyne(&again));
+    let (before, after) = (energies(&whole), energies(&anew));
+    let both = before.len() - 30;
+    assert!(both > 20 && after.len() == before.len());
+    assert_eq!(before[30..], after[..both]);
+    // and a run that has no time ends at once
+    let short = dir.path().join("short");
+    good(run(&chain, &short, &["--for", "1e-9 s"]));
+    assert_eq!(report(&short)["ended_by"], "--for 1e-9 s");
+    assert_eq!(report(&short)["steps"], 0);
+}
