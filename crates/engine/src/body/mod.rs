@@ -6,6 +6,7 @@
 pub mod build;
 pub mod field;
 pub mod grid;
+mod points;
 pub mod several;
 pub mod values;
 

@@ -3,15 +3,15 @@
 pub(super) mod state;
 
 use super::constitutive::Laws;
-use super::model::Model;
+use super::system::System;
 use crate::condition::driven::Driven;
 use crate::error::RunError;
 use crate::interaction::{BondState, Fault, PointEnergies};
 use crate::observe::Ledger;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
+    /// Energies of a state with whole velocities.
     pub(super) fn energy_now(&mut self) -> Ledger {
-        self.finish();
         self.refresh_images();
         let [strain, mut contact] = match self.is_linear() {
             true => self.quadratic_energy(),
@@ -74,7 +74,7 @@ impl<const D: usize> Model<D> {
             ledger.initial.abs() + ledger.work_conditions.abs() + ledger.work_indenter.abs();
         let after = ledger.held() - self.last_kick();
         if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.clock.has_gone_on() {
-            if self.statics.is_some() {
+            if self.regime.equilibrium {
                 return Err(RunError::Unbalanced {
                     step: self.clock.step(),
                     before,
@@ -99,7 +99,7 @@ impl<const D: usize> Model<D> {
     fn last_kick(&self) -> f64 {
         let mut energy = 0.0;
         // the trapezoidal rule counts its work
-        if self.implicit.is_some() {
+        if self.regime.implicit {
             return energy;
         }
         let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
@@ -173,14 +173,14 @@ impl<const D: usize> Model<D> {
         match fault {
             Fault::Crossing { i, j } => RunError::Crossing {
                 step,
-                i: self.id(i),
-                j: self.id(j),
+                i: self.body.number(i),
+                j: self.body.number(j),
             },
             Fault::Density { slot, density } => {
                 let x = self.body.position(slot);
                 RunError::Density {
                     step,
-                    id: self.id(slot),
+                    id: self.body.number(slot),
                     position: std::array::from_fn(|a| {
                         x[a] + if a < D { self.u[a][slot] } else { 0.0 }
                     }),
@@ -188,12 +188,6 @@ impl<const D: usize> Model<D> {
                 }
             }
         }
-    }
-
-    /// Number of the point in a slot, from 1 on.
-    fn id(&self, slot: usize) -> u64 {
-        let place = self.body.slots.iter().position(|s| *s as usize == slot);
-        place.map_or(0, |i| i as u64 + 1)
     }
 
     fn crossed_chain(&self) -> Option<(u64, u64)> {
@@ -217,6 +211,6 @@ impl<const D: usize> Model<D> {
                     crossed = Some((i, j));
                 }
             });
-        crossed.map(|(i, j)| (self.id(i), self.id(j)))
+        crossed.map(|(i, j)| (self.body.number(i), self.body.number(j)))
     }
 }

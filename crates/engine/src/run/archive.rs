@@ -10,68 +10,35 @@ impl<const D: usize> Owner for Model<D> {
     fn archive(&mut self, archive: &mut Archive<'_>) {
         self.finish();
         self.stage(archive);
-        archive.part("clock", &mut self.clock);
-        archive.one("parts", &mut self.info.parts);
-        archive.one("path", &mut self.fastest);
         archive.one("stale", &mut self.stale);
-        archive.columns("displacement", &mut self.u);
-        archive.columns("velocity", &mut self.v);
-        archive.columns("force_density", &mut self.f);
-        archive.given("inertia", &mut self.inertia, |inertia, archive| {
-            archive.columns("push", &mut inertia.push);
-            for taken in &mut inertia.taken {
-                archive.columns("taken", taken);
-            }
-        });
-        let body = &self.body;
-        archive.within("bonds", |archive| self.interaction.archive(body, archive));
-        archive.given("toughness", &mut self.toughness, |t, a| t.archive(a));
-        archive.given("contact", &mut self.contact, |c, a| c.archive(a));
-        self.applied.archive(archive);
-        self.prescribed.archive(archive);
-        archive.part("accounts", &mut self.accounts);
-        archive.one("cut", &mut self.info.cut);
-        archive.option("loaded", &mut self.loaded, Solved::default, |s, a| {
-            a.one("solved", s);
-        });
-        archive.part("transfers", &mut self.transfers);
-        let (body, slots) = (&self.body, self.body.len);
-        archive.given("statics", &mut self.statics, |s, a| s.archive(slots, a));
-        archive.given("implicit", &mut self.implicit, |i, a| i.archive(body, a));
-        if archive.loads() {
-            self.restored();
-        }
+        archive.option(
+            "solved_before",
+            &mut self.stages.before,
+            Solved::default,
+            |s, a| {
+                a.one("solved", s);
+            },
+        );
+        archive.part("stepper", self.stages.now.as_mut());
+        archive.part("system", &mut self.system);
     }
 }
 
 impl<const D: usize> Model<D> {
-    /// Statics before motion, or the motion itself.
+    /// The stage of now: those before it are left behind.
     fn stage(&mut self, archive: &mut Archive<'_>) {
-        let mut waits = self.preload.is_some();
-        archive.one("motion_waits", &mut waits);
+        let mut coming = self.stages.coming.len() as u64;
+        archive.one("stages_to_come", &mut coming);
         if !archive.loads() {
             return;
         }
-        match (waits, self.preload.take()) {
-            (false, Some(preload)) => {
-                self.statics = None;
-                self.take_over(preload);
-            }
-            (true, None) => archive.refuse("motion_waits"),
-            (_, preload) => self.preload = preload,
+        while self.stages.coming.len() as u64 > coming
+            && let Some(next) = self.stages.coming.pop_front()
+        {
+            self.stages.take_over(&mut self.system, next);
         }
-    }
-
-    /// What follows from a state that was read.
-    fn restored(&mut self) {
-        self.info.time_step = self.clock.dt_of_motion();
-        self.look_again();
-        if let Some(contact) = &mut self.contact {
-            contact.find(&self.body, &self.u, self.interaction.as_ref());
+        if self.stages.coming.len() as u64 != coming {
+            archive.refuse("stages_to_come");
         }
-        for indenter in &mut self.applied.rigid {
-            indenter.look_around(&self.body, &self.u);
-        }
-        self.break_transfers();
     }
 }

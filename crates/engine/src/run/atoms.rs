@@ -1,8 +1,8 @@
 //! What atoms need beyond peridynamic points: their crystal looked at before it runs, and a temperature.
 
 use super::constitutive::{AnyPotentials, breaking, breaks};
-use super::model::Model;
 use super::reference::{SplitMix, current_neighbours};
+use super::system::System;
 use crate::error::BuildError;
 use crate::expression::Expression;
 use crate::family::stencil::Stencil;
@@ -227,97 +227,107 @@ const STRIDE: f64 = 0.02;
 /// Speed of the fastest atoms of a Maxwellian, in standard deviations of a component.
 const FASTEST: f64 = 4.0;
 
-impl<const D: usize> Model<D> {
-    /// The step that the atoms' speeds allow (time): none goes further than a small part of the shortest bond, nor of the
-    /// distance to which two of the fastest come when they meet head on.
-    pub(super) fn step_of_speeds(&self, potentials: &AnyPotentials) -> Result<f64, BuildError> {
-        let slots = || self.body.slots.iter().map(|s| *s as usize);
-        let mass = |s: usize| self.body.volume.at(s) * self.body.density.at(s);
-        let total: f64 = slots().map(mass).sum();
-        let mean: [f64; D] =
-            std::array::from_fn(|a| slots().map(|s| mass(s) * self.v[a][s]).sum::<f64>() / total);
-        let square = |s: usize| {
-            (0..D)
-                .map(|a| (self.v[a][s] - mean[a]).powi(2))
-                .sum::<f64>()
-        };
-        let twice: f64 = slots().map(|s| mass(s) * square(s)).sum();
-        let fastest = slots().map(square).fold(0.0, f64::max).sqrt();
-        let speed = fastest.max(FASTEST * (twice / (D as f64 * total)).sqrt());
-        if speed == 0.0 {
-            return Ok(f64::INFINITY);
-        }
-        let mut shortest = f64::INFINITY;
-        self.interaction.each_bond(&self.body, &mut |_, _, xi, _| {
+/// The step that the atoms' speeds allow (time): none goes further than a small part of the shortest bond, nor of the
+/// distance to which two of the fastest come when they meet head on.
+pub(super) fn step_of_speeds<const D: usize>(
+    system: &System<D>,
+    potentials: &AnyPotentials,
+) -> Result<f64, BuildError> {
+    let slots = || system.body.slots.iter().map(|s| *s as usize);
+    let mass = |s: usize| system.body.volume.at(s) * system.body.density.at(s);
+    let total: f64 = slots().map(mass).sum();
+    let mean: [f64; D] =
+        std::array::from_fn(|a| slots().map(|s| mass(s) * system.v[a][s]).sum::<f64>() / total);
+    let square = |s: usize| {
+        (0..D)
+            .map(|a| (system.v[a][s] - mean[a]).powi(2))
+            .sum::<f64>()
+    };
+    let twice: f64 = slots().map(|s| mass(s) * square(s)).sum();
+    let fastest = slots().map(square).fold(0.0, f64::max).sqrt();
+    let speed = fastest.max(FASTEST * (twice / (D as f64 * total)).sqrt());
+    if speed == 0.0 {
+        return Ok(f64::INFINITY);
+    }
+    let mut shortest = f64::INFINITY;
+    system
+        .interaction
+        .each_bond(&system.body, &mut |_, _, xi, _| {
             shortest = xi.iter().map(|c| c * c).sum::<f64>().min(shortest);
         });
-        let shortest = shortest.sqrt();
-        let heaviest = slots().map(mass).fold(0.0, f64::max);
-        let from = shortest.min(potentials.reach);
-        let closest = potentials.closest(from, heaviest * speed * speed)?;
-        Ok(STRIDE * closest.unwrap_or(f64::INFINITY).min(shortest) / speed)
-    }
+    let shortest = shortest.sqrt();
+    let heaviest = slots().map(mass).fold(0.0, f64::max);
+    let from = shortest.min(potentials.reach);
+    let closest = potentials.closest(from, heaviest * speed * speed)?;
+    Ok(STRIDE * closest.unwrap_or(f64::INFINITY).min(shortest) / speed)
+}
 
-    /// Maxwellian velocities: component by component normal with variance k_B T / m, without total momentum, scaled to
-    /// the mean temperature `(D N − D) k_B T / 2 = kinetic energy`. The same for a seed on every machine and number of threads.
-    ///
-    /// # Errors
-    /// A temperature that is negative or no number somewhere.
-    pub(super) fn heat(&mut self, thermal: &ThermalSpec) -> Result<(), BuildError> {
-        let mut random = SplitMix(thermal.seed);
-        let slots: Vec<usize> = self.body.slots.iter().map(|s| *s as usize).collect();
-        let mass: Vec<f64> = slots
-            .iter()
-            .map(|&s| self.body.volume.at(s) * self.body.density.at(s))
-            .collect();
-        let energy = self.thermal_energies(&thermal.energy, &slots)?;
-        let mut momentum = [0.0; D];
-        for ((&s, m), energy) in slots.iter().zip(&mass).zip(&energy) {
-            for a in 0..D {
-                // Box & Muller 1958
-                let (x, y) = (1.0 - random.unit(), random.unit());
-                let normal = (-2.0 * x.ln()).sqrt() * (std::f64::consts::TAU * y).cos();
-                self.v[a][s] = (energy / m).sqrt() * normal;
-                momentum[a] += m * self.v[a][s];
-            }
+/// Maxwellian velocities: component by component normal with variance k_B T / m, without total momentum, scaled to
+/// the mean temperature `(D N − D) k_B T / 2 = kinetic energy`. The same for a seed on every machine and number of threads.
+///
+/// # Errors
+/// A temperature that is negative or no number somewhere.
+pub(super) fn heat<const D: usize>(
+    system: &mut System<D>,
+    thermal: &ThermalSpec,
+) -> Result<(), BuildError> {
+    let mut random = SplitMix(thermal.seed);
+    let slots: Vec<usize> = system.body.slots.iter().map(|s| *s as usize).collect();
+    let mass: Vec<f64> = slots
+        .iter()
+        .map(|&s| system.body.volume.at(s) * system.body.density.at(s))
+        .collect();
+    let energy = thermal_energies(system, &thermal.energy, &slots)?;
+    let mut momentum = [0.0; D];
+    for ((&s, m), energy) in slots.iter().zip(&mass).zip(&energy) {
+        for a in 0..D {
+            // Box & Muller 1958
+            let (x, y) = (1.0 - random.unit(), random.unit());
+            let normal = (-2.0 * x.ln()).sqrt() * (std::f64::consts::TAU * y).cos();
+            system.v[a][s] = (energy / m).sqrt() * normal;
+            momentum[a] += m * system.v[a][s];
         }
-        let total: f64 = mass.iter().sum();
-        let mut twice = 0.0;
-        for (&s, m) in slots.iter().zip(&mass) {
-            for a in 0..D {
-                self.v[a][s] -= momentum[a] / total;
-                twice += m * self.v[a][s] * self.v[a][s];
-            }
-        }
-        let free = (D * slots.len().saturating_sub(1)) as f64;
-        let mean = match thermal.energy.as_constant() {
-            Some(energy) => energy,
-            None => energy.iter().sum::<f64>() / slots.len() as f64,
-        };
-        if twice > 0.0 {
-            let scale = (free * mean / twice).sqrt();
-            for &s in &slots {
-                for a in 0..D {
-                    self.v[a][s] *= scale;
-                }
-            }
-        }
-        Ok(())
     }
+    let total: f64 = mass.iter().sum();
+    let mut twice = 0.0;
+    for (&s, m) in slots.iter().zip(&mass) {
+        for a in 0..D {
+            system.v[a][s] -= momentum[a] / total;
+            twice += m * system.v[a][s] * system.v[a][s];
+        }
+    }
+    let free = (D * slots.len().saturating_sub(1)) as f64;
+    let mean = match thermal.energy.as_constant() {
+        Some(energy) => energy,
+        None => energy.iter().sum::<f64>() / slots.len() as f64,
+    };
+    if twice > 0.0 {
+        let scale = (free * mean / twice).sqrt();
+        for &s in &slots {
+            for a in 0..D {
+                system.v[a][s] *= scale;
+            }
+        }
+    }
+    Ok(())
+}
 
-    /// k_B T of each point.
-    fn thermal_energies(&self, of: &Expression, slots: &[usize]) -> Result<Vec<f64>, BuildError> {
-        let one = |s: &usize| {
-            let x = self.body.position(*s);
-            let energy = of.eval(&x, 0.0);
-            match energy >= 0.0 && energy.is_finite() {
-                true => Ok(energy),
-                false => Err(BuildError::invalid(
-                    "thermal.temperature",
-                    format!("`{}` is not a temperature at {x:?}", of.source()),
-                )),
-            }
-        };
-        slots.iter().map(one).collect()
-    }
+/// k_B T of each point.
+fn thermal_energies<const D: usize>(
+    system: &System<D>,
+    of: &Expression,
+    slots: &[usize],
+) -> Result<Vec<f64>, BuildError> {
+    let one = |s: &usize| {
+        let x = system.body.position(*s);
+        let energy = of.eval(&x, 0.0);
+        match energy >= 0.0 && energy.is_finite() {
+            true => Ok(energy),
+            false => Err(BuildError::invalid(
+                "thermal.temperature",
+                format!("`{}` is not a temperature at {x:?}", of.source()),
+            )),
+        }
+    };
+    slots.iter().map(one).collect()
 }

@@ -2,11 +2,11 @@
 //! taken away.
 
 use super::Wall;
-use super::model::Model;
+use super::system::System;
 use crate::body::FAR;
 use crate::spec::CrackKind;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Mirrors points that are behind the wall, with their velocity across it.
     pub(super) fn bounce(&mut self, wall: &Wall, ids: Option<&[u32]>) {
         let a = wall.axis;
@@ -30,12 +30,9 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    /// Takes points away: like sites that were never there, they are far from everything, at rest and without bonds.
-    pub(super) fn take_away(&mut self, ids: &[u32]) {
-        if ids.is_empty() {
-            return;
-        }
-        self.finish();
+    /// Takes points away, between steps: like sites that were never there, they are far from everything, at rest and without bonds.
+    /// Answers the new ids of those that stay.
+    pub(super) fn take_away(&mut self, ids: &[u32]) -> Vec<Option<u32>> {
         let gone: std::collections::HashSet<u32> =
             ids.iter().map(|id| self.body.slots[*id as usize]).collect();
         let places: Vec<[f64; D]> = gone
@@ -78,12 +75,6 @@ impl<const D: usize> Model<D> {
                 id
             })
             .collect();
-        for (_, members) in &mut self.sets {
-            *members = members
-                .iter()
-                .filter_map(|id| moved[*id as usize])
-                .collect();
-        }
         if !self.body.mark.is_empty() {
             let mut stays = moved.iter().map(Option::is_some);
             self.body.mark.retain(|_| stays.next().unwrap_or(false));
@@ -92,12 +83,11 @@ impl<const D: usize> Model<D> {
         self.info.points = self.body.slots.len() as u64;
         self.prescribed.all_mut().for_each(|p| p.retain(&keep));
         self.applied.all().for_each(|x| x.retain(&keep));
-        self.watched = None;
-        self.virial = None;
-        self.virials = None;
+        self.watch.forget();
         self.refresh_images();
         self.look_again();
         // what they carried is no longer asked for
         self.accounts.initial = Some(self.energy_now().base());
+        moved
     }
 }

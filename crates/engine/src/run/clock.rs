@@ -121,11 +121,6 @@ impl Clock {
         }
     }
 
-    /// Is the next step the first of the motion?
-    pub fn is_loaded(&self) -> bool {
-        { self.before.as_ref() }.is_some_and(|before| self.step >= before.increments)
-    }
-
     /// One more step, or part of one.
     pub fn forward(&mut self) {
         match &mut self.parts {

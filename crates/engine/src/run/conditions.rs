@@ -1,7 +1,8 @@
 //! Conditions of a spec as loads and constraints on the slots of a body.
 
 use super::LoadInfo;
-use super::model::Model;
+use super::names::Names;
+use super::system::System;
 use crate::body::Body;
 use crate::condition::Program;
 use crate::condition::applied::AppliedForces;
@@ -51,10 +52,11 @@ fn spread<const D: usize>(
     }
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> Names<D> {
     /// A load on points of the finer body from which this one was condensed.
     fn condensed(
         &self,
+        body: &Body<D>,
         carriers: &Carriers<D>,
         set: &str,
         value: &[Option<Expression>; 3],
@@ -90,7 +92,7 @@ impl<const D: usize> Model<D> {
         let mut program = Program::new(value, condensed.points());
         let mut whole = None;
         if let Some(area) = traction {
-            let period = &self.body.period;
+            let period = &body.period;
             let areas = self
                 .faces
                 .condensed(carriers, period, set, &members, area)?;
@@ -98,7 +100,7 @@ impl<const D: usize> Model<D> {
             let volume = |k: usize| carriers.volume[members[k] as usize];
             program = spread(program, &areas, volume);
         }
-        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
+        let slots = ids.iter().map(|id| body.slots[*id as usize]);
         let mut load = Load::condensed(program, slots.collect(), condensed);
         load.of = Some((0, whole));
         Ok(load)
@@ -107,20 +109,21 @@ impl<const D: usize> Model<D> {
     /// All that acts, and constraints.
     pub(super) fn acting(
         &self,
+        body: &Body<D>,
         conditions: &[ConditionSpec],
         rigid: &[IndenterSpec],
         sets: &[(String, Vec<u32>)],
     ) -> Result<(AppliedForces<D>, Vec<Constraint<D>>), BuildError> {
         let (mut loads, mut constraints) = (vec![], vec![]);
         for (n, c) in conditions.iter().enumerate() {
-            let (slots, points) = self
+            let (slots, points) = body
                 .slots_of(&c.set, sets)
                 .map_err(|e| e.at(format!("conditions[{n}].set")))?;
             let load = |kind| Load::new(kind, slots.clone(), points.clone());
             if let Some(carriers) = &self.carriers
                 && let Some((value, area)) = density(&c.kind)
             {
-                let made = self.condensed(carriers, &c.set, value, area);
+                let made = self.condensed(body, carriers, &c.set, value, area);
                 let mut made = made.map_err(|e| e.at(format!("conditions[{n}]")))?;
                 made.of = made.of.map(|(_, area)| (n, area));
                 loads.push(made);
@@ -154,9 +157,9 @@ impl<const D: usize> Model<D> {
                     loads.push(load(LoadKind::Own(self.shelf.force(name, &path)?)))
                 }
                 ConditionKind::Traction { value, area } => {
-                    let areas = { self.faces.areas(&self.body, &c.set, &slots, *area) }
+                    let areas = { self.faces.areas(body, &c.set, &slots, *area) }
                         .map_err(|e| e.at(format!("conditions[{n}]")))?;
-                    let volume = |k: usize| self.body.volume.at(slots[k] as usize);
+                    let volume = |k: usize| body.volume.at(slots[k] as usize);
                     let program = spread(Program::new(value, &points), &areas, volume);
                     let mut made = load(LoadKind::Body(program));
                     made.of = Some((n, Some(areas.iter().sum())));
@@ -179,42 +182,9 @@ impl<const D: usize> Model<D> {
         let rigid = rigid.iter().map(Indenter::new).collect();
         Ok((AppliedForces::new(rigid, loads), constraints))
     }
+}
 
-    /// What loads come to in all, each at the time up to `end` at which it is largest.
-    pub(super) fn tell_loads(
-        body: &Body<D>,
-        loads: &mut [Load<D>],
-        conditions: &[ConditionSpec],
-        end: f64,
-    ) -> Vec<LoadInfo> {
-        let size = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>();
-        let mut told: Vec<(usize, LoadInfo)> = { loads.iter_mut() }
-            .filter_map(|load| {
-                let (n, area) = load.of?;
-                let times = (0..=LOOKS).map(|k| end * f64::from(k) / f64::from(LOOKS));
-                let most = times.filter_map(|t| load.total(body, t));
-                let most = most.max_by(|a, b| size(a).total_cmp(&size(b)))?;
-                let c = &conditions[n];
-                Some((
-                    n,
-                    LoadInfo {
-                        what: match area {
-                            Some(_) => "traction",
-                            None => "body force",
-                        },
-                        set: c.set.clone(),
-                        area,
-                        force: Some(most),
-                        power: None,
-                        varies: c.kind.depends_on_time(),
-                    },
-                ))
-            })
-            .collect();
-        told.sort_by_key(|(n, _)| *n);
-        told.into_iter().map(|(_, told)| told).collect()
-    }
-
+impl<const D: usize> System<D> {
     /// Refuses conditions that ask different motions of one point: the last would win without a word. Looked at are a few
     /// times up to `end`.
     pub(super) fn check_agreement(
@@ -273,4 +243,39 @@ impl<const D: usize> Model<D> {
         }
         Ok(())
     }
+}
+
+/// What loads come to in all, each at the time up to `end` at which it is largest.
+pub(super) fn tell_loads<const D: usize>(
+    body: &Body<D>,
+    loads: &mut [Load<D>],
+    conditions: &[ConditionSpec],
+    end: f64,
+) -> Vec<LoadInfo> {
+    let size = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>();
+    let mut told: Vec<(usize, LoadInfo)> = { loads.iter_mut() }
+        .filter_map(|load| {
+            let (n, area) = load.of?;
+            let times = (0..=LOOKS).map(|k| end * f64::from(k) / f64::from(LOOKS));
+            let most = times.filter_map(|t| load.total(body, t));
+            let most = most.max_by(|a, b| size(a).total_cmp(&size(b)))?;
+            let c = &conditions[n];
+            Some((
+                n,
+                LoadInfo {
+                    what: match area {
+                        Some(_) => "traction",
+                        None => "body force",
+                    },
+                    set: c.set.clone(),
+                    area,
+                    force: Some(most),
+                    power: None,
+                    varies: c.kind.depends_on_time(),
+                },
+            ))
+        })
+        .collect();
+    told.sort_by_key(|(n, _)| *n);
+    told.into_iter().map(|(_, told)| told).collect()
 }

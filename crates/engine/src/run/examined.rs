@@ -1,6 +1,8 @@
 //! What may be asked of a model beside its motion.
 
+use super::equilibrium::problem::Problem;
 use super::model::Model;
+use super::system::System;
 use super::{AtomBond, Examined, Families, ModeShape};
 use crate::body::zeros;
 use crate::error::{RunError, SolveError};
@@ -9,43 +11,37 @@ use crate::observe::{Observed, PointForce, State};
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, LinearBody};
 use crate::statics::Solved;
+use crate::statics::modes::{self, Mode};
 
 impl<const D: usize> Examined for Model<D> {
     fn families(&self) -> Families {
-        self.count_families()
+        self.system.count_families()
     }
 
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
-        self.strained(strain)
+        self.system.strained(strain)
     }
 
     fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
-        Model::bonds_of_atoms(self, visit)
+        self.system.bonds_of_atoms(visit)
     }
 
     fn forces_under(&mut self, displacement: &[Point]) -> Vec<Point> {
-        let mut u = self.body.at_rest();
-        Self::scatter(&self.body, &mut u, displacement);
+        let System {
+            body, interaction, ..
+        } = &mut self.system;
+        let mut u = body.at_rest();
+        body.scatter(&mut u, displacement);
         for c in &mut u {
-            self.body.fill_images(c);
+            body.fill_images(c);
         }
-        let mut f = zeros(self.body.len);
-        self.interaction
-            .forces(&self.body, &u, &mut f, Sweep::Hold, None);
-        self.vectors(&f)
+        let mut f = zeros(body.len);
+        interaction.forces(body, &u, &mut f, Sweep::Hold, None);
+        body.vectors(&f)
     }
 
     fn observed(&mut self) -> Observed {
-        self.refresh_images();
-        let mut out = self.seen_now();
-        if let Some(pairs) = &mut self.contact {
-            pairs.find(&self.body, &self.u, self.interaction.as_ref());
-            let repulsion = &mut out.repulsion;
-            pairs
-                .central
-                .add_energy_density(&self.body, &self.u, repulsion);
-        }
-        self.observed_of(&out)
+        self.system.observed()
     }
 
     fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool {
@@ -53,34 +49,38 @@ impl<const D: usize> Examined for Model<D> {
     }
 
     fn virial(&mut self) -> [f64; 6] {
-        match self.virial {
+        match self.system.watch.virial {
             Some(virial) => virial,
-            None => self.virial_now(),
+            None => self.system.virial_now(),
         }
     }
 
     fn relax(&mut self, tolerance: f64) -> Result<Solved, RunError> {
         self.finish();
-        self.settle_free(tolerance)
+        Problem::of(&mut self.system).settle_free(tolerance)
     }
 
     fn linear_body(&mut self) -> AnyLinearBody {
         let body = LinearBody {
-            carriers: self.carriers.clone(),
-            ..self.linear_now()
+            carriers: self.names.carriers.clone(),
+            ..self.system.linear_now()
         };
         AnyLinearBody::new(body).expect("there are three dimensions")
     }
 
     fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError> {
-        let found = self.lowest_modes(count)?;
-        Ok(found
-            .iter()
-            .map(|m| ModeShape {
-                square: m.square,
-                frequency: m.frequency(),
-                shape: Self::padded(&m.shape),
-            })
-            .collect())
+        // of a body that was loaded those of the motion that follows
+        let next = self.stages.due(self.system.clock.step());
+        let prescribed = next.map_or(&self.system.prescribed, |next| &next.prescribed);
+        let support = self.system.held_by(prescribed);
+        let body = self.system.linear_now();
+        let padded = |x: &[f64; D]| std::array::from_fn(|a| if a < D { x[a] } else { 0.0 });
+        let shape = |m: &Mode<D>| ModeShape {
+            square: m.square,
+            frequency: m.frequency(),
+            shape: m.shape.iter().map(padded).collect(),
+        };
+        let found = modes::lowest(&body, &support, count)?;
+        Ok(found.iter().map(shape).collect())
     }
 }

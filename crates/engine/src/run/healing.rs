@@ -5,7 +5,7 @@
 
 pub(super) mod state;
 
-use super::model::Model;
+use super::system::System;
 use crate::error::BuildError;
 use crate::interaction::history;
 use crate::message;
@@ -60,7 +60,7 @@ fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {
     Ok(())
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Of a spec; `None`: what is broken stays so.
     pub(super) fn healing_of(
         &mut self,

@@ -1,8 +1,8 @@
 //! What may be seen of a model: its columns by name, and the state that observables look at.
 
-use super::Examined;
-use super::equilibrium::state::StaticState;
+use super::constitutive::Shelf;
 use super::model::Model;
+use super::system::System;
 use crate::columns::{Declaration, Life, On};
 use crate::error::BuildError;
 use crate::expression::nearest;
@@ -15,20 +15,33 @@ use crate::space::{Point, full};
 
 /// The state of a model, and what was computed of it already.
 pub(super) struct View<'a, const D: usize> {
-    model: &'a mut Model<D>,
+    system: &'a mut System<D>,
+    shelf: &'a Shelf,
+    /// Boltzmann's constant (energy / temperature).
+    boltzmann: f64,
     /// Id of every slot of a point.
     id: Vec<u32>,
     seen: Option<Observed>,
 }
 
-impl<const D: usize> View<'_, D> {
+impl<'a, const D: usize> View<'a, D> {
+    pub fn of(system: &'a mut System<D>, shelf: &'a Shelf, boltzmann: f64) -> Self {
+        View {
+            system,
+            shelf,
+            boltzmann,
+            id: vec![],
+            seen: None,
+        }
+    }
+
     fn slot(&self, id: usize) -> usize {
-        self.model.body.slots[id] as usize
+        self.system.body.slots[id] as usize
     }
 
     fn ids(&mut self) {
         if self.id.is_empty() {
-            self.id = self.model.ids();
+            self.id = self.system.body.ids_by_slot();
         }
     }
 }
@@ -39,99 +52,101 @@ impl<const D: usize> State for View<'_, D> {
     }
 
     fn points(&self) -> usize {
-        self.model.body.points()
+        self.system.body.points()
     }
 
     fn reference(&self, id: usize) -> Point {
-        self.model.body.position(self.slot(id))
+        self.system.body.position(self.slot(id))
     }
 
     fn displacement(&self, id: usize) -> Point {
         let s = self.slot(id);
-        full(&std::array::from_fn::<_, D, _>(|a| self.model.u[a][s]))
+        full(&std::array::from_fn::<_, D, _>(|a| self.system.u[a][s]))
     }
 
     fn velocity(&self, id: usize) -> Point {
         let s = self.slot(id);
-        full(&std::array::from_fn::<_, D, _>(|a| self.model.v[a][s]))
+        full(&std::array::from_fn::<_, D, _>(|a| self.system.v[a][s]))
     }
 
     fn force_density(&self, id: usize) -> Point {
         let s = self.slot(id);
-        full(&std::array::from_fn::<_, D, _>(|a| self.model.f[a][s]))
+        full(&std::array::from_fn::<_, D, _>(|a| self.system.f[a][s]))
     }
 
     fn volume(&self, id: usize) -> f64 {
-        self.model.body.volume.at(self.slot(id))
+        self.system.body.volume.at(self.slot(id))
     }
 
     fn density(&self, id: usize) -> f64 {
-        self.model.body.density.at(self.slot(id))
+        self.system.body.density.at(self.slot(id))
     }
 
     fn kinetic_energy_density(&self, id: usize) -> f64 {
-        let model = &*self.model;
-        let v = |id: usize| std::array::from_fn::<_, D, _>(|a| model.v[a][self.slot(id)]);
+        let system = &*self.system;
+        let v = |id: usize| std::array::from_fn::<_, D, _>(|a| system.v[a][self.slot(id)]);
         let own = v(id);
-        match &model.inertia {
+        match &system.inertia {
             None => 0.5 * self.density(id) * full(&own).iter().map(|c| c * c).sum::<f64>(),
             Some(inertia) => inertia.masses.kinetic_energy_density(id, &v),
         }
     }
 
     fn material(&self, id: usize) -> usize {
-        self.model.body.material_of(self.slot(id))
+        self.system.body.material_of(self.slot(id))
     }
 
     fn mark(&self, id: usize) -> i32 {
-        self.model.body.mark.get(id).copied().unwrap_or(0)
+        self.system.body.mark.get(id).copied().unwrap_or(0)
     }
 
     fn bodies(&self) -> usize {
-        self.model.body.pieces().len().max(1)
+        self.system.body.pieces().len().max(1)
     }
 
     fn body(&self, id: usize) -> usize {
-        match self.model.body.pieces() {
+        match self.system.body.pieces() {
             [] => 0,
-            _ => self.model.body.piece_of(self.slot(id)),
+            _ => self.system.body.piece_of(self.slot(id)),
         }
     }
 
     fn is_atomic(&self) -> bool {
-        self.model.interaction.is_potential()
+        self.system.interaction.is_potential()
     }
 
     fn boltzmann(&self) -> f64 {
-        self.model.boltzmann
+        self.boltzmann
     }
 
     fn energies(&mut self) -> &Observed {
-        let model = &mut *self.model;
-        self.seen.get_or_insert_with(|| model.observed())
+        let system = &mut *self.system;
+        self.seen.get_or_insert_with(|| system.observed())
     }
 
     fn damage(&mut self) -> Vec<f64> {
-        let mut damage = vec![0.0; self.model.body.len];
-        self.model.interaction.damage(&self.model.body, &mut damage);
-        self.model.by_id(|i| damage[i])
+        let mut damage = vec![0.0; self.system.body.len];
+        self.system
+            .interaction
+            .damage(&self.system.body, &mut damage);
+        self.system.body.by_id(|i| damage[i])
     }
 
     fn fragments(&mut self) -> Vec<u32> {
-        Fragments::of(&self.model.body, self.model.interaction.as_ref()).label
+        Fragments::of(&self.system.body, self.system.interaction.as_ref()).label
     }
 
     fn each_bond(&mut self, visit: &mut dyn FnMut(FamilyBond)) {
         self.ids();
-        let (model, id) = (&*self.model, &self.id);
-        model
+        let (system, id) = (&*self.system, &self.id);
+        system
             .interaction
-            .each_bond(&model.body, &mut |i, j, xi, state| {
+            .each_bond(&system.body, &mut |i, j, xi, state| {
                 let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
                 visit(FamilyBond {
                     ends: [i, j].map(|s| id[s] as usize),
                     xi: full(&xi),
-                    weight: model.constitutive.at(i).0.weight(&xi, r0),
+                    weight: system.constitutive.at(i).0.weight(&xi, r0),
                     whole: state == BondState::Whole,
                 });
             });
@@ -140,7 +155,7 @@ impl<const D: usize> State for View<'_, D> {
     fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool {
         self.ids();
         let id = &self.id;
-        self.model.each_pair_force(&mut |bond| {
+        self.system.each_pair_force(&mut |bond| {
             visit(PointForce {
                 id: id[bond.i] as usize,
                 partner: id[bond.j] as usize,
@@ -153,24 +168,95 @@ impl<const D: usize> State for View<'_, D> {
 }
 
 impl<const D: usize> Model<D> {
-    /// Id of every slot of a point.
-    pub(super) fn ids(&self) -> Vec<u32> {
-        let mut id = vec![0u32; self.body.len];
-        for (n, &s) in self.body.slots.iter().enumerate() {
-            id[s as usize] = n as u32;
-        }
-        id
+    /// A look at the model as it stands.
+    pub(super) fn look(&mut self) -> View<'_, D> {
+        View::of(&mut self.system, &self.names.shelf, self.boltzmann)
     }
 
-    /// Brings velocities and images up to date.
+    /// A look with velocities and images up to date.
     pub(super) fn view(&mut self) -> View<'_, D> {
         self.finish();
-        self.refresh_images();
-        View {
-            model: self,
-            id: vec![],
-            seen: None,
+        self.system.refresh_images();
+        self.look()
+    }
+
+    /// Columns by name, in this order; what does not exist is left out.
+    pub(super) fn columns_of<'a>(&mut self, names: impl Iterator<Item = &'a str>) -> Vec<Column> {
+        let mut view = self.view();
+        names.filter_map(|name| view.column(name)).collect()
+    }
+
+    /// Sets a persistent column of the law, by point id or in the order of its bonds; what follows from it is found anew.
+    pub(super) fn store(&mut self, name: &str, values: &[f64]) -> bool {
+        // velocities belong to the forces of before
+        self.finish();
+        if self.system.set_transferred(name, values) {
+            self.stale = true;
+            return true;
         }
+        let mut declared = self.system.interaction.columns().into_iter();
+        let Some(column) = declared.find(|c| c.name == name && c.life == Life::Persistent) else {
+            return false;
+        };
+        let broken = (name == history::WHOLE).then(|| self.system.count_broken());
+        let written = match column.on {
+            On::Bonds => self
+                .system
+                .interaction
+                .write_column(&self.system.body, name, values),
+            On::Points => {
+                let n = column.shape.stored(D);
+                if values.len() != n * self.system.body.points() {
+                    return false;
+                }
+                let mut stored = vec![0.0; n * self.system.body.len];
+                for (value, &s) in values.chunks_exact(n).zip(&self.system.body.slots) {
+                    stored[n * s as usize..n * (s as usize + 1)].copy_from_slice(value);
+                }
+                self.system
+                    .interaction
+                    .write_column(&self.system.body, name, &stored)
+            }
+        };
+        if let Some(before) = broken.filter(|_| written) {
+            let broken = self.system.accounts.broken + self.system.count_broken();
+            self.system.accounts.broken = broken.saturating_sub(before);
+            self.system.break_transfers();
+        }
+        self.stale |= written;
+        written
+    }
+
+    pub(super) fn record(&mut self, fields: &[&str], bonds: bool) -> Snapshot {
+        let first = ["displacement"].into_iter();
+        let others = fields.iter().copied().filter(|f| *f != "displacement");
+        let columns = self.columns_of(first.chain(others));
+        let load_may_fall = self.system.regime.load_may_fall;
+        Snapshot {
+            step: self.system.clock.step(),
+            time: self.system.clock.of_frame(load_may_fall),
+            dimension: D,
+            spacing: self.system.body.spacing,
+            reference: self.system.body.by_id(|i| self.system.body.position(i)),
+            columns,
+            bonds: bonds.then(|| self.system.whole_bonds()),
+        }
+    }
+}
+
+impl<const D: usize> System<D> {
+    /// Energies and dilatation of all points now, contact too.
+    pub(super) fn observed(&mut self) -> Observed {
+        self.refresh_images();
+        let mut out = self.seen_now();
+        if let Some(pairs) = &mut self.contact {
+            pairs.find(&self.body, &self.u, self.interaction.as_ref());
+            let repulsion = &mut out.repulsion;
+            pairs
+                .central
+                .add_energy_density(&self.body, &self.u, repulsion);
+        }
+        self.observed_of(&out)
     }
 
     /// Forces of bonds, of repulsion inside families and of contact, from each of their points. Those of the linear body where that
@@ -209,12 +295,37 @@ impl<const D: usize> Model<D> {
         known
     }
 
+    /// Directed bonds of the family that are broken.
+    fn count_broken(&self) -> u64 {
+        let mut broken = 0;
+        self.interaction
+            .each_bond(&self.body, &mut |_, _, _, state| {
+                broken += 2 * u64::from(state == BondState::Broken);
+            });
+        broken
+    }
+
+    /// Ids of the ends of whole bonds, the lower first.
+    fn whole_bonds(&self) -> Vec<(u32, u32)> {
+        let (id, mut bonds) = (self.body.ids_by_slot(), vec![]);
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, _, state| {
+                if state == BondState::Whole {
+                    let (a, b) = (id[i], id[j]);
+                    bonds.push((a.min(b), a.max(b)));
+                }
+            });
+        bonds
+    }
+}
+
+impl<const D: usize> View<'_, D> {
     /// Has the model what an observable needs, as far as that can be said without a look at its forces?
     fn may(&self, of: &Observable) -> bool {
-        let atomic = self.interaction.is_potential();
+        let atomic = self.system.interaction.is_potential();
         match of.needs {
             Needs::Nothing | Needs::Forces => true,
-            Needs::Bodies => self.body.pieces().len() > 1,
+            Needs::Bodies => self.system.body.pieces().len() > 1,
             Needs::Atoms => atomic,
             Needs::Family => !atomic,
         }
@@ -224,8 +335,11 @@ impl<const D: usize> Model<D> {
     fn lacking(&mut self, of: &Observable) -> Option<&'static str> {
         let mut there = self.may(of);
         if there && of.needs == Needs::Forces {
-            let rest = self.body.at_rest();
-            there = self.interaction.each_force(&self.body, &rest, &mut |_| {});
+            let rest = self.system.body.at_rest();
+            there = self
+                .system
+                .interaction
+                .each_force(&self.system.body, &rest, &mut |_| {});
         }
         (!there).then(|| of.needs.missing())
     }
@@ -245,7 +359,12 @@ impl<const D: usize> Model<D> {
         name: &str,
         path: &str,
     ) -> Result<Declaration, BuildError> {
-        if let Some(found) = self.transfer_columns().into_iter().find(|c| c.name == name) {
+        if let Some(found) = self
+            .system
+            .transfer_columns()
+            .into_iter()
+            .find(|c| c.name == name)
+        {
             return Ok(found);
         }
         if let Some(observable) = self.shelf.observable(name) {
@@ -278,7 +397,7 @@ impl<const D: usize> Model<D> {
 
     /// Everything that has a name and values.
     pub(super) fn declared(&mut self) -> Vec<Declaration> {
-        let mut all = self.transfer_columns();
+        let mut all = self.system.transfer_columns();
         for observable in self.shelf.observables().to_vec() {
             if self.lacking(observable).is_none()
                 && !all.iter().any(|c| c.name == observable.declaration.name)
@@ -286,7 +405,7 @@ impl<const D: usize> Model<D> {
                 all.push(observable.declaration.clone());
             }
         }
-        for column in self.interaction.columns() {
+        for column in self.system.interaction.columns() {
             if !all.iter().any(|c| c.name == column.name) {
                 all.push(column);
             }
@@ -294,102 +413,16 @@ impl<const D: usize> Model<D> {
         all
     }
 
-    /// Columns by name, in this order; what does not exist is left out.
-    pub(super) fn columns_of<'a>(&mut self, names: impl Iterator<Item = &'a str>) -> Vec<Column> {
-        let mut view = self.view();
-        names.filter_map(|name| view.column(name)).collect()
-    }
-
-    /// Sets a persistent column of the law, by point id or in the order of its bonds; what follows from it is found anew.
-    pub(super) fn store(&mut self, name: &str, values: &[f64]) -> bool {
-        // velocities belong to the forces of before
-        self.finish();
-        if self.set_transferred(name, values) {
-            self.stale = true;
-            return true;
-        }
-        let mut declared = self.interaction.columns().into_iter();
-        let Some(column) = declared.find(|c| c.name == name && c.life == Life::Persistent) else {
-            return false;
-        };
-        let broken = (name == history::WHOLE).then(|| self.count_broken());
-        let written = match column.on {
-            On::Bonds => self.interaction.write_column(&self.body, name, values),
-            On::Points => {
-                let n = column.shape.stored(D);
-                if values.len() != n * self.body.points() {
-                    return false;
-                }
-                let mut stored = vec![0.0; n * self.body.len];
-                for (value, &s) in values.chunks_exact(n).zip(&self.body.slots) {
-                    stored[n * s as usize..n * (s as usize + 1)].copy_from_slice(value);
-                }
-                self.interaction.write_column(&self.body, name, &stored)
-            }
-        };
-        if let Some(before) = broken.filter(|_| written) {
-            let broken = self.accounts.broken + self.count_broken();
-            self.accounts.broken = broken.saturating_sub(before);
-            self.break_transfers();
-        }
-        self.stale |= written;
-        written
-    }
-
-    /// Directed bonds of the family that are broken.
-    fn count_broken(&self) -> u64 {
-        let mut broken = 0;
-        self.interaction
-            .each_bond(&self.body, &mut |_, _, _, state| {
-                broken += 2 * u64::from(state == BondState::Broken);
-            });
-        broken
-    }
-
-    pub(super) fn record(&mut self, fields: &[&str], bonds: bool) -> Snapshot {
-        let first = ["displacement"].into_iter();
-        let others = fields.iter().copied().filter(|f| *f != "displacement");
-        let columns = self.columns_of(first.chain(others));
-        let load_may_fall = self
-            .statics
-            .as_ref()
-            .is_some_and(StaticState::load_may_fall);
-        Snapshot {
-            step: self.clock.step(),
-            time: self.clock.of_frame(load_may_fall),
-            dimension: D,
-            spacing: self.body.spacing,
-            reference: self.by_id(|i| self.body.position(i)),
-            columns,
-            bonds: bonds.then(|| self.whole_bonds()),
-        }
-    }
-
-    /// Ids of the ends of whole bonds, the lower first.
-    fn whole_bonds(&self) -> Vec<(u32, u32)> {
-        let (id, mut bonds) = (self.ids(), vec![]);
-        self.interaction
-            .each_bond(&self.body, &mut |i, j, _, state| {
-                if state == BondState::Whole {
-                    let (a, b) = (id[i], id[j]);
-                    bonds.push((a.min(b), a.max(b)));
-                }
-            });
-        bonds
-    }
-}
-
-impl<const D: usize> View<'_, D> {
     fn column(&mut self, name: &str) -> Option<Column> {
-        if let Some(values) = self.model.transferred(name) {
-            let mut declared = self.model.transfer_columns().into_iter();
+        if let Some(values) = self.system.transferred(name) {
+            let mut declared = self.system.transfer_columns().into_iter();
             return Some(Column {
                 declaration: declared.find(|c| c.name == name)?,
                 values: Values::Scalars(values),
             });
         }
-        match self.model.shelf.observable(name) {
-            Some(observable) if !self.model.may(observable) => None,
+        match self.shelf.observable(name) {
+            Some(observable) if !self.may(observable) => None,
             Some(observable) => Some(Column {
                 declaration: observable.declaration.clone(),
                 values: (observable.of)(self)?,
@@ -400,13 +433,13 @@ impl<const D: usize> View<'_, D> {
 
     /// A column that the law declares.
     fn of_law(&self, name: &str) -> Option<Column> {
-        let model = &*self.model;
-        let mut declared = model.interaction.columns().into_iter();
+        let system = &*self.system;
+        let mut declared = system.interaction.columns().into_iter();
         let declaration = declared.find(|c| c.name == name)?;
-        let (body, mut stored) = (&model.body, vec![]);
-        if !model
+        let (body, mut stored) = (&system.body, vec![]);
+        if !system
             .interaction
-            .read_column(body, &model.u, name, &mut stored)
+            .read_column(body, &system.u, name, &mut stored)
         {
             return None;
         }

@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::message;
 use crate::quantity::{Dimension, place};
 use crate::run::constitutive::general;
-use crate::spec::{Calibration, Criterion, FractureSpec, Influence, LawSpec, Spec, Stepper};
+use crate::spec::{Calibration, Criterion, FractureSpec, Influence, LawSpec, Spec};
 
 /// What is longer by this part is so by round-off.
 const ROUND_OFF: f64 = 1.0 + 1e-9;
@@ -92,7 +92,7 @@ fn possible(spec: &Spec) -> Result<(), BuildError> {
             "leave them or own_horizon out",
         );
     }
-    if spec.schedule.stepper == Stepper::Still {
+    if spec.schedule.stepper.rests() {
         return refused("own_horizon", "points stand still", "leave own_horizon out");
     }
     Ok(())

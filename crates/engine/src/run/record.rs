@@ -1,11 +1,11 @@
 //! What is written down of a model: families, energies under strain, bonds of atoms.
 
-use super::model::Model;
+use super::system::System;
 use super::{AtomBond, Families};
 use crate::interaction::{BondState, PointEnergies};
 use crate::space::full;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     pub(super) fn count_families(&self) -> Families {
         let mut volume = vec![0.0; self.body.len];
         let mut foreign = vec![false; self.body.len];
@@ -21,10 +21,12 @@ impl<const D: usize> Model<D> {
                 }
             });
         Families {
-            size: self.by_id(|i| self.interaction.family_size(&self.body, i) as u32),
-            volume: self.by_id(|i| volume[i]),
-            material: self.by_id(of),
-            foreign: self.by_id(|i| foreign[i]),
+            size: self
+                .body
+                .by_id(|i| self.interaction.family_size(&self.body, i) as u32),
+            volume: self.body.by_id(|i| volume[i]),
+            material: self.body.by_id(of),
+            foreign: self.body.by_id(|i| foreign[i]),
         }
     }
 
@@ -35,7 +37,7 @@ impl<const D: usize> Model<D> {
         let mut out = PointEnergies::default();
         self.interaction
             .observe_gradient(&self.body, &gradient, &mut out);
-        self.by_id(|i| out.strain[i])
+        self.body.by_id(|i| out.strain[i])
     }
 
     /// Bonds between atoms about the displacements of now, and F″ of every atom, in order of ids.
@@ -44,7 +46,7 @@ impl<const D: usize> Model<D> {
             return None;
         }
         self.refresh_images();
-        let id = self.ids();
+        let id = self.body.ids_by_slot();
         let body = &self.body;
         self.interaction.tangents(body, &self.u, &mut |bond| {
             let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
@@ -67,6 +69,6 @@ impl<const D: usize> Model<D> {
                 share: (0..D).map(|a| bond.share[a] * bond.y[a]).sum::<f64>() / q.sqrt(),
             });
         });
-        Some(self.by_id(|i| self.interaction.gain(i)))
+        Some(self.body.by_id(|i| self.interaction.gain(i)))
     }
 }

@@ -1,9 +1,10 @@
 //! Named sets, the materials and the initial state of the points in them.
 
 use super::feasible::possible;
-use super::model::Model;
+use super::names::Names;
 use super::parts::parts;
 use super::reference::SplitMix;
+use super::system::System;
 use crate::body::{Body, Values};
 use crate::error::BuildError;
 use crate::message;
@@ -316,15 +317,16 @@ fn of_points<const D: usize>(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildEr
         .collect())
 }
 
-pub(super) fn initial<const D: usize>(spec: &Spec, model: &mut Model<D>) -> Result<(), BuildError> {
+/// Displacements and velocities at the start.
+pub(super) fn initial<const D: usize>(
+    spec: &Spec,
+    names: &Names<D>,
+    system: &mut System<D>,
+) -> Result<(), BuildError> {
     for (n, init) in spec.initial.iter().enumerate() {
-        let sets = std::mem::take(&mut model.sets);
-        let members = model
-            .slots_of(&init.set, &sets)
-            .map_err(|e| e.at(format!("initial[{n}].set")));
-        model.sets = sets;
-        let (slots, points) = members?;
-        if slots.is_empty() && model.carriers.is_some() {
+        let members = system.body.slots_of(&init.set, &names.sets);
+        let (slots, points) = members.map_err(|e| e.at(format!("initial[{n}].set")))?;
+        if slots.is_empty() && names.carriers.is_some() {
             return Err(BuildError::empty(
                 format!("initial[{n}].set"),
                 format!("no point of `{}` was retained", init.set),
@@ -332,8 +334,8 @@ pub(super) fn initial<const D: usize>(spec: &Spec, model: &mut Model<D>) -> Resu
         }
         for a in 0..D {
             for (field, e) in [
-                (&mut model.u[a], &init.displacement[a]),
-                (&mut model.v[a], &init.velocity[a]),
+                (&mut system.u[a], &init.displacement[a]),
+                (&mut system.v[a], &init.velocity[a]),
             ] {
                 let Some(e) = e else { continue };
                 for (s, x) in slots.iter().zip(&points) {

@@ -3,7 +3,7 @@
 //! Points are hashed by id in blocks, bonds by the ids of their ends and the image that they lead to: how points and bonds lie in memory does not
 //! show. A bond that is whole adds nothing, so that a body where nothing broke costs a walk over its bonds.
 
-use super::model::Model;
+use super::system::System;
 use crate::columns::{Life, On};
 use crate::interaction::{BondState, history};
 use crate::observe::state_hash::{Words, hash_of_name};
@@ -45,7 +45,7 @@ fn chain(
 
 /// What bonds add to the blocks of their points, in any order.
 struct Bonds<'a, const D: usize> {
-    model: &'a Model<D>,
+    system: &'a System<D>,
     /// By slot.
     id: Vec<u32>,
     /// Per block.
@@ -56,7 +56,7 @@ struct Bonds<'a, const D: usize> {
 impl<const D: usize> Bonds<'_, D> {
     /// A directed bond between two slots, with numbers of its own in the column of this hash.
     fn add(&mut self, column: u64, [i, j]: [usize; 2], xi: [f64; D], numbers: &[f64]) {
-        let body = &self.model.body;
+        let body = &self.system.body;
         let [from, to] = [i, j].map(|slot| body.position(slot));
         let image = (0..D).map(|a| {
             let further = |period: f64| ((xi[a] - (to[a] - from[a])) / period).round() as i64;
@@ -71,159 +71,157 @@ impl<const D: usize> Bonds<'_, D> {
     }
 }
 
-impl<const D: usize> Model<D> {
-    pub(super) fn hashed(&mut self) -> StateHash {
-        self.finish();
-        self.refresh_images();
-        StateHash {
-            state: self.hash_of_state(),
-            ledger: self.hash_of_ledger(),
-        }
+pub(super) fn hashed<const D: usize>(system: &mut System<D>) -> StateHash {
+    system.refresh_images();
+    StateHash {
+        state: hash_of_state(system),
+        ledger: hash_of_ledger(system),
     }
+}
 
-    fn hash_of_state(&self) -> u64 {
-        let mut words = Words::default();
-        let points = self.body.points() as u64;
-        words.put([
-            D as u64,
-            points,
-            self.clock.step(),
-            self.clock.shown().to_bits(),
-        ]);
-        for (digest, bonds) in self
-            .digests_of_points()
-            .into_iter()
-            .zip(self.sums_of_bonds())
-        {
-            words.put([digest, bonds]);
-        }
-        for indenter in &self.applied.rigid {
-            words.numbers(indenter.rigid.center);
-        }
-        words.hash(0)
+fn hash_of_state<const D: usize>(system: &System<D>) -> u64 {
+    let mut words = Words::default();
+    let points = system.body.points() as u64;
+    words.put([
+        D as u64,
+        points,
+        system.clock.step(),
+        system.clock.shown().to_bits(),
+    ]);
+    for (digest, bonds) in digests_of_points(system)
+        .into_iter()
+        .zip(sums_of_bonds(system))
+    {
+        words.put([digest, bonds]);
     }
-
-    /// Of each block, all that its points remember.
-    fn digests_of_points(&self) -> Vec<u64> {
-        let mut columns: Vec<(Cow<str>, Owner)> = vec![
-            ("displacement".into(), Owner::Displacement),
-            ("velocity".into(), Owner::Velocity),
-            ("force_density".into(), Owner::Force),
-        ];
-        let spread = self.transfer_columns().into_iter();
-        columns.extend(spread.map(|c| (c.name, Owner::Transfer)));
-        let of_law = self.interaction.columns().into_iter();
-        let of_law = of_law.filter(|c| c.life == Life::Persistent && c.on == On::Points);
-        columns.extend(of_law.map(|c| (c.name, Owner::Law(c.shape.stored(D)))));
-        columns.sort_by(|a, b| a.0.cmp(&b.0));
-
-        let (body, points) = (&self.body, self.body.points());
-        let mut digests = vec![0; points.div_ceil(BLOCK)];
-        let slot = |id: usize| body.slots[id] as usize;
-        for (name, owner) in columns {
-            let field = match owner {
-                Owner::Displacement => &self.u,
-                Owner::Velocity => &self.v,
-                Owner::Force => &self.f,
-                Owner::Transfer => {
-                    let values = self.transferred(&name).unwrap_or_default();
-                    chain(&mut digests, (&name, 1), points, |id, _| values[id]);
-                    continue;
-                }
-                Owner::Law(each) => {
-                    let values = self.of_law(&name);
-                    let value = |id: usize, c: usize| values[each * slot(id) + c];
-                    chain(&mut digests, (&name, each), points, value);
-                    continue;
-                }
-            };
-            chain(&mut digests, (&name, D), points, |id, a| field[a][slot(id)]);
-        }
-        digests
+    for indenter in &system.applied.rigid {
+        words.numbers(indenter.rigid.center);
     }
+    words.hash(0)
+}
 
-    /// A column that the law declares, as it lies.
-    fn of_law(&self, name: &str) -> Vec<f64> {
-        let mut values = vec![];
-        let known = (self.interaction).read_column(&self.body, &self.u, name, &mut values);
-        assert!(known, "{name} is declared and cannot be read");
-        values
-    }
+/// Of each block, all that its points remember.
+fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
+    let mut columns: Vec<(Cow<str>, Owner)> = vec![
+        ("displacement".into(), Owner::Displacement),
+        ("velocity".into(), Owner::Velocity),
+        ("force_density".into(), Owner::Force),
+    ];
+    let spread = system.transfer_columns().into_iter();
+    columns.extend(spread.map(|c| (c.name, Owner::Transfer)));
+    let declared = system.interaction.columns().into_iter();
+    let declared = declared.filter(|c| c.life == Life::Persistent && c.on == On::Points);
+    columns.extend(declared.map(|c| (c.name, Owner::Law(c.shape.stored(D)))));
+    columns.sort_by(|a, b| a.0.cmp(&b.0));
 
-    /// Of each block, which bonds of its points are broken, and what the others of its bonds' columns say.
-    fn sums_of_bonds(&self) -> Vec<u64> {
-        let mut bonds = Bonds {
-            model: self,
-            id: self.ids(),
-            sums: vec![0; self.body.points().div_ceil(BLOCK)],
-            words: Words::default(),
-        };
-        let whole = hash_of_name(history::WHOLE);
-        self.interaction
-            .each_bond(&self.body, &mut |i, j, xi, state| {
-                if state == BondState::Broken {
-                    bonds.add(whole, [i, j], xi, &[]);
-                    bonds.add(whole, [j, i], xi.map(|x| -x), &[]);
-                }
-            });
-        for column in self.interaction.columns() {
-            let kept = column.life == Life::Persistent && column.on == On::Bonds;
-            if !kept || column.name == history::WHOLE {
+    let (body, points) = (&system.body, system.body.points());
+    let mut digests = vec![0; points.div_ceil(BLOCK)];
+    let slot = |id: usize| body.slots[id] as usize;
+    for (name, owner) in columns {
+        let field = match owner {
+            Owner::Displacement => &system.u,
+            Owner::Velocity => &system.v,
+            Owner::Force => &system.f,
+            Owner::Transfer => {
+                let values = system.transferred(&name).unwrap_or_default();
+                chain(&mut digests, (&name, 1), points, |id, _| values[id]);
                 continue;
             }
-            let hash = hash_of_name(&column.name);
-            let values = self.of_law(&column.name);
-            let mut rows = values.chunks_exact(column.shape.stored(D));
-            self.interaction
-                .each_directed(&self.body, &column.name, &mut |i, j, xi| {
-                    let row = rows.next().expect("a value of each bond");
-                    bonds.add(hash, [i, j], xi, row);
-                });
-            assert!(rows.next().is_none(), "a bond of each value");
-        }
-        bonds.sums
+            Owner::Law(each) => {
+                let values = of_law(system, &name);
+                let value = |id: usize, c: usize| values[each * slot(id) + c];
+                chain(&mut digests, (&name, each), points, value);
+                continue;
+            }
+        };
+        chain(&mut digests, (&name, D), points, |id, a| field[a][slot(id)]);
     }
+    digests
+}
 
-    fn hash_of_ledger(&mut self) -> Option<u64> {
-        let Ledger {
-            kinetic,
-            strain,
-            contact,
-            released,
-            made,
-            dissipated,
-            numerical,
-            work_conditions,
-            work_indenter,
-            initial,
-        } = self.balance().ok()?;
-        let mut words = Words::default();
-        words.numbers([
-            kinetic,
-            strain,
-            contact,
-            released,
-            made,
-            dissipated,
-            numerical,
-            work_conditions,
-            work_indenter,
-            initial,
-        ]);
-        for (quantity, account) in self.transfer_accounts() {
-            let TransferAccount {
-                content,
-                initial,
-                supplied,
-                exchanged,
-                held,
-                made,
-                through_contact,
-            } = account;
-            words.put([hash_of_name(quantity.column())]);
-            words.numbers([content, initial, supplied, exchanged, held, made]);
-            words.numbers(through_contact);
+/// A column that the law declares, as it lies.
+fn of_law<const D: usize>(system: &System<D>, name: &str) -> Vec<f64> {
+    let mut values = vec![];
+    let known = (system.interaction).read_column(&system.body, &system.u, name, &mut values);
+    assert!(known, "{name} is declared and cannot be read");
+    values
+}
+
+/// Of each block, which bonds of its points are broken, and what the others of its bonds' columns say.
+fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
+    let mut bonds = Bonds {
+        system,
+        id: system.body.ids_by_slot(),
+        sums: vec![0; system.body.points().div_ceil(BLOCK)],
+        words: Words::default(),
+    };
+    let whole = hash_of_name(history::WHOLE);
+    system
+        .interaction
+        .each_bond(&system.body, &mut |i, j, xi, state| {
+            if state == BondState::Broken {
+                bonds.add(whole, [i, j], xi, &[]);
+                bonds.add(whole, [j, i], xi.map(|x| -x), &[]);
+            }
+        });
+    for column in system.interaction.columns() {
+        let kept = column.life == Life::Persistent && column.on == On::Bonds;
+        if !kept || column.name == history::WHOLE {
+            continue;
         }
-        Some(words.hash(0))
+        let hash = hash_of_name(&column.name);
+        let values = of_law(system, &column.name);
+        let mut rows = values.chunks_exact(column.shape.stored(D));
+        system
+            .interaction
+            .each_directed(&system.body, &column.name, &mut |i, j, xi| {
+                let row = rows.next().expect("a value of each bond");
+                bonds.add(hash, [i, j], xi, row);
+            });
+        assert!(rows.next().is_none(), "a bond of each value");
     }
+    bonds.sums
+}
+
+fn hash_of_ledger<const D: usize>(system: &mut System<D>) -> Option<u64> {
+    let Ledger {
+        kinetic,
+        strain,
+        contact,
+        released,
+        made,
+        dissipated,
+        numerical,
+        work_conditions,
+        work_indenter,
+        initial,
+    } = system.balance().ok()?;
+    let mut words = Words::default();
+    words.numbers([
+        kinetic,
+        strain,
+        contact,
+        released,
+        made,
+        dissipated,
+        numerical,
+        work_conditions,
+        work_indenter,
+        initial,
+    ]);
+    for (quantity, account) in system.transfer_accounts() {
+        let TransferAccount {
+            content,
+            initial,
+            supplied,
+            exchanged,
+            held,
+            made,
+            through_contact,
+        } = account;
+        words.put([hash_of_name(quantity.column())]);
+        words.numbers([content, initial, supplied, exchanged, held, made]);
+        words.numbers(through_contact);
+    }
+    Some(words.hash(0))
 }

@@ -10,52 +10,66 @@ use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::Observed;
 use crate::spec::{ConditionSpec, IndenterSpec};
 
+impl<const D: usize> Model<D> {
+    /// Nobody leads this stepper through its steps.
+    fn has_no_halves(&self) -> RunError {
+        RunError::Implicit {
+            step: self.system.clock.step() + 1,
+            position: None,
+            error: SolveError::NoTangent {
+                what: "what acts between the halves of a step",
+            },
+        }
+    }
+}
+
 impl<const D: usize> Steered for Model<D> {
     fn depart(&mut self) -> Result<f64, RunError> {
-        if self.implicit.is_some() {
-            return Err(RunError::Implicit {
-                step: self.clock.step() + 1,
-                position: None,
-                error: SolveError::NoTangent {
-                    what: "what acts between the halves of a step",
-                },
-            });
+        match self.stages.now.split() {
+            Some(halves) => halves.depart(&mut self.system),
+            None => Err(self.has_no_halves()),
         }
-        Model::depart(self)?;
-        Ok(self.fastest)
     }
 
     fn arrive(&mut self) -> Result<(), RunError> {
-        Model::arrive(self)
+        match self.stages.now.split() {
+            Some(halves) => halves.arrive(&mut self.system),
+            None => Err(self.has_no_halves()),
+        }
     }
 
     fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>) {
-        self.bounce(wall, ids);
+        self.system.bounce(wall, ids);
     }
 
     fn set_carried(&mut self, ids: &[u32]) {
         self.finish();
-        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        self.prescribed.carried = Carried::new(slots.collect());
+        let slots = ids.iter().map(|id| self.system.body.slots[*id as usize]);
+        self.system.prescribed.carried = Carried::new(slots.collect());
     }
 
     fn carry(&mut self, next: &[Motion]) {
-        self.prescribed.carried.tell(next);
+        self.system.prescribed.carried.tell(next);
     }
 
     fn remove(&mut self, ids: &[u32]) {
-        self.take_away(ids);
+        if ids.is_empty() {
+            return;
+        }
+        self.finish();
+        let moved = self.system.take_away(ids);
+        self.names.renumber(&moved);
     }
 
     fn set_time(&mut self, step: u64, time: f64) {
-        self.clock.set_step(step);
-        self.clock.set(time);
+        self.system.clock.set_step(step);
+        self.system.clock.set(time);
     }
 
     fn set_time_step(&mut self, dt: f64) {
         self.finish();
-        self.clock.set_time_step(dt);
-        self.info.time_step = dt;
+        self.system.clock.set_time_step(dt);
+        self.system.info.time_step = dt;
     }
 
     fn set_conditions(
@@ -64,35 +78,29 @@ impl<const D: usize> Steered for Model<D> {
         sets: &[(String, Vec<u32>)],
         indenters: &[IndenterSpec],
     ) -> Result<(), BuildError> {
-        let (forces, constraints) = self.acting(conditions, indenters, sets)?;
+        let body = &self.system.body;
+        let (forces, constraints) = self.names.acting(body, conditions, indenters, sets)?;
         self.finish();
-        let now = self.energy_now();
-        self.accounts.pass(&now);
-        // it goes on; what it took is in the past now
-        if let Some(friction) = self.contact.as_mut().and_then(|c| c.friction.as_mut()) {
-            friction.work = -friction.energy;
-        }
-        self.applied = forces;
-        self.prescribed.constraints = constraints;
+        self.system.set_acting(forces, constraints);
         Ok(())
     }
 
     fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool {
         let vector = match name {
             "reference" => {
-                self.body.coordinates(first, component, out);
+                self.system.body.coordinates(first, component, out);
                 return true;
             }
-            "displacement" => &self.u,
+            "displacement" => &self.system.u,
             "velocity" => {
                 self.finish();
-                &self.v
+                &self.system.v
             }
-            "force_density" => &self.f,
+            "force_density" => &self.system.f,
             "volume" | "density" => {
-                let (volume, density) = (&self.body.volume, &self.body.density);
+                let (volume, density) = (&self.system.body.volume, &self.system.body.density);
                 let values = if name == "volume" { volume } else { density };
-                for (x, &s) in out.iter_mut().zip(&self.body.slots[first..]) {
+                for (x, &s) in out.iter_mut().zip(&self.system.body.slots[first..]) {
                     *x = values.at(s as usize);
                 }
                 return true;
@@ -101,7 +109,7 @@ impl<const D: usize> Steered for Model<D> {
         };
         match vector.get(component) {
             Some(values) => {
-                for (x, &s) in out.iter_mut().zip(&self.body.slots[first..]) {
+                for (x, &s) in out.iter_mut().zip(&self.system.body.slots[first..]) {
                     *x = values[s as usize];
                 }
             }
@@ -114,16 +122,15 @@ impl<const D: usize> Steered for Model<D> {
         self.finish();
         let vector = match name {
             "displacement" => {
-                self.look_again();
-                self.virial = None;
-                self.virials = None;
-                &mut self.u
+                self.system.look_again();
+                self.system.watch.forget_virials();
+                &mut self.system.u
             }
-            "velocity" => &mut self.v,
+            "velocity" => &mut self.system.v,
             _ => return false,
         };
         if let Some(component) = vector.get_mut(component) {
-            for (value, &s) in values.iter().zip(&self.body.slots[first..]) {
+            for (value, &s) in values.iter().zip(&self.system.body.slots[first..]) {
                 component[s as usize] = *value;
             }
         }
@@ -131,67 +138,62 @@ impl<const D: usize> Steered for Model<D> {
     }
 
     fn watch_next(&mut self) {
-        self.watch = true;
+        self.system.watch.energies_next();
     }
 
     fn watched(&self) -> Option<Observed> {
-        self.watched.as_ref().map(|w| self.observed_of(w))
+        let seen = self.system.watch.energies.as_ref();
+        seen.map(|seen| self.system.observed_of(seen))
     }
 
     fn watch_virial_next(&mut self) {
-        self.watch_virial = true;
+        self.system.watch.virial_next();
     }
 
     fn watch_virials_next(&mut self) {
-        self.watch_virials = true;
+        self.system.watch.virials_next();
     }
 
     fn virials(&mut self) -> Vec<[f64; 6]> {
-        let points = match &self.virials {
+        let points = match &self.system.watch.virials {
             Some(points) => points.clone(),
-            None => {
-                self.refresh_images();
-                if let Some(pairs) = &mut self.contact {
-                    pairs.find(&self.body, &self.u, self.interaction.as_ref());
-                }
-                let mut points = self.virials_of_bonds();
-                self.add_virials_of_contact(&mut points);
-                points
-            }
+            None => self.system.virials_now(),
         };
-        self.by_id(|i| points[i])
+        self.system.body.by_id(|i| points[i])
     }
 
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {
         self.finish();
-        let slot = |id: &u32| self.body.slots[*id as usize];
+        let slot = |id: &u32| self.system.body.slots[*id as usize];
         let new = driven.iter().map(|(drive, ids)| {
             let slots = match ids {
-                None => self.body.slots.clone(),
+                None => self.system.body.slots.clone(),
                 Some(ids) => ids.iter().map(slot).collect(),
             };
-            let at = |s: &u32| self.body.position(*s as usize);
+            let at = |s: &u32| self.system.body.position(*s as usize);
             let points = slots.iter().map(at).collect();
             Driven::new(drive, slots, points)
         });
         let new: Vec<_> = new.collect();
-        for old in std::mem::replace(&mut self.applied.driven, new) {
+        for old in std::mem::replace(&mut self.system.applied.driven, new) {
             match old {
-                Driven::Load(l) => self.accounts.past.conditions += l.work,
-                Driven::Indenter(i) => self.accounts.past.indenters += i.work,
+                Driven::Load(l) => self.system.accounts.past.conditions += l.work,
+                Driven::Indenter(i) => self.system.accounts.past.indenters += i.work,
             }
         }
     }
 
     fn drive(&mut self, index: usize, value: &Drive) -> bool {
-        self.applied
+        self.system
+            .applied
             .driven
             .get_mut(index)
             .is_some_and(|d| d.set(value))
     }
 
     fn reaction(&self, index: usize) -> Reaction {
-        self.applied
+        self.system
+            .applied
             .driven
             .get(index)
             .map_or_else(Reaction::default, Driven::reaction)
@@ -199,7 +201,7 @@ impl<const D: usize> Steered for Model<D> {
 
     fn set_still(&mut self, ids: &[u32]) {
         self.finish();
-        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        self.prescribed.still = Still::new(slots.collect());
+        let slots = ids.iter().map(|id| self.system.body.slots[*id as usize]);
+        self.system.prescribed.still = Still::new(slots.collect());
     }
 }

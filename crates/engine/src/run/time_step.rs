@@ -12,7 +12,7 @@ use crate::error::BuildError;
 use crate::interaction::Interaction;
 use crate::message;
 use crate::quantity::{Dimension, Warnings};
-use crate::spec::{Spec, Stepper, TimeStep};
+use crate::spec::{Spec, TimeStep};
 
 /// Part of the stability limit that peridynamic bodies run at if nobody says otherwise.
 const SOLID_FRACTION: f64 = 0.8;
@@ -68,18 +68,16 @@ pub(super) fn time_step(
     repulsion: Option<&Rules>,
     warnings: &mut Warnings,
 ) -> Result<f64, BuildError> {
-    let explicit = match spec.schedule.stepper {
-        Stepper::Verlet | Stepper::Statics(_) => true,
-        Stepper::Newmark(_) => false,
+    let stepper = spec.schedule.stepper;
+    if stepper.rests() {
         // what spreads says how long a step may be
-        Stepper::Still => {
-            return match spec.schedule.time_step {
-                TimeStep::Fixed(dt) => Ok(dt),
-                TimeStep::Fraction(_) | TimeStep::Auto => Ok(1.0),
-            };
-        }
-    };
-    if !explicit && spec.schedule.time_step == TimeStep::Auto {
+        return match spec.schedule.time_step {
+            TimeStep::Fixed(dt) => Ok(dt),
+            TimeStep::Fraction(_) | TimeStep::Auto => Ok(1.0),
+        };
+    }
+    let implicit = stepper.has_inertia() && stepper.solves();
+    if implicit && spec.schedule.time_step == TimeStep::Auto {
         return Err(BuildError::missing(
             "schedule.time_step",
             "an implicit step is stable at any length: how long it is must be said",
@@ -119,7 +117,7 @@ pub(super) fn time_step(
     // a step that was chosen may be right where nothing ever touches
     let chosen = matches!(spec.schedule.time_step, TimeStep::Fixed(_));
     let limit = if chosen { limits.bond } else { limits.stable() };
-    if dt > limits.contact && dt <= limit && explicit {
+    if dt > limits.contact && dt <= limit && !implicit {
         let of = limits
             .touching
             .map_or([0, 0], |t| t.materials)
@@ -138,7 +136,7 @@ pub(super) fn time_step(
             format!(" of contact between {between}: the run goes unstable if many of them touch"),
         ]);
     }
-    if dt > limit && explicit {
+    if dt > limit && !implicit {
         let message = message![
             "the time step ",
             Dimension::TIME.of(dt),

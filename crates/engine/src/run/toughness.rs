@@ -1,7 +1,7 @@
 //! Toughness of places and times: before every test each point is told what it bears.
 
 use super::constitutive::Shelf;
-use super::model::Model;
+use super::system::System;
 use crate::condition::toughness::{Bears, ToughnessField};
 use crate::error::{BuildError, RunError};
 use crate::message;
@@ -98,7 +98,7 @@ fn refused(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
     Ok(())
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Of a spec; `None`: it is that of the materials, always.
     ///
     /// # Errors
@@ -125,8 +125,8 @@ impl<const D: usize> Model<D> {
         }
         let mut factors = vec![];
         for (n, t) in spec.toughness.iter().enumerate() {
-            let (slots, _) =
-                { self.slots_of(&t.set, sets) }.map_err(|e| e.at(format!("toughness[{n}].set")))?;
+            let (slots, _) = { self.body.slots_of(&t.set, sets) }
+                .map_err(|e| e.at(format!("toughness[{n}].set")))?;
             factors.push((slots, t.factor.clone()));
         }
         let mut field = ToughnessField::new(bears, base, factors);

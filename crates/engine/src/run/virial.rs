@@ -1,6 +1,6 @@
 //! The virial, pair by pair: what a pressure is made of. Slow and plain; no sweep knows of it.
 
-use super::model::Model;
+use super::system::System;
 use crate::interaction::add_virial;
 
 /// Axes of the components of a virial.
@@ -15,7 +15,7 @@ fn add<const D: usize>(virial: &mut [f64; 6], y: &[f64; D], pull: f64, volumes: 
     }
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Of bonds and of repulsion inside families; images of `u` must be fresh. Not a number where the law has no forces of
     /// single bonds.
     pub(super) fn virial_of_bonds(&mut self) -> [f64; 6] {
@@ -24,7 +24,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Half of the virial of its pairs for each slot, of bonds and of repulsion inside families; as
-    /// [`Model::virial_of_bonds`].
+    /// [`System::virial_of_bonds`].
     pub(super) fn virials_of_bonds(&mut self) -> Vec<[f64; 6]> {
         let (body, mut points) = (&self.body, vec![[0.0; 6]; self.body.len]);
         let known = self.interaction.each_force(body, &self.u, &mut |bond| {
@@ -69,5 +69,16 @@ impl<const D: usize> Model<D> {
         let mut virial = self.virial_of_bonds();
         self.add_virial_of_contact(&mut virial);
         virial
+    }
+
+    /// The same for each slot.
+    pub(super) fn virials_now(&mut self) -> Vec<[f64; 6]> {
+        self.refresh_images();
+        if let Some(pairs) = &mut self.contact {
+            pairs.find(&self.body, &self.u, self.interaction.as_ref());
+        }
+        let mut points = self.virials_of_bonds();
+        self.add_virials_of_contact(&mut points);
+        points
     }
 }

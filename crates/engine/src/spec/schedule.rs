@@ -33,6 +33,29 @@ pub enum Stepper {
     Statics(Statics),
 }
 
+impl Stepper {
+    /// Do forces accelerate points?
+    pub fn has_inertia(self) -> bool {
+        match self {
+            Stepper::Verlet | Stepper::Newmark(_) => true,
+            Stepper::Still | Stepper::Statics(_) => false,
+        }
+    }
+
+    /// Is the end of every step the solution of equations?
+    pub fn solves(self) -> bool {
+        match self {
+            Stepper::Newmark(_) | Stepper::Statics(_) => true,
+            Stepper::Verlet | Stepper::Still => false,
+        }
+    }
+
+    /// Does no step move points?
+    pub fn rests(self) -> bool {
+        !self.has_inertia() && !self.solves()
+    }
+}
+
 /// Newmark's method (Newmark 1959): `u₁ = u₀ + Δt v₀ + Δt² ((½ − β) a₀ + β a₁)`, `v₁ = v₀ + Δt ((1 − γ) a₀ + γ a₁)`, with
 /// `a₁` from the forces at the end of the step; with α below 0 from those before it, too (Hilber, Hughes & Taylor 1977):
 /// `ρ a₁ = (1 + α) f₁ − α f₀`.
@@ -144,6 +167,16 @@ pub enum Control {
     Opening(f64),
     /// So far points go, the root of the mean square of all (length); t as above.
     ArcLength(f64),
+}
+
+impl Control {
+    /// Is the load an unknown of its own?
+    pub fn follows_a_path(self) -> bool {
+        match self {
+            Control::Opening(_) | Control::ArcLength(_) => true,
+            Control::Load | Control::Breaking => false,
+        }
+    }
 }
 
 /// How linear equations are solved.

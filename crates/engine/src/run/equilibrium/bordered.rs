@@ -7,11 +7,11 @@
 //!
 //! What is sought of a body is `(m a, dL/dt)` at the end of the step; its place follows as in [`Rigid::step_implicitly`](crate::condition::rigid::Rigid::step_implicitly).
 
+use super::problem::Problem;
 use super::system::{Border, unknowns};
 use super::tried::{Inertia, Tried};
 use crate::condition::indenter::Indenter;
 use crate::condition::rigid::Wrench;
-use crate::run::model::Model;
 use crate::space::{cross, full};
 
 /// Where a place at `arm` goes when its body does what unknown `k` is, in D axes.
@@ -25,25 +25,25 @@ fn moves<const D: usize>(k: usize, arm: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|a| way[a])
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> Problem<'_, D> {
     /// What bodies with mass add to the equations of now.
     pub(super) fn border(&self, inertia: &Inertia<D>) -> Border<D> {
         let each = unknowns(D);
-        let id = self.ids();
+        let id = self.system.body.ids_by_slot();
         let mut border = Border {
             columns: vec![],
             own: vec![],
             inertia: vec![],
             radius: vec![],
         };
-        let bodies: Vec<&Indenter<D>> = self.applied.free().collect();
+        let bodies: Vec<&Indenter<D>> = self.system.applied.free().collect();
         let all = bodies.len() * each.len();
         for (n, body) in bodies.iter().enumerate() {
             let mass = body.rigid.inertia(inertia.acceleration);
             for &unknown in each {
-                let mut column = vec![[0.0; D]; self.body.points()];
+                let mut column = vec![[0.0; D]; self.system.body.points()];
                 let mut own = vec![0.0; all];
-                body.each_tangent(&self.body, &self.u, |slot, arm, block| {
+                body.each_tangent(&self.system.body, &self.system.u, |slot, arm, block| {
                     let way = moves(unknown, arm);
                     // force on the point if the place goes there
                     let force: [f64; D] =
@@ -71,7 +71,7 @@ impl<const D: usize> Model<D> {
 
     /// Bodies with mass go where they are tried.
     pub(in crate::run) fn place_bodies(&mut self, tried: &Tried<D>, inertia: &Inertia<D>) {
-        let free = self.applied.rigid.iter_mut().filter(|i| i.is_free());
+        let free = self.system.applied.rigid.iter_mut().filter(|i| i.is_free());
         for ((body, start), end) in free.zip(&inertia.bodies).zip(&tried.bodies) {
             body.step_implicitly([start, end], inertia.newmark());
         }
@@ -83,7 +83,7 @@ impl<const D: usize> Model<D> {
         tried: &Tried<D>,
         inertia: &Inertia<D>,
     ) -> (Vec<Wrench>, [f64; 2]) {
-        let free = self.applied.free();
+        let free = self.system.applied.free();
         let (mut rest, mut left, mut scale) = (vec![], 0.0f64, 0.0f64);
         for (n, (body, end)) in free.zip(&tried.bodies).enumerate() {
             let (acting, radius) = (body.rigid.wrench(), body.rigid.gyration());

@@ -1,30 +1,33 @@
 //! The linear equations of a step of Newton's method: factored, assembled, or by sweeps.
 
+use super::problem::Problem;
 use super::state::StaticState;
 use super::system::Equations;
 use super::tried::{Inertia, Onward};
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
-use crate::run::model::Model;
 use crate::spec::LinearBody;
 use crate::statics::cg::{self, Goal};
 use crate::statics::{
     self, Assembled, Block, Direct, LinearOperator, Shifted, Solved, Support, Swept, norm,
 };
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> Problem<'_, D> {
     /// The linear body about the displacements of now, points that touch too.
     pub(super) fn tangent_now(&mut self) -> LinearBody<D> {
-        self.refresh_images();
-        let (bonds, contact) = (self.interaction.as_mut(), self.contact.as_ref());
-        statics::linear_body_touching(&self.body, bonds, contact, &self.u)
+        self.system.refresh_images();
+        let (bonds, contact) = (
+            self.system.interaction.as_mut(),
+            self.system.contact.as_ref(),
+        );
+        statics::linear_body_touching(&self.system.body, bonds, contact, &self.system.u)
     }
 
     /// What indenters resist with at points.
     fn pushed(&self) -> Vec<Block<D>> {
-        let mut sum = vec![[[0.0; D]; D]; self.body.len];
-        for indenter in &self.applied.rigid {
-            indenter.each_tangent(&self.body, &self.u, |slot, _, block| {
+        let mut sum = vec![[[0.0; D]; D]; self.system.body.len];
+        for indenter in &self.system.applied.rigid {
+            indenter.each_tangent(&self.system.body, &self.system.u, |slot, _, block| {
                 for a in 0..D {
                     for b in 0..D {
                         sum[slot][a][b] += block[a][b];
@@ -32,7 +35,7 @@ impl<const D: usize> Model<D> {
                 }
             });
         }
-        self.by_id(|i| sum[i])
+        self.system.body.by_id(|i| sum[i])
     }
 
     /// The equations of a step of Newton's method.
@@ -47,15 +50,15 @@ impl<const D: usize> Model<D> {
             Some(_) | None => None,
         };
         let acceleration = inertia.map_or(0.0, |m| m.acceleration);
-        let factored = self.factored(state.options, support);
+        let factored = self.system.factored(state.options, support);
         let kept = state.step.take();
         if let Some(kept) = kept.filter(|k| factored && k.acceleration == acceleration) {
             return Ok(Equations { old: true, ..kept });
         }
         let mut unstable = false;
-        let reference = self.at_peace() && self.forgets();
+        let reference = self.system.at_peace() && self.system.forgets();
         let coupled = inertia.and_then(|m| m.coupled.as_ref());
-        let swept = !factored && reference && self.contact.is_none() && coupled.is_none();
+        let swept = !factored && reference && self.system.contact.is_none() && coupled.is_none();
         // conjugate gradients seek the step in the symmetric part of a tangent that has another: forces decide where it ends
         let mut body = (!swept).then(|| match self.tangent_now() {
             body if !factored && body.soundness().asymmetry > statics::SYMMETRIC => {
@@ -89,7 +92,9 @@ impl<const D: usize> Model<D> {
                     None => Direct::new(body, support, 0.0),
                 };
                 Some(match made {
-                    Err(SolveError::Indefinite { .. }) if !self.at_peace() && inertia.is_none() => {
+                    Err(SolveError::Indefinite { .. })
+                        if !self.system.at_peace() && inertia.is_none() =>
+                    {
                         unstable = true;
                         downhill(body, support)?
                     }
@@ -146,7 +151,8 @@ impl<const D: usize> Model<D> {
                 }
                 (Some(body), None) => solve_assembled(body, added, support, b, x, goal)?,
                 (None, _) => {
-                    let operator = &mut Swept::new(&self.body, self.interaction.as_mut());
+                    let operator =
+                        &mut Swept::new(&self.system.body, self.system.interaction.as_mut());
                     let mut operator = Shifted { operator, added };
                     cg::solve(&mut operator, support, b, x, goal)?
                 }

@@ -1,9 +1,10 @@
 //! What holds a body in equilibrium, and what nothing holds.
 
+use super::problem::Problem;
 use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::error::{Loose, SolveError};
 use crate::fracture::fragments::Fragments;
-use crate::run::model::Model;
+use crate::run::system::System;
 use crate::spec::{Method, Statics};
 use crate::statics::Support;
 
@@ -14,15 +15,15 @@ pub(super) struct Held<const D: usize> {
     pub resting: Vec<usize>,
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Which components forces move.
     pub(in crate::run) fn held(&self) -> Support<D> {
         self.held_by(&self.prescribed)
     }
 
     /// The same under this motion.
-    pub(super) fn held_by(&self, prescribed: &PrescribedMotion<D>) -> Support<D> {
-        let id = self.ids();
+    pub(in crate::run) fn held_by(&self, prescribed: &PrescribedMotion<D>) -> Support<D> {
+        let id = self.body.ids_by_slot();
         let mut support = Support::none(self.body.points());
         let mut hold = |slot, a| support.free[id[slot] as usize][a] = false;
         prescribed.all().for_each(|p| p.each_held(&mut hold));
@@ -32,31 +33,36 @@ impl<const D: usize> Model<D> {
     /// Rigid motions of parts whose bonds hold together that meet no resistance.
     pub(super) fn loose_parts(&self, support: &Support<D>) -> Vec<Loose> {
         let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
-        support.loose(&self.reference_places(), &parts, &self.body.period)
+        support.loose(&self.body.places(), &parts, &self.body.period)
     }
+}
 
+impl<const D: usize> Problem<'_, D> {
     /// Which components are free where bonds have broken: a part that nothing holds and nothing loads rests where it is, by as few components as hold
     /// it, which bear nothing.
     ///
     /// # Errors
     /// A load acts on it: there is no equilibrium.
     pub(super) fn support_now(&mut self, options: Statics) -> Result<Held<D>, SolveError> {
-        let support = self.held();
+        let support = self.system.held();
         let resting = vec![];
         // what touches may hold, too
-        if self.accounts.broken == 0 || self.contact.is_some() || !self.applied.rigid.is_empty() {
+        if self.system.accounts.broken == 0
+            || self.system.contact.is_some()
+            || !self.system.applied.rigid.is_empty()
+        {
             return Ok(Held { support, resting });
         }
-        let (places, period) = (self.reference_places(), self.body.period);
-        let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
+        let (places, period) = (self.system.body.places(), self.system.body.period);
+        let parts = Fragments::of(&self.system.body, self.system.interaction.as_ref()).label;
         let mut loose = support.loose(&places, &parts, &period);
         // one of each part
         loose.dedup_by_key(|l| l.point);
         if loose.is_empty() {
             return Ok(Held { support, resting });
         }
-        let external = self.external();
-        let loads = self.per_point(&external);
+        let external = self.system.external();
+        let loads = self.system.body.per_point(&external);
         let mut members = vec![vec![]; parts.len()];
         for (i, part) in parts.iter().enumerate() {
             members[*part as usize].push(i);
@@ -89,13 +95,5 @@ impl<const D: usize> Model<D> {
             now.resting.extend(own);
         }
         Ok(now)
-    }
-
-    /// Reference positions in order of ids.
-    fn reference_places(&self) -> Vec<[f64; D]> {
-        self.by_id(|i| {
-            let x = self.body.position(i);
-            std::array::from_fn(|a| x[a])
-        })
     }
 }

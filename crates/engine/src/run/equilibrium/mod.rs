@@ -2,9 +2,11 @@
 
 mod bordered;
 mod equations;
+mod free;
 mod held;
 mod linear;
 mod path;
+pub(super) mod problem;
 mod relaxed;
 mod sequence;
 mod solve;
@@ -12,22 +14,19 @@ pub(super) mod state;
 mod system;
 pub(super) mod tried;
 
+use self::problem::Problem;
 use self::state::StaticState;
-use super::clock::Clock;
-use super::model::Model;
+use super::system::System;
 use crate::body::{Field, zeros};
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::interaction::Sweep;
-use crate::interaction::friction::Pressed;
 use crate::law::descriptor::Memory;
-use crate::message;
-use crate::quantity::{Dimension, rounded};
+use crate::quantity::rounded;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
-use crate::spec::{Cycles, LinearBody, Method, Solver, Statics};
-use crate::statics::modes::{self, Mode};
+use crate::spec::{LinearBody, Method, Solver, Statics};
 use crate::statics::{self, Solved, Support};
 
 /// Rounds of breaking and new equilibrium within one increment.
@@ -38,30 +37,16 @@ const ONE_LOOK: &str = "linear increments look once which bonds break: those tha
 
 /// What an increment does.
 #[derive(Debug, Clone, Copy, Default)]
-struct Way {
+pub(super) struct Way {
     /// Of loads and reactions (energy).
-    work: f64,
+    pub work: f64,
     /// What states that were released set free on their way to equilibrium.
-    lost: f64,
+    pub lost: f64,
     /// So much of it from where the increment began.
-    relaxed: f64,
+    pub relaxed: f64,
 }
 
-impl<const D: usize> Model<D> {
-    /// The linear body about the displacements of now.
-    pub(super) fn linear_now(&mut self) -> LinearBody<D> {
-        self.refresh_images();
-        LinearBody {
-            mass: self.inertia.as_ref().map(|i| i.masses.matrix().clone()),
-            ..statics::linear_body(&self.body, self.interaction.as_mut(), &self.u)
-        }
-    }
-
-    /// The linear body about the reference.
-    fn reference_body(&mut self) -> LinearBody<D> {
-        statics::linear_body(&self.body, self.interaction.as_mut(), &self.body.at_rest())
-    }
-
+impl<const D: usize> System<D> {
     /// Can this be brought into equilibrium at all?
     pub(super) fn check_statics(&self, options: Statics) -> Result<(), BuildError> {
         self.knows_its_time("statics", options.timed)?;
@@ -214,32 +199,6 @@ impl<const D: usize> Model<D> {
         )
     }
 
-    /// The state before any load: displacements as they are, forces of bonds alone.
-    pub(super) fn unloaded(&mut self) {
-        self.start_transfers();
-        self.v.iter_mut().for_each(|c| c.fill(0.0));
-        self.forces_of_statics();
-        self.stale = false;
-        self.learn_strength();
-        // energy that came in from outside counts as initial
-        self.accounts.initial = Some(self.energy_now().base());
-    }
-
-    /// Forces from which the next increment sets out; before the first one nothing acts but bonds.
-    pub(super) fn forces_of_statics(&mut self) {
-        self.refresh_images();
-        if self.is_linear() {
-            self.linear_forces();
-        } else {
-            let (body, u) = (&self.body, &self.u);
-            self.interaction
-                .forces(body, u, &mut self.f, Sweep::Hold, None);
-        }
-        if self.clock.has_gone_on() {
-            self.other_forces(self.clock.trial());
-        }
-    }
-
     /// Points know what they bear once they were asked: a first time without load, or the bonds of the first increment would never break.
     pub(super) fn learn_strength(&mut self) {
         // asking is a step of no length, which laws remember
@@ -264,108 +223,6 @@ impl<const D: usize> Model<D> {
         self.take_heat_of_flow();
     }
 
-    /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.
-    pub(super) fn increment(&mut self) -> Result<(), RunError> {
-        let (t, dt) = (self.clock.time(), self.clock.dt());
-        self.update_toughness(t + dt)?;
-        self.spread(t, dt)?;
-        self.pay(0.5, 0.0);
-        let Some(mut state) = self.statics.take() else {
-            return Ok(());
-        };
-        self.wear(state.options.cycles);
-        let (u, f) = (self.u.clone(), self.f.clone());
-        // nothing acts before the first increment
-        let first = !self.clock.has_gone_on() && !Self::follows_a_path(state.options);
-        let external = match first {
-            true => zeros(self.body.len),
-            false => self.external(),
-        };
-        self.acting_depart(Pressed::Held);
-        let clock = self.clock;
-        self.clock.forward();
-        if Self::breaks_in_turn(state.options) {
-            return self.break_next(state, clock, u, f);
-        }
-        if state.options.timed {
-            self.interaction.last(self.clock.dt());
-        }
-        let result = match Self::follows_a_path(state.options) {
-            true => self.settle_path(&mut state, [&u, &f, &external]),
-            false => self.settle_increment(&mut state, [&u, &f, &external]),
-        };
-        self.interaction.last(0.0);
-        if let Err(error) = result {
-            self.clock = clock;
-            self.retreat_transfers();
-            (self.u, self.f) = (u, f);
-            self.acting_retreat();
-            self.refresh_images();
-            self.statics = Some(state);
-            return Err(self.unsolved(error));
-        }
-        let (solved, way) = result.unwrap_or_default();
-        if first && way.relaxed != 0.0 {
-            self.warn_of_start(way.relaxed);
-        }
-        state.solved = solved;
-        self.accounts.past.dissipated += way.lost;
-        self.accounts.past.conditions += way.work;
-        self.statics = Some(state);
-        self.acting_arrive(&u);
-        self.pay(0.5, 0.0);
-        Ok(())
-    }
-
-    /// All that acts remembers where an increment or a step began.
-    pub(super) fn acting_depart(&mut self, pressed: Pressed) {
-        self.applied.all().for_each(|x| x.depart(&self.u, pressed));
-        if let Some(contact) = &mut self.contact {
-            contact.depart(&self.u, pressed);
-        }
-    }
-
-    /// It has ended, from these displacements on.
-    pub(super) fn acting_arrive(&mut self, then: &Field<D>) {
-        let between = [then, &self.u];
-        let all = self.applied.all();
-        all.for_each(|x| x.arrive(&self.body, between));
-        if let Some(contact) = &mut self.contact {
-            contact.arrive(&self.body, &self.u);
-        }
-    }
-
-    /// It goes back there.
-    pub(super) fn acting_retreat(&mut self) {
-        self.applied.all().for_each(|x| x.retreat());
-        if let Some(contact) = &mut self.contact {
-            contact.retreat();
-        }
-    }
-
-    /// An increment that ends where the next bonds break.
-    fn break_next(
-        &mut self,
-        mut state: StaticState<D>,
-        clock: Clock,
-        u: Field<D>,
-        f: Field<D>,
-    ) -> Result<(), RunError> {
-        match self.settle_sequence(&mut state) {
-            Ok(solved) => {
-                state.solved = solved;
-                self.statics = Some(state);
-                Ok(())
-            }
-            Err(error) => {
-                (self.clock, self.u, self.f) = (clock, u, f);
-                self.refresh_images();
-                self.statics = Some(state);
-                Err(self.unsolved(error))
-            }
-        }
-    }
-
     pub(super) fn unsolved(&self, error: SolveError) -> RunError {
         RunError::Equilibrium {
             step: self.clock.step() + 1,
@@ -384,38 +241,42 @@ impl<const D: usize> Model<D> {
         };
         place.map(|n| self.body.position(self.body.slots[n] as usize))
     }
+}
 
-    /// Cycles of the load that holds the body where it is; bonds that are worn out break at the first look for the next equilibrium.
-    fn wear(&mut self, cycles: Option<Cycles>) {
-        let Some(cycles) = cycles.filter(|_| self.clock.has_gone_on()) else {
-            return;
-        };
-        self.refresh_images();
-        let left = (cycles.most - self.accounts.cycles).max(0.0);
-        let passed = self.interaction.wear(&self.body, &self.u, &cycles, left);
-        self.accounts.cycles += passed.unwrap_or(0.0);
+impl<const D: usize> Problem<'_, D> {
+    /// The linear body about the reference.
+    fn reference_body(&mut self) -> LinearBody<D> {
+        statics::linear_body(
+            &self.system.body,
+            self.system.interaction.as_mut(),
+            &self.system.body.at_rest(),
+        )
     }
 
     /// Equilibrium, and again after bonds broke, until none breaks; what it did is counted from the displacements, forces and loads before.
-    fn settle_increment(
+    pub(super) fn settle_increment(
         &mut self,
         state: &mut StaticState<D>,
         [u, f, external]: [&Field<D>; 3],
     ) -> Result<(Solved, Way), SolveError> {
         let mut support = self.support_now(state.options)?.support;
         let method = state.options.method;
-        let linear = method == Method::Linear && self.at_peace();
+        let linear = method == Method::Linear && self.system.at_peace();
         // a start that is no equilibrium goes to one, whatever acts
         let mut released = self.is_unbalanced(&support, f, state.options.tolerance);
         let mut total = Solved::default();
         let mut way = Way::default();
         let mut from = [u.clone(), f.clone(), external.clone()];
         for round in 0..ROUNDS {
-            let t = self.clock.time();
-            self.prescribed.place(&mut self.u, t);
-            self.applied.rigid.iter_mut().for_each(|i| i.place(t));
-            self.look_again();
-            let before = self.accounts.broken;
+            let t = self.system.clock.time();
+            self.system.prescribed.place(&mut self.system.u, t);
+            self.system
+                .applied
+                .rigid
+                .iter_mut()
+                .for_each(|i| i.place(t));
+            self.system.look_again();
+            let before = self.system.accounts.broken;
             let solved = match method {
                 Method::Linear => self.solve_linear(state, &support)?,
                 Method::Newton => self.solve_newton(state, &support)?,
@@ -431,9 +292,9 @@ impl<const D: usize> Model<D> {
             }
             match linear {
                 true => self.tear_linear(),
-                false => self.forces(true, self.clock.trial()),
+                false => self.system.forces(true, self.system.clock.trial()),
             }
-            if self.accounts.broken == before {
+            if self.system.accounts.broken == before {
                 return Ok((total, way));
             }
             // the next solution is that of another body
@@ -444,7 +305,11 @@ impl<const D: usize> Model<D> {
             }
             // without what let go, whatever it did in the evaluation that found it
             self.hold(linear);
-            from = [self.u.clone(), self.f.clone(), self.external()];
+            from = [
+                self.system.u.clone(),
+                self.system.f.clone(),
+                self.system.external(),
+            ];
             released = true;
             support = self.support_now(state.options)?.support;
         }
@@ -453,37 +318,39 @@ impl<const D: usize> Model<D> {
 
     /// Forces of now, of which no bond lets go; of the linear body or of the law.
     fn hold(&mut self, linear: bool) {
-        self.refresh_images();
+        self.system.refresh_images();
         match linear {
-            true => self.linear_forces(),
+            true => self.system.linear_forces(),
             false => {
-                self.interaction
-                    .forces(&self.body, &self.u, &mut self.f, Sweep::Hold, None);
+                self.system.interaction.forces(
+                    &self.system.body,
+                    &self.system.u,
+                    &mut self.system.f,
+                    Sweep::Hold,
+                    None,
+                );
             }
         }
-        self.other_forces(self.clock.trial());
+        self.system.other_forces(self.system.clock.trial());
     }
 
     /// Linear increments solve once, and look once which bonds break.
     fn warn_of_one_look(&mut self) {
-        if !self.info.warnings.iter().any(|w| w.contains(ONE_LOOK)) {
-            self.info.warnings.push(ONE_LOOK.to_string());
+        if !self
+            .system
+            .info
+            .warnings
+            .iter()
+            .any(|w| w.contains(ONE_LOOK))
+        {
+            self.system.info.warnings.push(ONE_LOOK.to_string());
         }
-    }
-
-    /// The start of the run was no equilibrium.
-    fn warn_of_start(&mut self, lost: f64) {
-        self.info.warnings.push(message![
-            "the body is not in equilibrium at the start: on its way there it sets ",
-            Dimension::ENERGY.of(lost),
-            " free, which counts as dissipated; begin from where nothing pulls (values of heat and species at their reference), or let motion follow",
-        ]);
     }
 
     /// Are these forces (per volume) of points that were let go, more than a solver leaves beside those of points that are held?
     fn is_unbalanced(&self, support: &Support<D>, f: &Field<D>, tolerance: f64) -> bool {
         let [mut loose, mut held] = [0.0; 2];
-        for (n, force) in self.per_point(f).into_iter().enumerate() {
+        for (n, force) in self.system.body.per_point(f).into_iter().enumerate() {
             for a in 0..D {
                 match support.free[n][a] {
                     true => loose += force[a] * force[a],
@@ -504,12 +371,12 @@ impl<const D: usize> Model<D> {
         released: bool,
         way: &mut Way,
     ) {
-        let now = self.external();
-        for (n, &s) in self.body.slots.iter().enumerate() {
+        let now = self.system.external();
+        for (n, &s) in self.system.body.slots.iter().enumerate() {
             let i = s as usize;
             for a in 0..D {
-                let moved = 0.5 * self.body.volume.at(i) * (self.u[a][i] - u[a][i]);
-                let all = f[a][i] + self.f[a][i];
+                let moved = 0.5 * self.system.body.volume.at(i) * (self.system.u[a][i] - u[a][i]);
+                let all = f[a][i] + self.system.f[a][i];
                 let loads = external[a][i] + now[a][i];
                 if support.free[n][a] {
                     way.work += loads * moved;
@@ -522,22 +389,5 @@ impl<const D: usize> Model<D> {
                 }
             }
         }
-    }
-
-    /// The lowest modes of vibration about the state of now; of a body that was loaded those of the motion that follows.
-    ///
-    /// # Errors
-    /// Those of the factorisation.
-    pub(super) fn lowest_modes(&mut self, count: usize) -> Result<Vec<Mode<D>>, SolveError> {
-        let waits = self.preload.as_ref().filter(|_| self.clock.is_loaded());
-        let support = self.held_by(waits.map_or(&self.prescribed, |waits| &waits.prescribed));
-        let body = self.linear_now();
-        modes::lowest(&body, &support, count)
-    }
-
-    pub(super) fn padded(x: &[[f64; D]]) -> Vec<Point> {
-        x.iter()
-            .map(|x| std::array::from_fn(|a| if a < D { x[a] } else { 0.0 }))
-            .collect()
     }
 }

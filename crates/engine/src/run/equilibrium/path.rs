@@ -15,12 +15,13 @@
 //! halved; the next is twice as long again, up to what is asked for.
 
 use super::Way;
+use super::problem::Problem;
 use super::state::{Followed, StaticState};
 use crate::body::Field;
 use crate::error::{BuildError, SolveError};
 use crate::interaction::BondState;
 use crate::run::Shelf;
-use crate::run::model::Model;
+use crate::run::system::System;
 use crate::spec::{Control, LawSpec, Method, Solver, Spec, Statics};
 use crate::statics::{Assembled, Direct, Solved, Support, dot, norm};
 
@@ -59,7 +60,7 @@ fn further<const D: usize>(x: &[[f64; D]], y: &[[f64; D]], by: f64) -> Vec<[f64;
         .collect()
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Is there a path, and can it be followed?
     pub(in crate::run) fn check_path(
         &mut self,
@@ -111,17 +112,11 @@ impl<const D: usize> Model<D> {
         }
         self.enough_memory_for_rows()
     }
+}
 
-    /// Is the load an unknown of its own?
-    pub(super) fn follows_a_path(options: Statics) -> bool {
-        match options.control {
-            Control::Opening(_) | Control::ArcLength(_) => true,
-            Control::Load | Control::Breaking => false,
-        }
-    }
-
+impl<const D: usize> Problem<'_, D> {
     /// One increment along the path; on an error displacements and forces are anything.
-    pub(super) fn settle_path(
+    pub(in crate::run) fn settle_path(
         &mut self,
         state: &mut StaticState<D>,
         [u, f, external]: [&Field<D>; 3],
@@ -130,8 +125,8 @@ impl<const D: usize> Model<D> {
         if support.unknowns() == 0 {
             return Err(SolveError::NothingFree);
         }
-        let before = self.clock.origin();
-        let start = self.values(u);
+        let before = self.system.clock.origin();
+        let start = self.system.body.values(u);
         let asked = state
             .followed
             .as_ref()
@@ -158,7 +153,7 @@ impl<const D: usize> Model<D> {
             false,
             &mut way,
         );
-        self.forces(true, self.clock.trial());
+        self.system.forces(true, self.system.clock.trial());
         state.followed = Some(followed);
         Ok((solved, way))
     }
@@ -255,7 +250,7 @@ impl<const D: usize> Model<D> {
         most: &mut f64,
     ) -> Result<Trial<D>, SolveError> {
         let mut r = vec![[0.0; D]; way.len()];
-        self.clock.set(before + factor);
+        self.system.clock.set(before + factor);
         let scale = self.imbalance(&further(start, &way, 1.0), &mut r, support);
         *most = scale.max(*most);
         let size = norm(&r);
@@ -272,18 +267,21 @@ impl<const D: usize> Model<D> {
 
     /// Forces on the free components and displacements of the others under the load of 1.
     fn unit_load(&mut self, support: &Support<D>) -> Vec<[f64; D]> {
-        let clock = self.clock;
-        self.clock.set(1.0);
-        let mut u = self.body.at_rest();
-        self.prescribed.place(&mut u, 1.0);
-        let load = self.external();
-        let (mut unit, load) = (self.values(&u), self.per_point(&load));
+        let clock = self.system.clock;
+        self.system.clock.set(1.0);
+        let mut u = self.system.body.at_rest();
+        self.system.prescribed.place(&mut u, 1.0);
+        let load = self.system.external();
+        let (mut unit, load) = (
+            self.system.body.values(&u),
+            self.system.body.per_point(&load),
+        );
         for ((unit, load), free) in unit.iter_mut().zip(&load).zip(&support.free) {
             for a in (0..D).filter(|a| free[*a]) {
                 unit[a] = load[a];
             }
         }
-        self.clock = clock;
+        self.system.clock = clock;
         unit
     }
 
@@ -322,12 +320,13 @@ impl<const D: usize> Model<D> {
         b: &[[f64; D]],
         stable: bool,
     ) -> Result<Vec<[f64; D]>, SolveError> {
-        let id = self.ids();
+        let id = self.system.body.ids_by_slot();
         let mut bonds = vec![];
         // along b, and against it
         let mut fastest = [0.0f64; 2];
-        self.interaction
-            .each_bond(&self.body, &mut |i, j, xi, state| {
+        self.system
+            .interaction
+            .each_bond(&self.system.body, &mut |i, j, xi, state| {
                 if state != BondState::Whole {
                     return;
                 }

@@ -1,12 +1,12 @@
 //! How one increment finds its equilibrium by dynamic relaxation, friction included: what presses is held while the points move, and taken anew
 //! until nothing moves. Held, friction has a potential; with the pressure of every trial it has none, and points may circle for ever.
 
+use super::problem::Problem;
 use super::state::StaticState;
 use crate::condition::indenter::Indenter;
 use crate::dynamics::stable_step::largest_ratio;
 use crate::error::SolveError;
 use crate::interaction::friction::Friction;
-use crate::run::model::Model;
 use crate::statics::relaxation::relax;
 use crate::statics::{Solved, Support};
 
@@ -15,7 +15,7 @@ const PRESSINGS: usize = 100;
 /// Iterations between looks whether pairs of a family repel. They do much stiffer than bonds pull, and few bodies need the weight for it.
 const LOOK: usize = 20;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> Problem<'_, D> {
     pub(super) fn relax(
         &mut self,
         state: &mut StaticState<D>,
@@ -23,21 +23,23 @@ impl<const D: usize> Model<D> {
     ) -> Result<Solved, SolveError> {
         let goal = self.goal(state.options);
         // direct stiffness of every point as its mass, scaled so that a step of 1 is well below the limit
-        let mut sum = vec![0.0; self.body.len];
-        let reference = self.body.at_rest();
-        let body = &self.body;
-        self.interaction.tangents(body, &reference, &mut |bond| {
-            let trace: f64 = (0..D).map(|a| bond.stiffness[a][a].abs()).sum();
-            sum[bond.i] += body.volume.at(bond.i) * trace;
-        });
-        let mut own = self.by_id(|i| sum[i]);
+        let mut sum = vec![0.0; self.system.body.len];
+        let reference = self.system.body.at_rest();
+        let body = &self.system.body;
+        self.system
+            .interaction
+            .tangents(body, &reference, &mut |bond| {
+                let trace: f64 = (0..D).map(|a| bond.stiffness[a][a].abs()).sum();
+                sum[bond.i] += body.volume.at(bond.i) * trace;
+            });
+        let mut own = self.system.body.by_id(|i| sum[i]);
         let least = own.iter().copied().fold(0.0, f64::max) * 1e-3;
         own.iter_mut().for_each(|m| *m = m.max(least));
-        let top = largest_ratio(&self.body, self.interaction.as_mut(), &own);
+        let top = largest_ratio(&self.system.body, self.system.interaction.as_mut(), &own);
         // a step of 1 is stable to 4; half of that leaves room for stiffening
         own.iter_mut().for_each(|m| *m *= 0.5 * top);
         // what has flowed yields at the reference, softer than it is when it is unloaded: the stiffness of before it flowed stays
-        let path = !self.forgets();
+        let path = !self.system.forgets();
         if path {
             for (own, before) in own.iter_mut().zip(&state.masses) {
                 *own = own.max(*before);
@@ -45,7 +47,7 @@ impl<const D: usize> Model<D> {
             state.masses.clone_from(&own);
         }
         let reference = self.residual_of_reference(support);
-        let mut x = self.values(&self.u);
+        let mut x = self.system.body.values(&self.system.u);
         let mut r = vec![[0.0; D]; x.len()];
         let mut total = Solved::default();
         // where points were when no pair of a family repelled yet
@@ -85,52 +87,80 @@ impl<const D: usize> Model<D> {
 
     /// Raises masses where points touch: they stay light enough to settle elsewhere. `sum` is room for a number per slot.
     fn weigh(&self, sum: &mut [f64], own: &[f64], mass: &mut [f64]) {
-        if self.contact.is_none() && self.applied.rigid.is_empty() {
+        if self.system.contact.is_none() && self.system.applied.rigid.is_empty() {
             return;
         }
         sum.fill(0.0);
-        if let Some(contact) = &self.contact {
-            contact.central.add_stiffness(&self.body, &self.u, sum);
+        if let Some(contact) = &self.system.contact {
+            contact
+                .central
+                .add_stiffness(&self.system.body, &self.system.u, sum);
         }
-        for indenter in &self.applied.rigid {
-            indenter.add_stiffness(&self.body, &self.u, sum);
+        for indenter in &self.system.applied.rigid {
+            indenter.add_stiffness(&self.system.body, &self.system.u, sum);
         }
-        for ((m, own), &s) in mass.iter_mut().zip(own).zip(&self.body.slots) {
+        for ((m, own), &s) in mass.iter_mut().zip(own).zip(&self.system.body.slots) {
             *m = m.max(own + sum[s as usize]);
         }
     }
 
     /// Do points repel that are in each other's family?
     fn repels_inside(&mut self) -> bool {
-        self.contact.is_some() && self.interaction.energy(&self.body, &self.u)[1] > 0.0
+        self.system.contact.is_some()
+            && self
+                .system
+                .interaction
+                .energy(&self.system.body, &self.system.u)[1]
+                > 0.0
     }
 
     /// Raises masses by what repulsion inside families resists with.
     fn weigh_families(&self, own: &mut [f64]) {
-        let Some(contact) = &self.contact else { return };
-        let mut sum = vec![0.0; self.body.len];
-        self.interaction.each_bond(&self.body, &mut |i, j, xi, _| {
-            let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
-            if let Some(stiffness) = contact.central.first_stiffness(&self.body, [i, j], r0) {
-                sum[i] += stiffness;
-                sum[j] += stiffness;
-            }
-        });
-        for (m, &s) in own.iter_mut().zip(&self.body.slots) {
+        let Some(contact) = &self.system.contact else {
+            return;
+        };
+        let mut sum = vec![0.0; self.system.body.len];
+        self.system
+            .interaction
+            .each_bond(&self.system.body, &mut |i, j, xi, _| {
+                let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
+                if let Some(stiffness) =
+                    contact
+                        .central
+                        .first_stiffness(&self.system.body, [i, j], r0)
+                {
+                    sum[i] += stiffness;
+                    sum[j] += stiffness;
+                }
+            });
+        for (m, &s) in own.iter_mut().zip(&self.system.body.slots) {
             *m += sum[s as usize];
         }
     }
 
     /// What rubs is pressed as it is now.
     fn press(&mut self) {
-        if let Some(friction) = self.contact.as_mut().and_then(|c| c.friction.as_mut()) {
+        if let Some(friction) = self
+            .system
+            .contact
+            .as_mut()
+            .and_then(|c| c.friction.as_mut())
+        {
             friction.press();
         }
-        self.applied.rigid.iter_mut().for_each(Indenter::press);
+        self.system
+            .applied
+            .rigid
+            .iter_mut()
+            .for_each(Indenter::press);
     }
 
     fn rubs(&self) -> bool {
-        let friction = self.contact.as_ref().and_then(|c| c.friction.as_ref());
-        friction.is_some_and(Friction::rubs) || self.applied.rigid.iter().any(Indenter::rubs)
+        let friction = self
+            .system
+            .contact
+            .as_ref()
+            .and_then(|c| c.friction.as_ref());
+        friction.is_some_and(Friction::rubs) || self.system.applied.rigid.iter().any(Indenter::rubs)
     }
 }

@@ -12,13 +12,14 @@
 //! bond held.
 
 use super::held::Held;
+use super::problem::Problem;
 use super::state::{Critical, Sequence, StaticState};
 use crate::body::Field;
 use crate::error::{BuildError, SolveError};
 use crate::interaction::bond::critical_stretch;
 use crate::interaction::{BondState, history};
-use crate::run::model::Model;
-use crate::spec::{Control, CrackKind, Method, Spec, Statics};
+use crate::run::system::System;
+use crate::spec::{CrackKind, Method, Spec, Statics};
 use crate::statics::Solved;
 
 /// Factors that differ by this part are of bonds that break together.
@@ -35,7 +36,7 @@ fn stretch<const D: usize>(i: usize, j: usize, xi: &[f64; D], u: &Field<D>) -> f
     longer / square
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Can bonds be broken one after the other?
     pub(in crate::run) fn check_sequence(
         &mut self,
@@ -139,29 +140,36 @@ impl<const D: usize> Model<D> {
             })
         })
     }
+}
 
+impl<const D: usize> Problem<'_, D> {
     /// Bonds that broke are cut; then on to the equilibrium in which the next ones are at their critical stretch.
-    pub(super) fn settle_sequence(
+    pub(in crate::run) fn settle_sequence(
         &mut self,
         state: &mut StaticState<D>,
     ) -> Result<Solved, SolveError> {
-        self.tell_toughness();
-        let accounts = self.accounts;
+        self.system.tell_toughness();
+        let accounts = self.system.accounts;
         let last = state.sequence.take();
         let mut whole = vec![];
         if let Some(last) = &last {
-            self.interaction
-                .read_column(&self.body, &self.u, history::WHOLE, &mut whole);
+            self.system.interaction.read_column(
+                &self.system.body,
+                &self.system.u,
+                history::WHOLE,
+                &mut whole,
+            );
             self.let_go_of(&last.next);
             state.forget();
         }
         let found = self.next_equilibrium(state, last.as_ref());
         if found.is_err() {
             if !whole.is_empty() {
-                self.interaction
-                    .write_column(&self.body, history::WHOLE, &whole);
+                self.system
+                    .interaction
+                    .write_column(&self.system.body, history::WHOLE, &whole);
             }
-            self.accounts = accounts;
+            self.system.accounts = accounts;
             state.sequence = last;
             state.forget();
         }
@@ -169,10 +177,10 @@ impl<const D: usize> Model<D> {
     }
 
     fn let_go_of(&mut self, bonds: &[Critical<D>]) {
-        let held: f64 = self.quadratic_energy().iter().sum();
-        let near = 1e-6 * self.body.spacing;
+        let held: f64 = self.system.quadratic_energy().iter().sum();
+        let near = 1e-6 * self.system.body.spacing;
         let at = |slot: usize| -> [f64; D] {
-            let x = self.body.position(slot);
+            let x = self.system.body.position(slot);
             std::array::from_fn(|a| x[a])
         };
         let ends: Vec<[[f64; D]; 2]> = bonds.iter().map(|b| [at(b.i), at(b.j)]).collect();
@@ -181,9 +189,12 @@ impl<const D: usize> Model<D> {
             ends.iter()
                 .any(|[a, b]| (same(a, &from) && same(b, &to)) || (same(b, &from) && same(a, &to)))
         };
-        self.accounts.broken += self.interaction.cut(&self.body, CrackKind::Broken, &is);
-        let kept: f64 = self.quadratic_energy().iter().sum();
-        self.accounts.released.book(held - kept);
+        self.system.accounts.broken +=
+            self.system
+                .interaction
+                .cut(&self.system.body, CrackKind::Broken, &is);
+        let kept: f64 = self.system.quadratic_energy().iter().sum();
+        self.system.accounts.released.book(held - kept);
     }
 
     fn next_equilibrium(
@@ -191,50 +202,50 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         last: Option<&Sequence<D>>,
     ) -> Result<Solved, SolveError> {
-        let before = self.u.clone();
+        let before = self.system.u.clone();
         // under the load 1
-        self.clock.set(1.0);
+        self.system.clock.set(1.0);
         let Held { support, resting } = self.support_now(state.options)?;
-        self.prescribed.place(&mut self.u, 1.0);
-        let load = self.external();
-        let b = self.per_point(&load);
-        let mut x = self.values(&self.u);
+        self.system.prescribed.place(&mut self.system.u, 1.0);
+        let load = self.system.external();
+        let b = self.system.body.per_point(&load);
+        let mut x = self.system.body.values(&self.system.u);
         let solved = self.solve_about_reference(state, &support, &b, &mut x)?;
-        self.set_values(&x);
-        self.linear_forces();
+        self.system.set_values(&x);
+        self.system.linear_forces();
         let (factor, next) = self.weakest()?;
         self.account_sequence(&before, last, factor);
         let f: Field<D> = std::array::from_fn(|a| {
-            let mut column = self.f[a].clone();
+            let mut column = self.system.f[a].clone();
             column.iter_mut().for_each(|f| *f *= factor);
             column
         });
         for a in 0..D {
-            for &s in &self.body.slots {
-                self.u[a][s as usize] *= factor;
+            for &s in &self.system.body.slots {
+                self.system.u[a][s as usize] *= factor;
             }
         }
         // what nothing holds has no part in the load
         for n in resting {
             for a in 0..D {
-                self.u[a][self.body.slots[n] as usize] = x[n][a];
+                self.system.u[a][self.system.body.slots[n] as usize] = x[n][a];
             }
         }
-        self.refresh_images();
-        self.f = f.clone();
-        self.clock.set(factor);
-        self.prescribed.place(&mut self.u, factor);
-        self.other_forces(self.clock.trial());
+        self.system.refresh_images();
+        self.system.f = f.clone();
+        self.system.clock.set(factor);
+        self.system.prescribed.place(&mut self.system.u, factor);
+        self.system.other_forces(self.system.clock.trial());
         state.sequence = Some(Sequence { next, f, factor });
         Ok(solved)
     }
 
     /// The lowest factor of the load of now at which bonds are at their critical stretch, and which.
     fn weakest(&self) -> Result<(f64, Vec<Critical<D>>), SolveError> {
-        let critical = self.criticals();
-        let between = self.interaction.criticals_between();
+        let critical = self.system.criticals();
+        let between = self.system.interaction.criticals_between();
         let limits = |i: usize, j: usize| -> [f64; 2] {
-            if self.body.piece_of(i) == self.body.piece_of(j) {
+            if self.system.body.piece_of(i) == self.system.body.piece_of(j) {
                 // bodies whose bonds never break have no such column
                 let of = |s: usize| critical.get(s).copied().unwrap_or(history::NEVER);
                 return [of(i), of(j)];
@@ -246,16 +257,20 @@ impl<const D: usize> Model<D> {
         };
         let mut all = vec![];
         let mut most = 0.0f64;
-        self.interaction
-            .each_bond(&self.body, &mut |i, j, xi, state| {
+        self.system
+            .interaction
+            .each_bond(&self.system.body, &mut |i, j, xi, state| {
                 if state != BondState::Whole {
                     return;
                 }
-                let limit = self.interaction.bond_limit([i, j], &xi, limits(i, j));
+                let limit = self
+                    .system
+                    .interaction
+                    .bond_limit([i, j], &xi, limits(i, j));
                 if !limit.is_finite() {
                     return;
                 }
-                let s = stretch(i, j, &xi, &self.u);
+                let s = stretch(i, j, &xi, &self.system.u);
                 most = most.max(s.abs());
                 if s > 0.0 {
                     let bond = Critical {
@@ -282,22 +297,22 @@ impl<const D: usize> Model<D> {
     /// Work of loads and reactions from the last equilibrium to that at `factor`; displacements and forces are those under the load 1.
     fn account_sequence(&mut self, u: &Field<D>, last: Option<&Sequence<D>>, factor: f64) {
         let dot = |f: &dyn Fn(usize, usize) -> f64, x: &dyn Fn(usize, usize) -> f64| {
-            let each = self.body.slots.iter().map(|s| *s as usize);
+            let each = self.system.body.slots.iter().map(|s| *s as usize);
             each.map(|i| {
                 let along: f64 = (0..D).map(|a| f(a, i) * x(a, i)).sum();
-                self.body.volume.at(i) * along
+                self.system.body.volume.at(i) * along
             })
             .sum::<f64>()
         };
         // what acts from outside is what bonds pull against
-        let stiffness = -dot(&|a, i| self.f[a][i], &|a, i| self.u[a][i]);
+        let stiffness = -dot(&|a, i| self.system.f[a][i], &|a, i| self.system.u[a][i]);
         let mut work = 0.0;
         let mut from = 0.0;
         if let Some(last) = last {
             let each = last
                 .next
                 .iter()
-                .map(|b| b.stretch / stretch(b.i, b.j, &b.xi, &self.u));
+                .map(|b| b.stretch / stretch(b.i, b.j, &b.xi, &self.system.u));
             let mean = each.sum::<f64>() / last.next.len() as f64;
             // where the ends of a bond come nearer to each other under the load without it, it lets go at the load that it had
             from = match mean > 0.0 && mean.is_finite() {
@@ -305,16 +320,12 @@ impl<const D: usize> Model<D> {
                 false => last.factor,
             };
             work -= 0.5
-                * dot(&|a, i| last.f[a][i] + from * self.f[a][i], &|a, i| {
-                    from * self.u[a][i] - u[a][i]
-                });
+                * dot(
+                    &|a, i| last.f[a][i] + from * self.system.f[a][i],
+                    &|a, i| from * self.system.u[a][i] - u[a][i],
+                );
         }
         work += 0.5 * (factor * factor - from * from) * stiffness;
-        self.accounts.past.conditions += work;
-    }
-
-    /// Is it an analysis of this kind?
-    pub(super) fn breaks_in_turn(options: Statics) -> bool {
-        options.control == Control::Breaking
+        self.system.accounts.past.conditions += work;
     }
 }

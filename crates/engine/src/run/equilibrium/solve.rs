@@ -1,21 +1,17 @@
 //! How one increment finds its equilibrium: linear about the reference, or by Newton's method.
 
 use super::equations::solve_assembled;
+use super::problem::Problem;
 use super::state::StaticState;
 use super::tried::{Inertia, Tried};
-use crate::body::{Field, zeros};
+use crate::body::zeros;
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::interaction::Sweep;
-use crate::law::descriptor::Memory;
-use crate::run::constitutive::Laws;
-use crate::run::model::Model;
-use crate::spec::{Solver, Statics};
+use crate::spec::Statics;
 use crate::statics::cg::{self, Goal};
 use crate::statics::{self, Assembled, Direct, Solved, Support, Swept, norm};
 
-/// Unknowns up to which the equations are factored, per dimension.
-const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
 /// Relative residual above which a direct solution is none: the matrix is singular to round-off.
 const SOLVED: f64 = 1e-6;
 /// Newton's iterations at most.
@@ -33,75 +29,13 @@ const ROUGH: f64 = 1e-4;
 /// Largest stretch up to which a linear solution is taken without a warning.
 const SMALL_STRETCH: f64 = 0.01;
 
-impl<const D: usize> Model<D> {
-    /// Force densities of the loads at this time.
-    pub(super) fn external(&mut self) -> Field<D> {
-        let (t, at) = (self.clock.time(), self.clock.trial());
-        self.applied.external(&self.body, &self.u, t, at)
-    }
-
-    /// Forces per point of force densities.
-    pub(super) fn per_point(&self, f: &Field<D>) -> Vec<[f64; D]> {
-        self.by_id(|i| {
-            let volume = self.body.volume.at(i);
-            std::array::from_fn(|a| volume * f[a][i])
-        })
-    }
-
-    pub(in crate::run) fn values(&self, u: &Field<D>) -> Vec<[f64; D]> {
-        self.by_id(|i| std::array::from_fn(|a| u[a][i]))
-    }
-
-    pub(in crate::run) fn set_values(&mut self, x: &[[f64; D]]) {
-        let mut square = 0.0f64;
-        for (x, &s) in x.iter().zip(&self.body.slots) {
-            let mut path = 0.0;
-            for a in 0..D {
-                let u = &mut self.u[a][s as usize];
-                path += (x[a] - *u) * (x[a] - *u);
-                *u = x[a];
-            }
-            square = square.max(path);
-        }
-        self.refresh_images();
-        // who keeps track of what is near is told of every trial
-        let path = square.sqrt();
-        if let Some(contact) = &mut self.contact {
-            contact.central.moved(path);
-        }
-        self.applied.all().for_each(|x| x.moved(path));
-    }
-
-    pub(in crate::run) fn factored(&self, options: Statics, support: &Support<D>) -> bool {
-        if self.interaction.asymmetry() > statics::SYMMETRIC {
-            return true;
-        }
-        match options.solver {
-            Solver::Direct => true,
-            Solver::ConjugateGradients => false,
-            Solver::Auto => support.unknowns() <= DIRECT[D - 1],
-        }
-    }
-
+impl<const D: usize> Problem<'_, D> {
     pub(super) fn goal(&self, options: Statics) -> Goal {
         Goal {
             tolerance: options.tolerance,
             most_iterations: options.most_iterations,
-            stop: self.stop,
+            stop: self.system.stop,
         }
-    }
-
-    /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
-    pub(super) fn at_peace(&self) -> bool {
-        let mut named = self.constitutive.all().filter_map(|m| m.named.as_ref());
-        let pulls = named.any(|n| n.pulls());
-        !pulls && !matches!(self.constitutive.first().laws, Laws::Atoms(_)) && !self.expands()
-    }
-
-    /// Has no law forces at the reference, and another stiffness there than here, by what it remembers? What fades has none: it is let back to there.
-    pub(super) fn forgets(&self) -> bool {
-        let mut named = self.constitutive.all().filter_map(|m| m.named.as_ref());
-        named.all(|n| n.memory().0 == Memory::Nothing || n.fades())
     }
 
     /// `A u = F` about the reference, with A's factors or by conjugate gradients.
@@ -110,31 +44,37 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         support: &Support<D>,
     ) -> Result<Solved, SolveError> {
-        let mut load = self.external();
-        if !self.at_peace() {
-            let mut reference = zeros(self.body.len);
-            let u = self.body.at_rest();
-            self.interaction
-                .forces(&self.body, &u, &mut reference, Sweep::Hold, None);
+        let mut load = self.system.external();
+        if !self.system.at_peace() {
+            let mut reference = zeros(self.system.body.len);
+            let u = self.system.body.at_rest();
+            self.system.interaction.forces(
+                &self.system.body,
+                &u,
+                &mut reference,
+                Sweep::Hold,
+                None,
+            );
             for a in 0..D {
                 for (l, r) in load[a].iter_mut().zip(reference[a].iter()) {
                     *l += r;
                 }
             }
         }
-        let b = self.per_point(&load);
-        let mut x = self.values(&self.u);
+        let b = self.system.body.per_point(&load);
+        let mut x = self.system.body.values(&self.system.u);
         let solved = self.solve_about_reference(state, support, &b, &mut x)?;
-        self.set_values(&x);
+        self.system.set_values(&x);
         let stretch = self.largest_stretch();
         if stretch > SMALL_STRETCH
             && !self
+                .system
                 .info
                 .warnings
                 .iter()
                 .any(|w| w.contains("linear solution"))
         {
-            self.info.warnings.push(format!(
+            self.system.info.warnings.push(format!(
                 "the linear solution stretches bonds by {:.1} %: write method = \"newton\" for large deformation",
                 100.0 * stretch
             ));
@@ -153,7 +93,7 @@ impl<const D: usize> Model<D> {
         if support.unknowns() == 0 {
             return Ok(Solved::default());
         }
-        if self.factored(state.options, support) {
+        if self.system.factored(state.options, support) {
             let (body, factors) = match state.factors.take() {
                 Some((body, factors)) => (body, Some(factors)),
                 None => (self.reference_body(), None),
@@ -177,8 +117,8 @@ impl<const D: usize> Model<D> {
             return Ok(solved);
         }
         let goal = self.goal(state.options);
-        if self.at_peace() {
-            let mut operator = Swept::new(&self.body, self.interaction.as_mut());
+        if self.system.at_peace() {
+            let mut operator = Swept::new(&self.system.body, self.system.interaction.as_mut());
             let asymmetry = *state
                 .asymmetry
                 .get_or_insert_with(|| statics::operator::asymmetry(&mut operator, support));
@@ -198,7 +138,7 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         support: &Support<D>,
     ) -> Result<Solved, SolveError> {
-        let start = Tried::at_rest(self.values(&self.u));
+        let start = Tried::at_rest(self.system.body.values(&self.system.u));
         let (solved, _) = self.solve_from(state, support, start, None)?;
         Ok(solved)
     }
@@ -249,11 +189,10 @@ impl<const D: usize> Model<D> {
             };
             let far = longest(&step.x).max(step.far);
             let least = match inertia {
-                None => LEAST_STEP * self.body.spacing,
+                None => LEAST_STEP * self.system.body.spacing,
                 // points may have gone far from where they were
-                Some(_) => {
-                    (LEAST_STEP * self.body.spacing).max(4.0 * f64::EPSILON * longest(&now.x))
-                }
+                Some(_) => (LEAST_STEP * self.system.body.spacing)
+                    .max(4.0 * f64::EPSILON * longest(&now.x)),
             };
             if far < least {
                 return Ok((
@@ -266,7 +205,7 @@ impl<const D: usize> Model<D> {
             }
             // a full step, or as much of it as lowers the residual; downhill that may grow
             let mut part = match unstable {
-                true => (LONGEST_STEP * self.body.spacing / far).min(1.0),
+                true => (LONGEST_STEP * self.system.body.spacing / far).min(1.0),
                 false => 1.0,
             };
             for halving in 0..=HALVINGS {
@@ -325,13 +264,13 @@ impl<const D: usize> Model<D> {
 
     /// What atoms at their sites pull at each other without any load; 0 of other laws.
     pub(super) fn residual_of_reference(&mut self, support: &Support<D>) -> f64 {
-        if self.at_peace() {
+        if self.system.at_peace() {
             return 0.0;
         }
-        let before = self.values(&self.u);
+        let before = self.system.body.values(&self.system.u);
         let mut r = vec![[0.0; D]; before.len()];
         self.imbalance(&vec![[0.0; D]; before.len()], &mut r, support);
-        self.set_values(&before);
+        self.system.set_values(&before);
         norm(&r)
     }
 
@@ -342,11 +281,11 @@ impl<const D: usize> Model<D> {
         r: &mut [[f64; D]],
         support: &Support<D>,
     ) -> f64 {
-        self.set_values(x);
-        self.forces_held(self.clock.trial());
-        let all = self.per_point(&self.f);
-        let loads = self.external();
-        let loads = self.per_point(&loads);
+        self.system.set_values(x);
+        self.system.forces_held(self.system.clock.trial());
+        let all = self.system.body.per_point(&self.system.f);
+        let loads = self.system.external();
+        let loads = self.system.body.per_point(&loads);
         let mut scale = 0.0;
         for i in 0..r.len() {
             for a in 0..D {
@@ -361,11 +300,15 @@ impl<const D: usize> Model<D> {
 
     fn largest_stretch(&self) -> f64 {
         let mut worst = 0.0f64;
-        self.interaction.each_bond(&self.body, &mut |i, j, xi, _| {
-            let square: f64 = xi.iter().map(|c| c * c).sum();
-            let longer: f64 = (0..D).map(|a| (self.u[a][j] - self.u[a][i]) * xi[a]).sum();
-            worst = worst.max((longer / square).abs());
-        });
+        self.system
+            .interaction
+            .each_bond(&self.system.body, &mut |i, j, xi, _| {
+                let square: f64 = xi.iter().map(|c| c * c).sum();
+                let longer: f64 = (0..D)
+                    .map(|a| (self.system.u[a][j] - self.system.u[a][i]) * xi[a])
+                    .sum();
+                worst = worst.max((longer / square).abs());
+            });
         worst
     }
 }

@@ -1,7 +1,7 @@
 //! What Newton's method tries: displacements, and within a step in time the velocities and accelerations that go with them.
 
+use super::problem::Problem;
 use crate::condition::rigid::{NewmarkStep, Wrench};
-use crate::run::model::Model;
 use crate::statics::{Masses, Support};
 use std::sync::Arc;
 
@@ -113,11 +113,18 @@ impl<const D: usize> Inertia<D> {
     }
 }
 
-impl<const D: usize> Model<D> {
-    pub(in crate::run) fn set_velocities_of(&mut self, tried: &Tried<D>) {
-        for (v, &s) in tried.v.iter().zip(&self.body.slots) {
+impl<const D: usize> Problem<'_, D> {
+    /// There, whatever was tried last.
+    pub(in crate::run) fn go_to(&mut self, found: &Tried<D>, inertia: &Inertia<D>) {
+        self.system.set_values(&found.x);
+        self.set_velocities_of(found);
+        self.place_bodies(found, inertia);
+    }
+
+    pub(super) fn set_velocities_of(&mut self, tried: &Tried<D>) {
+        for (v, &s) in tried.v.iter().zip(&self.system.body.slots) {
             for a in 0..D {
-                self.v[a][s as usize] = v[a];
+                self.system.v[a][s as usize] = v[a];
             }
         }
     }

@@ -4,14 +4,14 @@
 pub(super) mod state;
 
 use self::state::Inertia;
-use super::model::Model;
+use super::system::System;
 use crate::body::{Field, zeros};
 use crate::condition::constraint::Constraint;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Accelerations of the forces of now.
     pub(super) fn accelerate(&mut self) {
-        if self.statics.is_some() {
+        if self.regime.equilibrium {
             return;
         }
         let Some(mut inertia) = self.inertia.take() else {
@@ -44,14 +44,16 @@ impl<const D: usize> Model<D> {
         let mut a = vec![[0.0; D]; self.body.points()];
         self.prescribed_accelerations(&mut a);
         let volume = |i: usize| self.body.volume.at(i);
-        let force = self.by_id(|i| std::array::from_fn(|axis| volume(i) * self.f[axis][i]));
+        let force = self
+            .body
+            .by_id(|i| std::array::from_fn(|axis| volume(i) * self.f[axis][i]));
         inertia.accelerate(&support, &force, &mut a);
         a
     }
 
     /// Those of now, of components whose motion is prescribed; points that stand still, or are carried from outside, have none.
     pub(super) fn prescribed_accelerations(&self, a: &mut [[f64; D]]) {
-        let id = self.ids();
+        let id = self.body.ids_by_slot();
         let (t, dt) = (self.clock.time(), self.clock.dt());
         for c in &self.prescribed.constraints {
             for (k, slot, axis) in c.each() {
@@ -69,15 +71,15 @@ impl<const D: usize> Model<D> {
     /// Kinetic energy of masses that couple points; `None`: of points.
     pub(super) fn coupled_kinetic(&self) -> Option<f64> {
         let masses = &self.inertia.as_ref()?.masses;
-        let v = self.values(&self.v);
+        let v = self.body.values(&self.v);
         Some(0.5 * masses.dot(&v, &v))
     }
 
     /// `M (v₁ − v₀)` over volumes (momentum density), where masses couple points.
     pub(super) fn coupled_change(&self, before: &Field<D>) -> Option<Field<D>> {
         let masses = &self.inertia.as_ref()?.masses;
-        let mut change = self.values(&self.v);
-        for (v, before) in change.iter_mut().zip(self.values(before)) {
+        let mut change = self.body.values(&self.v);
+        for (v, before) in change.iter_mut().zip(self.body.values(before)) {
             *v = std::array::from_fn(|a| v[a] - before[a]);
         }
         let mut field = zeros(self.body.len);
@@ -89,7 +91,7 @@ impl<const D: usize> Model<D> {
         Some(field)
     }
 
-    /// Accounts of the constraints at the end of a step; `change` as [`Model::coupled_change`]. What held components gain of the kinetic
+    /// Accounts of the constraints at the end of a step; `change` as [`System::coupled_change`]. What held components gain of the kinetic
     /// energy is `½ (v₀ + v₁)` times their part of it.
     pub(super) fn account_constraints(&mut self, t: f64, dt: f64, change: Option<&Field<D>>) {
         let body = &self.body;

@@ -1,20 +1,21 @@
 //! Statics before motion: increments of load under conditions of their own, and the passage from the last equilibrium to motion. The
 //! ledger goes on through it: what loads and reactions did in statics is the strain energy that motion begins with.
 
-pub(super) mod state;
-
-use self::state::Preload;
+use super::conditions::tell_loads;
 use super::constitutive::Laws;
-use super::equilibrium::state::StaticState;
 use super::model::Model;
+use super::names::Names;
+use super::stages::{Stage, Stages};
+use super::stepper::{self, Stepper};
+use super::system::System;
 use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Statics, Stepper};
+use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Statics, Stepper as Kind};
 use crate::statics::Solved;
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 
 /// Distances (spacings) that are round-off.
 const NEAR: f64 = 1e-9;
@@ -41,8 +42,8 @@ pub(super) fn possible(spec: &Spec, preload: &PreloadSpec) -> Result<(), BuildEr
         ));
     }
     match spec.schedule.stepper {
-        Stepper::Verlet | Stepper::Newmark(_) => {}
-        Stepper::Still | Stepper::Statics(_) => {
+        Kind::Verlet | Kind::Newmark(_) => {}
+        Kind::Still | Kind::Statics(_) => {
             return refused(
                 "schedule.integrator",
                 "statics before motion, and no motion follows",
@@ -67,13 +68,14 @@ pub(super) fn possible(spec: &Spec, preload: &PreloadSpec) -> Result<(), BuildEr
     Ok(())
 }
 
-impl<const D: usize> Model<D> {
-    /// The model is ready for its motion: sets that aside, and makes it ready for the statics before it.
+impl<const D: usize> System<D> {
+    /// The system is ready for its motion: sets that aside, and makes it ready for the statics before it.
     pub(super) fn prepare_preload(
         &mut self,
         preload: &PreloadSpec,
-        sets: &[(String, Vec<u32>)],
-    ) -> Result<(), BuildError> {
+        names: &Names<D>,
+        motion: Box<dyn Stepper<D>>,
+    ) -> Result<Stages<D>, BuildError> {
         let statics = Statics {
             timed: preload.duration.is_some(),
             ..preload.statics
@@ -105,8 +107,9 @@ impl<const D: usize> Model<D> {
         });
         let cuts = cuts.collect::<Result<Vec<_>, _>>()?;
         let within = |e: BuildError| e.within("preload");
-        let (forces, constraints) = self
-            .acting(&preload.conditions, &preload.indenters, sets)
+        let (conditions, indenters) = (&preload.conditions, &preload.indenters);
+        let (forces, constraints) = names
+            .acting(&self.body, conditions, indenters, &names.sets)
             .map_err(within)?;
         let prescribed = PrescribedMotion {
             constraints,
@@ -114,30 +117,29 @@ impl<const D: usize> Model<D> {
         };
         self.agrees(&prescribed, preload.end())?;
         let knows_contact = statics.method == Method::Relaxation;
-        let waits = Preload {
+        let next = Stage {
+            stepper: motion,
+            begin: preload.increments,
             applied: std::mem::replace(&mut self.applied, forces),
             prescribed: std::mem::replace(&mut self.prescribed, prescribed),
             contact: self.contact.take_if(|_| !knows_contact),
             friction: self.contact.as_mut().and_then(|c| c.friction.take()),
             velocity: self.v.clone(),
-            implicit: self.implicit.take(),
             cuts,
         };
         self.clock.load_first(preload);
-        self.check_agreement(&preload.conditions, preload.end())
+        self.check_agreement(conditions, preload.end())
             .map_err(within)?;
-        self.check_statics(statics).map_err(within)?;
-        let told = Self::tell_loads(
-            &self.body,
-            &mut self.applied.loads,
-            &preload.conditions,
-            preload.end(),
-        );
+        let statics = stepper::before_motion(statics, self).map_err(within)?;
+        let loads = &mut self.applied.loads;
+        let told = tell_loads(&self.body, loads, conditions, preload.end());
         self.info.loads.splice(0..0, told);
-        self.statics = Some(StaticState::new(statics));
-        self.loaded = Some(Solved::default());
-        self.preload = Some(waits);
-        Ok(())
+        self.regime = statics.regime();
+        Ok(Stages {
+            now: statics,
+            coming: VecDeque::from([next]),
+            before: Some(Solved::default()),
+        })
     }
 
     /// Do points that both stages hold begin their motion where statics leaves them?
@@ -170,24 +172,40 @@ impl<const D: usize> Model<D> {
         !((x - y).abs() <= NEAR * (self.body.spacing + x.abs().max(y.abs())))
     }
 
-    /// From the last equilibrium to motion: what waited takes the place of what loaded the body. On an error nothing is changed.
-    pub(super) fn set_in_motion(&mut self) -> Result<(), RunError> {
-        let Some(mut waits) = self.preload.take() else {
-            return Ok(());
-        };
-        if let Err(error) = self.can_move(&mut waits) {
-            self.preload = Some(waits);
-            return Err(error);
+    /// Does motion begin where statics ended?
+    fn can_move(&mut self, next: &mut Stage<D>) -> Result<(), RunError> {
+        let mut told = next.prescribed.displaced(0.0);
+        let jump = told.find(|(slot, axis, asked)| self.apart(*asked, self.u[*axis][*slot]));
+        if let Some((slot, axis, asked)) = jump {
+            return Err(RunError::Jump {
+                step: self.clock.step(),
+                position: self.body.position(slot),
+                axis: ["x", "y", "z"][axis],
+                asked,
+                found: self.u[axis][slot],
+            });
         }
-        let now = self.energy_now();
-        if let Some(state) = self.statics.take() {
-            self.loaded = Some(state.solved);
+        if let Some(contact) = &mut next.contact {
+            contact.central.look_again();
+            contact.find(&self.body, &self.u, self.interaction.as_ref());
+            // those that attract each other, too
+            let mut pairs = 0;
+            contact.central.each_pull(&self.u, |_| pairs += 1);
+            if pairs > 0 {
+                return Err(RunError::Touching {
+                    step: self.clock.step(),
+                    pairs,
+                });
+            }
         }
-        self.accounts.pass(&now);
-        let cuts = self.take_over(waits);
+        Ok(())
+    }
+
+    /// Motion begins where statics ended: cracks are cut, and first forces found.
+    fn set_in_motion(&mut self, cuts: &[Crack<D>]) {
         if !cuts.is_empty() {
             let held: f64 = self.interaction.energy(&self.body, &self.u).iter().sum();
-            for crack in &cuts {
+            for crack in cuts {
                 self.info.cut +=
                     self.interaction
                         .cut(&self.body, CrackKind::Broken, &|from, to| {
@@ -206,49 +224,29 @@ impl<const D: usize> Model<D> {
         if let Some(initial) = &mut self.accounts.initial {
             *initial += given;
         }
-        Ok(())
     }
+}
 
-    /// What waited takes its place; the cracks that are cut now.
-    pub(super) fn take_over(&mut self, waits: Preload<D>) -> Vec<Crack<D>> {
-        self.applied = waits.applied;
-        self.prescribed = waits.prescribed;
-        match &mut self.contact {
-            Some(contact) => contact.friction = waits.friction,
-            None => self.contact = waits.contact,
+impl<const D: usize> Model<D> {
+    /// From the last step of a stage to the next stage, where that is due: what waited takes the place of what acted. On an error nothing
+    /// is changed.
+    pub(super) fn next_stage(&mut self) -> Result<(), RunError> {
+        if self.stages.due(self.system.clock.step()).is_none() {
+            return Ok(());
         }
-        self.implicit = waits.implicit;
-        self.clock.begin_motion();
-        self.v = waits.velocity;
-        waits.cuts
-    }
-
-    /// Does motion begin where statics ended?
-    fn can_move(&mut self, waits: &mut Preload<D>) -> Result<(), RunError> {
-        let mut told = waits.prescribed.displaced(0.0);
-        let jump = told.find(|(slot, axis, asked)| self.apart(*asked, self.u[*axis][*slot]));
-        if let Some((slot, axis, asked)) = jump {
-            return Err(RunError::Jump {
-                step: self.clock.step(),
-                position: self.body.position(slot),
-                axis: ["x", "y", "z"][axis],
-                asked,
-                found: self.u[axis][slot],
-            });
+        let Some(mut next) = self.stages.coming.pop_front() else {
+            return Ok(());
+        };
+        if let Err(error) = self.system.can_move(&mut next) {
+            self.stages.coming.push_front(next);
+            return Err(error);
         }
-        if let Some(contact) = &mut waits.contact {
-            contact.central.look_again();
-            contact.find(&self.body, &self.u, self.interaction.as_ref());
-            // those that attract each other, too
-            let mut pairs = 0;
-            contact.central.each_pull(&self.u, |_| pairs += 1);
-            if pairs > 0 {
-                return Err(RunError::Touching {
-                    step: self.clock.step(),
-                    pairs,
-                });
-            }
-        }
+        self.finish();
+        let now = self.system.energy_now();
+        self.stages.before = self.stages.solved();
+        self.system.accounts.pass(&now);
+        let cuts = self.stages.take_over(&mut self.system, next);
+        self.system.set_in_motion(&cuts);
         Ok(())
     }
 }

@@ -21,6 +21,7 @@ use crate::message;
 use crate::observe::Values;
 use crate::quantity::Dimension;
 use crate::run::model::Model;
+use crate::run::system::System;
 use crate::spec::ContourSpec;
 
 /// Strain at which stiffness is measured: small enough to be linear, and computed without cancellation.
@@ -28,7 +29,7 @@ const SMALL: f64 = 1e-8;
 /// A rectangle reaches so many horizons from its middle, at least.
 const REACH: f64 = 3.0;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// A contour that can be integrated.
     pub(in crate::run) fn contour_of(
         &mut self,
@@ -48,7 +49,7 @@ impl<const D: usize> Model<D> {
                 "a contour goes through a solid, these are atoms",
             ));
         }
-        if self.statics.is_none() {
+        if !self.regime.equilibrium {
             return Err(BuildError::unsupported(
                 path,
                 "a contour integral needs equilibrium: in motion the inertia inside it counts, too",
@@ -131,7 +132,9 @@ impl<const D: usize> Model<D> {
         moduli.sort_by(f64::total_cmp);
         moduli.get(moduli.len() / 2).copied().unwrap_or(0.0)
     }
+}
 
+impl<const D: usize> Model<D> {
     /// J and K now.
     pub(in crate::run) fn integral(&mut self, contour: &Contour) -> [f64; 2] {
         let n = contour.spec.direction;
@@ -145,8 +148,8 @@ impl<const D: usize> Model<D> {
         else {
             unreachable!("by their declarations")
         };
-        let q: Vec<(f64, [f64; 2])> = self.by_id(|s| {
-            let x = self.body.position(s);
+        let q: Vec<(f64, [f64; 2])> = self.system.body.by_id(|s| {
+            let x = self.system.body.position(s);
             contour.q([x[0], x[1]])
         });
         let g: Vec<[f64; 2]> = gradient
@@ -155,11 +158,18 @@ impl<const D: usize> Model<D> {
             .collect();
         let mut sum = 0.0;
         for (id, (_, slope)) in q.iter().enumerate() {
-            let volume = self.body.volume.at(self.body.slots[id] as usize);
+            let volume = self
+                .system
+                .body
+                .volume
+                .at(self.system.body.slots[id] as usize);
             sum -= volume * energy[id] * (slope[0] * n[0] + slope[1] * n[1]);
         }
-        let (id, volume) = (self.ids(), self.body.volume.clone());
-        self.each_pair_force(&mut |bond| {
+        let (id, volume) = (
+            self.system.body.ids_by_slot(),
+            self.system.body.volume.clone(),
+        );
+        self.system.each_pair_force(&mut |bond| {
             let (i, j) = (id[bond.i] as usize, id[bond.j] as usize);
             let across = q[i].0 - q[j].0;
             let power: f64 = (0..2).map(|a| bond.force[a] * (g[i][a] + g[j][a])).sum();

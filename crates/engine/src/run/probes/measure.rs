@@ -5,6 +5,7 @@ use crate::columns::{Dimension, Shape};
 use crate::error::BuildError;
 use crate::observe::{Column, ProbeColumn};
 use crate::run::model::Model;
+use crate::run::system::System;
 use crate::space::Point;
 use crate::spec::{Fold, Measure, Part, ProbeSpec};
 
@@ -40,8 +41,13 @@ impl<const D: usize> Model<D> {
 
     fn probe_of(&mut self, spec: &ProbeSpec, path: &str) -> Result<Probe, BuildError> {
         let at = |key: &str| format!("{path}.{key}");
-        let Some(mut ids) = self.ids_of(&spec.set) else {
-            let known: Vec<&str> = self.sets.iter().map(|(name, _)| name.as_str()).collect();
+        let Some(mut ids) = self.members_of(&spec.set) else {
+            let known: Vec<&str> = self
+                .names
+                .sets
+                .iter()
+                .map(|(name, _)| name.as_str())
+                .collect();
             let message = format!("there is no set `{}`", spec.set);
             let help = format!(
                 "known are all{}{}",
@@ -92,10 +98,10 @@ impl<const D: usize> Model<D> {
                 (Kind::Over(Fold::Sum, of.clone(), parts), columns)
             }
             Measure::Indenter { indenter, of } => {
-                self.rigid_probe(&spec.name, indenter, *of, path)?
+                self.system.rigid_probe(&spec.name, indenter, *of, path)?
             }
             Measure::Contour(contour) => {
-                let contour = self.contour_of(contour, path)?;
+                let contour = self.system.contour_of(contour, path)?;
                 let columns = vec![
                     column("J", Dimension::FRACTURE_ENERGY),
                     // K² = J E′
@@ -107,18 +113,13 @@ impl<const D: usize> Model<D> {
         Ok(Probe { ids, kind, columns })
     }
 
-    fn ids_of(&self, set: &str) -> Option<Vec<u32>> {
-        if set == "all" {
-            return Some((0..self.body.points() as u32).collect());
-        }
-        let named = self.sets.iter().find(|(name, _)| name == set);
-        named.map(|(_, ids)| ids.clone())
-    }
-
     /// The point of these that is nearest to a place in the reference.
     fn nearest_of(&self, ids: &[u32], at: &Point) -> u32 {
         let far = |id: &u32| -> f64 {
-            let x = self.body.position(self.body.slots[*id as usize] as usize);
+            let x = self
+                .system
+                .body
+                .position(self.system.body.slots[*id as usize] as usize);
             (0..D).map(|a| (x[a] - at[a]).powi(2)).sum()
         };
         let nearest = ids.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
@@ -134,7 +135,7 @@ impl<const D: usize> Model<D> {
         path: &str,
         column: &dyn Fn(&str, Dimension) -> ProbeColumn,
     ) -> Result<(Vec<Option<usize>>, Vec<ProbeColumn>), BuildError> {
-        let declared = self.check_column(of, &format!("{path}.of"))?;
+        let declared = self.look().check_column(of, &format!("{path}.of"))?;
         let names = declared.shape.components();
         // components of axes that are not there are 0
         let there = |name: &&&str| name.bytes().all(|b| usize::from(b - b'x') < D);
@@ -175,16 +176,8 @@ impl<const D: usize> Model<D> {
         })
     }
 
-    /// What all probes write.
-    pub(in crate::run) fn probe_columns(&self) -> Vec<ProbeColumn> {
-        self.probes
-            .iter()
-            .flat_map(|p| p.columns.iter().cloned())
-            .collect()
-    }
-
-    /// Their values now, in that order.
-    pub(in crate::run) fn measure(&mut self) -> Vec<f64> {
+    /// What probes measure now, in the order of their columns.
+    pub(in crate::run) fn probed(&mut self) -> Vec<f64> {
         if self.probes.is_empty() {
             return vec![];
         }
@@ -207,13 +200,16 @@ impl<const D: usize> Model<D> {
         let mut values = vec![];
         for probe in &probes {
             match &probe.kind {
-                Kind::Reaction => values.extend(self.reaction_of(&probe.ids)),
-                Kind::Moment(about) => values.extend(self.moment_of(&probe.ids, about)),
+                Kind::Reaction => values.extend(self.system.reaction_of(&probe.ids)),
+                Kind::Moment(about) => values.extend(self.system.moment_of(&probe.ids, about)),
                 Kind::Energy => {
                     let energy = |name: &str| {
                         let of_point = |id: &u32| {
-                            let volume =
-                                self.body.volume.at(self.body.slots[*id as usize] as usize);
+                            let volume = self
+                                .system
+                                .body
+                                .volume
+                                .at(self.system.body.slots[*id as usize] as usize);
                             volume * named(&columns, name).values.at(*id as usize, 0)
                         };
                         probe.ids.iter().map(of_point).sum::<f64>()
@@ -231,13 +227,15 @@ impl<const D: usize> Model<D> {
                     }));
                 }
                 Kind::Contour(contour) => values.extend(self.integral(contour)),
-                Kind::Rigid(n, of) => values.extend(self.rigid_values(*n, of)),
+                Kind::Rigid(n, of) => values.extend(self.system.rigid_values(*n, of)),
             }
         }
         self.probes = probes;
         values
     }
+}
 
+impl<const D: usize> System<D> {
     /// Force of the constraints on each point that they hold: ids' slots and forces.
     fn reactions(&self, ids: &[u32]) -> Vec<(usize, [f64; D])> {
         let wanted: std::collections::HashMap<usize, usize> = ids
@@ -251,7 +249,7 @@ impl<const D: usize> Model<D> {
         for constraint in &self.prescribed.constraints {
             for (k, slot, a) in constraint.each() {
                 let Some(n) = wanted.get(&slot) else { continue };
-                let acceleration = match self.statics.is_some() {
+                let acceleration = match self.regime.equilibrium {
                     true => 0.0,
                     false => constraint.acceleration(a, k, t, self.clock.dt()),
                 };
@@ -265,7 +263,7 @@ impl<const D: usize> Model<D> {
             let of = |a: usize| {
                 held[a].map_or(0.0, |acceleration| {
                     let taken = match &self.inertia {
-                        Some(inertia) if self.statics.is_none() => inertia.taken[0][a][s],
+                        Some(inertia) if !self.regime.equilibrium => inertia.taken[0][a][s],
                         _ => rho * acceleration,
                     };
                     volume * (taken - self.f[a][s])

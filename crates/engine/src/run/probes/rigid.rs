@@ -5,7 +5,7 @@ use crate::columns::{Dimension, Shape};
 use crate::condition::indenter::Indenter;
 use crate::error::BuildError;
 use crate::observe::ProbeColumn;
-use crate::run::model::Model;
+use crate::run::system::System;
 use crate::spec::RigidQuantity;
 
 impl RigidQuantity {
@@ -57,7 +57,7 @@ impl RigidQuantity {
     }
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// A probe of the rigid body of this name.
     ///
     /// # Errors

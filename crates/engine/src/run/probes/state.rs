@@ -13,6 +13,13 @@ pub(in crate::run) struct Probe {
     pub(super) columns: Vec<ProbeColumn>,
 }
 
+impl Probe {
+    /// What it writes.
+    pub fn columns(&self) -> &[ProbeColumn] {
+        &self.columns
+    }
+}
+
 pub(super) enum Kind {
     Reaction,
     Moment(Point),

@@ -1,7 +1,8 @@
 //! Heat through contact: who touches whom in every step, and where that is not known.
 
+use super::make::Maker;
 use crate::error::BuildError;
-use crate::run::model::Model;
+use crate::run::system::System;
 use crate::space::lattice::LatticeKind;
 use crate::spec::{BodySpec, Quantity, Spec, Stepper, TransferMethod};
 use crate::transfer::Touching;
@@ -21,7 +22,7 @@ fn is_cubic(body: &BodySpec) -> bool {
     }
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> Maker<'_, D> {
     /// Takes the contact conductance of a spec whose transfers are made.
     pub(super) fn make_contact(&mut self, spec: &Spec) -> Result<(), BuildError> {
         const PATH: &str = "contact.conductance";
@@ -32,7 +33,7 @@ impl<const D: usize> Model<D> {
             let message = format!("the contact conductance is {h}, expected a positive number");
             return Err(BuildError::invalid(PATH, message).help("leave it out for none"));
         }
-        let each = &mut self.transfers.all;
+        let each = &mut self.system.transfers.all;
         let Some(heat) = each.iter_mut().find(|t| t.quantity == Quantity::Heat) else {
             let message = "contact conducts heat, and there is no heat";
             return Err(BuildError::conflict(PATH, message)
@@ -72,20 +73,28 @@ impl<const D: usize> Model<D> {
                 "take [run] with integrator = \"verlet\" or \"still\" and no [statics], or leave conductance out",
             ));
         }
-        let mut faces = vec![0.0; self.body.points()];
-        for &s in &self.body.slots {
-            faces[self.transfers.place[s as usize] as usize] = self.body.face_at(s as usize);
+        let mut faces = vec![0.0; self.system.body.points()];
+        for &s in &self.system.body.slots {
+            faces[self.system.transfers.place[s as usize] as usize] =
+                self.system.body.face_at(s as usize);
         }
         heat.with_contact(Touching::new(h, faces));
         if !is_cubic(&spec.body) {
-            self.info.warnings.push(ROUGH);
+            self.system.info.warnings.push(ROUGH);
         }
-        self.conduct_contact();
-        let told = self.info.transfers.iter_mut().zip(&self.transfers.all);
+        self.system.conduct_contact();
+        let told = self
+            .system
+            .info
+            .transfers
+            .iter_mut()
+            .zip(&self.system.transfers.all);
         told.for_each(|(info, t)| info.stable_step = t.stable_step(0.0));
         Ok(())
     }
+}
 
+impl<const D: usize> System<D> {
     /// Who touches whom now, and what they conduct.
     pub(super) fn conduct_contact(&mut self) {
         let touching = self

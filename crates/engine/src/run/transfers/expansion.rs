@@ -1,9 +1,10 @@
 //! Bodies that expand, and what that costs and heats.
 
+use super::make::Maker;
 use super::state::Transfers;
 use crate::error::BuildError;
 use crate::run::constitutive::general;
-use crate::run::model::Model;
+use crate::run::system::System;
 use crate::spec::{Method, Spec, Statics, Stepper, TransferSpec};
 
 /// Where a material expands, `pmb` and `lps` are laws of `law/material`: their own kernels know no temperature. Were laws changed?
@@ -22,16 +23,16 @@ pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
     changed
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> Maker<'_, D> {
     /// Bodies that expand: can their bonds?
     pub(super) fn make_expansion(&mut self, spec: &Spec) -> Result<(), BuildError> {
         for (n, t) in spec.transfers.iter().enumerate() {
             let strains: Vec<f64> = t.materials.iter().map(|m| m.expansion).collect();
             if strains.iter().any(|x| *x != 0.0) {
-                self.transfers.grown.push((n, t.reference, strains));
+                self.system.transfers.grown.push((n, t.reference, strains));
             }
         }
-        let Some((n, ..)) = self.transfers.grown.first() else {
+        let Some((n, ..)) = self.system.transfers.grown.first() else {
             return Ok(());
         };
         let name = spec.transfers[*n].quantity.name();
@@ -46,8 +47,12 @@ impl<const D: usize> Model<D> {
             )
             .help("write method = \"newton\""));
         }
-        self.transfers.strain = vec![0.0; self.body.len];
-        if !self.interaction.expand(&self.body, &self.transfers.strain) {
+        self.system.transfers.strain = vec![0.0; self.system.body.len];
+        if !self
+            .system
+            .interaction
+            .expand(&self.system.body, &self.system.transfers.strain)
+        {
             return Err(BuildError::unsupported(
                 name,
                 "the bonds of this law or body know no expansion: those of pmb and lps in one body do, and laws such as elastic_plastic, viscoelastic, correspondence, softening",
@@ -57,6 +62,41 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
+    /// What deformation heats.
+    pub(super) fn make_heated(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        let transfers = &spec.transfers;
+        let Some(n) = transfers.iter().position(|t| t.deformation) else {
+            return Ok(());
+        };
+        if spec.schedule.stepper != Stepper::Verlet {
+            return Err(BuildError::unsupported(
+                transfers[n].quantity.name(),
+                "heat of deformation belongs to motion in time by explicit steps",
+            )
+            .help("take integrator = \"verlet\", or leave deformation out"));
+        }
+        let mut trace = vec![0.0; self.system.body.len];
+        let (body, u) = (&self.system.body, &self.system.u);
+        if D == 2
+            && self.system.expands()
+            && !self
+                .system
+                .interaction
+                .add_stress_across(body, u, &mut trace)
+        {
+            return Err(BuildError::unsupported(
+                transfers[n].quantity.name(),
+                "deformation heats by the change of the whole mean stress, and the stress across plane strain does not follow from that in the plane: this law is anisotropic, or flows bond by bond",
+            )
+            .help("leave deformation out, or take three dimensions"));
+        }
+        let strains = transfers[n].materials.iter().map(|m| m.expansion);
+        self.system.transfers.heated = Some((n, strains.collect()));
+        Ok(())
+    }
+}
+
+impl<const D: usize> System<D> {
     /// Do bodies expand?
     pub(in crate::run) fn expands(&self) -> bool {
         !self.transfers.grown.is_empty()
@@ -115,33 +155,6 @@ impl<const D: usize> Model<D> {
         let price = part * (self.interaction.energy(body, &u)[0] - past);
         transfers.price += price;
         self.accounts.past.conditions += price;
-    }
-
-    /// What deformation heats.
-    pub(super) fn make_heated(&mut self, spec: &Spec) -> Result<(), BuildError> {
-        let transfers = &spec.transfers;
-        let Some(n) = transfers.iter().position(|t| t.deformation) else {
-            return Ok(());
-        };
-        if spec.schedule.stepper != Stepper::Verlet {
-            return Err(BuildError::unsupported(
-                transfers[n].quantity.name(),
-                "heat of deformation belongs to motion in time by explicit steps",
-            )
-            .help("take integrator = \"verlet\", or leave deformation out"));
-        }
-        let mut trace = vec![0.0; self.body.len];
-        let (body, u) = (&self.body, &self.u);
-        if D == 2 && self.expands() && !self.interaction.add_stress_across(body, u, &mut trace) {
-            return Err(BuildError::unsupported(
-                transfers[n].quantity.name(),
-                "deformation heats by the change of the whole mean stress, and the stress across plane strain does not follow from that in the plane: this law is anisotropic, or flows bond by bond",
-            )
-            .help("leave deformation out, or take three dimensions"));
-        }
-        let strains = transfers[n].materials.iter().map(|m| m.expansion);
-        self.transfers.heated = Some((n, strains.collect()));
-        Ok(())
     }
 
     /// `−V tr σ` of every slot, where deformation heats.

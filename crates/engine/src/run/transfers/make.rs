@@ -7,8 +7,9 @@ use crate::message;
 use crate::quantity::Dimension;
 use crate::run::LoadInfo;
 use crate::run::clock::Clock;
-use crate::run::model::Model;
+use crate::run::names::Names;
 use crate::run::surface::Factors;
+use crate::run::system::System;
 use crate::space::Point;
 use crate::spec::{
     BodySpec, Exchange, Quantity, Spec, SurfaceFactors, TimeStep, TransferCondition, TransferKind,
@@ -16,9 +17,15 @@ use crate::spec::{
 };
 use crate::transfer::{Condition, Conduction, Rows, Surface, Transfer};
 
-impl<const D: usize> Model<D> {
+/// Makes what spreads, of a system at rest.
+pub(in crate::run) struct Maker<'a, const D: usize> {
+    pub system: &'a mut System<D>,
+    pub names: &'a Names<D>,
+}
+
+impl<const D: usize> Maker<'_, D> {
     /// All that spreads, from a spec.
-    pub(in crate::run) fn make_transfers(&mut self, spec: &Spec) -> Result<(), BuildError> {
+    pub(in crate::run) fn make(&mut self, spec: &Spec) -> Result<(), BuildError> {
         let transfers = &spec.transfers;
         for (n, t) in transfers.iter().enumerate() {
             if transfers[..n].iter().any(|o| o.quantity == t.quantity) {
@@ -29,18 +36,18 @@ impl<const D: usize> Model<D> {
         if transfers.is_empty() {
             return self.make_contact(spec);
         }
-        let mut slots = self.body.slots.clone();
+        let mut slots = self.system.body.slots.clone();
         slots.sort_unstable();
-        let mut place = vec![0; self.body.len];
+        let mut place = vec![0; self.system.body.len];
         for (n, s) in slots.iter().enumerate() {
             place[*s as usize] = n as u32;
         }
-        self.transfers.place = place;
+        self.system.transfers.place = place;
         for t in transfers {
             let made = self.transfer(spec, t, &slots)?;
             let info = self.told(spec, t, &made);
-            self.transfers.all.push(made);
-            self.info.transfers.push(info);
+            self.system.transfers.all.push(made);
+            self.system.info.transfers.push(info);
         }
         self.make_contact(spec)?;
         self.make_expansion(spec)?;
@@ -50,7 +57,6 @@ impl<const D: usize> Model<D> {
 
     /// Points stand still: how long a step is, and that nothing is asked to move.
     pub(in crate::run) fn stand_for(&mut self, spec: &Spec) -> Result<(), BuildError> {
-        self.stands = true;
         let refused = |path: &str, what: &str| {
             Err(
                 BuildError::conflict(path, format!("points stand still, and {what}")).help(
@@ -58,7 +64,7 @@ impl<const D: usize> Model<D> {
                 ),
             )
         };
-        if self.transfers.all.is_empty() {
+        if self.system.transfers.all.is_empty() {
             return Err(BuildError::missing(
                 "schedule.integrator",
                 "points stand still and nothing spreads: there is nothing to do",
@@ -77,7 +83,13 @@ impl<const D: usize> Model<D> {
             TimeStep::Auto => 1.0,
         };
         let mut dt = f64::INFINITY;
-        for (t, info) in self.transfers.all.iter().zip(&self.info.transfers) {
+        for (t, info) in self
+            .system
+            .transfers
+            .all
+            .iter()
+            .zip(&self.system.info.transfers)
+        {
             match t.method {
                 TransferMethod::Explicit { safety } => {
                     dt = dt.min(part * safety * info.stable_step);
@@ -92,11 +104,11 @@ impl<const D: usize> Model<D> {
             )
             .help(message![
                 "write time_step as a number: what is here spreads over the body in about ",
-                Dimension::TIME.of(self.info.transfers[0].spread),
+                Dimension::TIME.of(self.system.info.transfers[0].spread),
             ]));
         }
-        self.clock = Clock::new(dt);
-        self.info.time_step = dt;
+        self.system.clock = Clock::new(dt);
+        self.system.info.time_step = dt;
         Ok(())
     }
 
@@ -107,7 +119,7 @@ impl<const D: usize> Model<D> {
         slots: &[u32],
     ) -> Result<Transfer, BuildError> {
         let name = t.quantity.name();
-        let (body, interaction) = (&self.body, self.interaction.as_ref());
+        let (body, interaction) = (&self.system.body, self.system.interaction.as_ref());
         if interaction.is_potential() || spec.micromoduli().is_some() {
             return Err(BuildError::unsupported(
                 name,
@@ -116,7 +128,8 @@ impl<const D: usize> Model<D> {
             .help("take a law of solids (pmb, lps, …)"));
         }
         let of = |slot: usize| &t.materials[body.material_of(slot)];
-        let weight = |slot: usize, xi: &[f64], r: f64| self.constitutive.at(slot).0.weight(xi, r);
+        let weight =
+            |slot: usize, xi: &[f64], r: f64| self.system.constitutive.at(slot).0.weight(xi, r);
         let ends_at_points = |f: &&SurfaceFactors| f.ends_at_points();
         let exact = spec.surface.as_ref().filter(ends_at_points);
         let exact = exact.map(|f| (Factors::new(f, body), family(spec, body.spacing)));
@@ -142,7 +155,7 @@ impl<const D: usize> Model<D> {
             &Conduction {
                 conductivity: &|slot| of(slot).conductivity,
                 weight: &|i, j, xi, r| 0.5 * (weight(i, xi, r) + weight(j, xi, r)),
-                place: &self.transfers.place,
+                place: &self.system.transfers.place,
                 surface: exact.as_ref().map(|_| Surface {
                     factor: &factor,
                     moment: &moment,
@@ -190,7 +203,7 @@ impl<const D: usize> Model<D> {
             conditions,
             value,
         );
-        self.info.loads.extend(loads);
+        self.system.info.loads.extend(loads);
         if let TransferMethod::Steady { .. } = t.method {
             steady(&made)?;
         }
@@ -199,9 +212,11 @@ impl<const D: usize> Model<D> {
 
     /// Places and reference positions of a set.
     fn places(&self, set: &str, path: &str) -> Result<(Vec<u32>, Vec<Point>), BuildError> {
-        let found = self.slots_of(set, &self.sets);
+        let found = self.system.body.slots_of(set, &self.names.sets);
         let (slots, points) = found.map_err(|e| e.at(path))?;
-        let place = slots.iter().map(|s| self.transfers.place[*s as usize]);
+        let place = slots
+            .iter()
+            .map(|s| self.system.transfers.place[*s as usize]);
         Ok((place.collect(), points))
     }
 
@@ -213,9 +228,12 @@ impl<const D: usize> Model<D> {
     ) -> Result<(Condition, Option<LoadInfo>), BuildError> {
         let path = quantity.name();
         let (places, points) = self.places(&c.set, path)?;
-        let slots = self.slots_of(&c.set, &self.sets)?.0;
+        let slots = self.system.body.slots_of(&c.set, &self.names.sets)?.0;
         let area = |area: &Option<f64>| -> Result<Vec<f64>, BuildError> {
-            let areas = self.faces.areas(&self.body, &c.set, &slots, *area);
+            let areas = self
+                .names
+                .faces
+                .areas(&self.system.body, &c.set, &slots, *area);
             areas.map_err(|e| e.at(path))
         };
         let (what, sizes) = match (&c.kind, quantity) {
@@ -233,7 +251,11 @@ impl<const D: usize> Model<D> {
                 area(a)?,
             ),
         };
-        let volumes = || slots.iter().map(|s| self.body.volume.at(*s as usize));
+        let volumes = || {
+            slots
+                .iter()
+                .map(|s| self.system.body.volume.at(*s as usize))
+        };
         let power = match &c.kind {
             TransferKind::Flux { value, .. } => Some((value, sizes.clone())),
             TransferKind::Source(value) => Some((value, volumes().collect())),
@@ -254,7 +276,9 @@ impl<const D: usize> Model<D> {
             TransferKind::Value(e) => Condition::held(e, places, points),
             TransferKind::Flux { value, .. } => Condition::power(value, sizes, places, points),
             TransferKind::Source(e) => {
-                let volume = slots.iter().map(|s| self.body.volume.at(*s as usize));
+                let volume = slots
+                    .iter()
+                    .map(|s| self.system.body.volume.at(*s as usize));
                 Condition::power(e, volume.collect(), places, points)
             }
             TransferKind::Exchange { law, .. } => match law {
@@ -287,14 +311,15 @@ impl<const D: usize> Model<D> {
             .collect();
         let extent = |a: usize| {
             let along = self
+                .system
                 .body
                 .slots
                 .iter()
-                .map(|s| self.body.position(*s as usize)[a]);
+                .map(|s| self.system.body.position(*s as usize)[a]);
             let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
                 (l.min(x), h.max(x))
             });
-            high - low + self.body.spacing
+            high - low + self.system.body.spacing
         };
         let longest = (0..D).map(extent).fold(0.0, f64::max);
         let least = diffusivity.iter().copied().fold(f64::INFINITY, f64::min);

@@ -2,14 +2,14 @@
 
 mod contact;
 mod expansion;
-mod make;
+pub(super) mod make;
 pub(super) mod state;
 mod warmth;
 
 pub(super) use expansion::expanding;
 pub use state::TransferInfo;
 
-use super::model::Model;
+use super::system::System;
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::error::RunError;
 use crate::spec::Quantity;
@@ -35,7 +35,7 @@ impl Quantity {
     }
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> System<D> {
     /// Values and accounts at the start of a run.
     pub(super) fn start_transfers(&mut self) {
         let t = self.clock.time();
@@ -117,7 +117,7 @@ impl<const D: usize> Model<D> {
             .iter()
             .find(|t| t.quantity.column() == name)?;
         let place = &self.transfers.place;
-        Some(self.by_id(|i| found.values()[place[i] as usize]))
+        Some(self.body.by_id(|i| found.values()[place[i] as usize]))
     }
 
     /// Sets a column by point id; false: there is no such, or the number of values is another.

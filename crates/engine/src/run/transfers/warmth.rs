@@ -3,43 +3,46 @@
 //! A step takes turns: heat spreads, the law flows at the temperatures that this left, `T₁ = T₀ + β Δw_p/(ρ c)`. So each part of the plastic work
 //! heats once, and with nothing conducted the step is the adiabatic one of the law alone. Of first order in the step where heat is conducted.
 
+use super::make::Maker;
 use super::state::Warmth;
 use crate::error::BuildError;
 use crate::message;
 use crate::quantity::Dimension;
 use crate::run::constitutive::Softens;
-use crate::run::model::Model;
+use crate::run::system::System;
 use crate::spec::{Quantity, Spec, TransferMethod, TransferSpec};
 
 /// Heat capacities that differ by this part are the same, written in other units.
 const ROUND_OFF: f64 = 1e-9;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> Maker<'_, D> {
     /// Laws that know a temperature take that of the body.
     pub(super) fn make_warmth(&mut self, spec: &Spec) -> Result<(), BuildError> {
         let is_heat = |t: &TransferSpec| t.quantity == Quantity::Heat;
         let Some(heat) = spec.transfers.iter().position(is_heat) else {
             return Ok(());
         };
-        let above = vec![0.0; self.body.len];
-        if !self.interaction.warm(&self.body, &above) {
+        let above = vec![0.0; self.system.body.len];
+        if !self.system.interaction.warm(&self.system.body, &above) {
             return Ok(());
         }
         let t = &spec.transfers[heat];
-        let softens = self.constitutive.softens(spec.materials.len());
+        let softens = self.system.constitutive.softens(spec.materials.len());
         for (n, softens) in softens.iter().enumerate() {
             alike(t, n, softens)?;
         }
         let reference = softens.iter().map(|s| s.reference.unwrap_or(t.reference));
-        self.transfers.warmth = Some(Warmth {
+        self.system.transfers.warmth = Some(Warmth {
             heat,
             reference: reference.collect(),
             above,
         });
-        self.warm();
+        self.system.warm();
         Ok(())
     }
+}
 
+impl<const D: usize> System<D> {
     /// Laws have the temperatures of now.
     pub(super) fn warm(&mut self) {
         let Some(warmth) = &mut self.transfers.warmth else {

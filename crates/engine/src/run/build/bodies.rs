@@ -1,0 +1,116 @@
+//! Bodies of a spec, before they have bonds.
+
+use crate::body::{Body, Values};
+use crate::error::BuildError;
+use crate::family::nodes::Nodes;
+use crate::quantity::Warnings;
+use crate::run::constitutive::{AnyPotentials, Shelf};
+use crate::run::faces::Faces;
+use crate::run::feasible::enough_memory;
+use crate::run::names::Names;
+use crate::run::parts::{Part, parts};
+use crate::run::reference::current_neighbours;
+use crate::run::sets::{assign_materials, sets};
+use crate::run::{atoms, clouds, own_horizons};
+use crate::spec::{BodySpec, FamilyChoice, Horizon, Spec};
+
+/// Points with materials and masses, and what they are called.
+pub(super) struct Bodies<'a, const D: usize> {
+    pub parts: Vec<Part<'a>>,
+    pub body: Body<D>,
+    /// The atoms, and what nodes take of them; `None`: points are what has bonds.
+    pub smoothed: Option<(Body<D>, Nodes)>,
+    pub names: Names<D>,
+    /// The longest of all bodies that have bonds (length).
+    pub horizon: f64,
+    /// Within a body all pairs nearer than this are a family (length).
+    pub least_horizon: f64,
+    /// Bonds of stencils that end within round-off of a horizon that is a length.
+    pub ends: u64,
+    /// Are all points atoms?
+    pub atoms: bool,
+}
+
+impl<'a, const D: usize> Bodies<'a, D> {
+    pub fn new(
+        spec: &'a Spec,
+        shelf: &Shelf,
+        potentials: Option<&AnyPotentials>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, BuildError> {
+        let (mut parts, mut body) = parts::<D>(spec)?;
+        match (potentials, spec.family) {
+            (Some(potentials), _) if current_neighbours(spec) => {
+                atoms::check_box(potentials, &body.period)?;
+                parts[0].horizon = potentials.reach;
+            }
+            (Some(_), FamilyChoice::Reference) => {
+                atoms::check_periods("horizon", "horizon", parts[0].horizon, &body.period)?;
+            }
+            _ => {}
+        }
+        let [horizon, mut least_horizon] = horizons(&parts);
+        for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.bonded) {
+            let own = body.pieces().get(n).map_or(&body, |p| &p.body);
+            let atoms = current_neighbours(spec);
+            enough_memory(own, part.stencil.as_ref(), part.horizon, atoms)?;
+        }
+        let smoothed = match &spec.smooth {
+            None => None,
+            Some(smooth) => {
+                let (nodes, carried) = Nodes::new(&body, smooth)?;
+                let mut atoms = std::mem::replace(&mut body, nodes);
+                atoms.density = Values::Uniform(spec.materials[0].density);
+                clouds::own_densities(spec, &mut atoms);
+                Some((atoms, carried))
+            }
+        };
+        let carriers = match spec.micromoduli() {
+            Some(linear) => (**linear).clone().of::<D>().and_then(|l| l.carriers),
+            None => None,
+        };
+        let (sets, carrier_sets) = sets(spec, &body, carriers.as_ref())?;
+        assign_materials(spec, &mut body, &sets)?;
+        match &smoothed {
+            None => clouds::own_densities(spec, &mut body),
+            Some((atoms, carried)) => carried.give_masses(atoms, &mut body),
+        }
+        own_horizons::give(spec, &mut body, horizon)?;
+        if !body.horizon.is_empty() {
+            let own = body.slots.iter().map(|s| body.horizon[*s as usize]);
+            least_horizon = own.fold(least_horizon, f64::min);
+        }
+        let by_length = |p: &&Part| matches!(p.spec.horizon, Horizon::Length(_));
+        let ends = parts.iter().filter(by_length).flat_map(|p| &p.stencil);
+        let ends = ends.map(|s| s.near_horizon as u64).sum();
+        if let (Some(potentials), BodySpec::Lattice { kind, spacing, .. }) =
+            (potentials, &spec.body)
+        {
+            warnings.extend(atoms::crystal(spec, potentials, *kind, *spacing)?);
+        }
+        let names = Names {
+            sets,
+            carriers,
+            carrier_sets,
+            faces: Faces::new(spec)?,
+            shelf: shelf.clone(),
+        };
+        Ok(Bodies {
+            parts,
+            body,
+            smoothed,
+            names,
+            horizon,
+            least_horizon,
+            ends,
+            atoms: potentials.is_some(),
+        })
+    }
+}
+
+/// The longest and the shortest of bodies that have bonds.
+fn horizons(parts: &[Part]) -> [f64; 2] {
+    let bonded = || parts.iter().filter(|p| p.bonded).map(|p| p.horizon);
+    let longest = bonded().reduce(f64::max).unwrap_or(parts[0].horizon);
+    [longest, bonded().fold(longest, f64::min)]
+}

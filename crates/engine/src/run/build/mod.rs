@@ -1,0 +1,109 @@
+//! From a specification to a model: the only place that matches on dimension, law and family.
+
+mod bodies;
+mod bonds;
+mod made;
+
+use self::bodies::Bodies;
+use self::bonds::Bonds;
+use self::made::Made;
+use super::constitutive::{Shelf, criteria, directed};
+use super::feasible::{consistent, possible};
+use super::model::Model;
+use super::stages::Stages;
+use super::stepper::stepper;
+use super::{Simulation, atoms, own_horizons, transfers};
+use crate::error::BuildError;
+use crate::execute::simd::Simd;
+use crate::quantity::Warnings;
+use crate::spec::Spec;
+
+/// How to build, as opposed to what.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options {
+    /// Instruction set; `None` takes the widest there is.
+    pub simd: Option<Simd>,
+    /// Leave the stability limit unmeasured (a fixed step is then taken as it is).
+    pub trust_time_step: bool,
+}
+
+/// Build the model of a spec.
+pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, BuildError> {
+    build_with(spec, options, &Shelf::standard())
+}
+
+/// The same with laws, potentials, observables and forces of one's own.
+pub fn build_with(
+    spec: &Spec,
+    options: Options,
+    shelf: &Shelf,
+) -> Result<Box<dyn Simulation>, BuildError> {
+    possible(spec, options.simd)?;
+    match spec.dimension {
+        1 => Ok(Box::new(build_in::<1>(spec, options, shelf)?)),
+        2 => Ok(Box::new(build_in::<2>(spec, options, shelf)?)),
+        3 => Ok(Box::new(build_in::<3>(spec, options, shelf)?)),
+        d => Err(BuildError::invalid(
+            "dimension",
+            format!("{d} dimensions; expected 1, 2 or 3"),
+        )),
+    }
+}
+
+/// Build the model of a spec in D dimensions.
+pub fn build_in<const D: usize>(
+    spec: &Spec,
+    options: Options,
+    shelf: &Shelf,
+) -> Result<Model<D>, BuildError> {
+    let mut resolved = spec.clone();
+    shelf.resolve(&mut resolved)?;
+    let expanding = transfers::expanding(&mut resolved);
+    let own = own_horizons::resolve(&mut resolved);
+    let directed = directed(&mut resolved)?;
+    if criteria::remembering(&mut resolved)? || expanding || own || directed {
+        shelf.resolve(&mut resolved)?;
+    }
+    consistent(&resolved)?;
+    let potentials = shelf.potentials(&resolved)?;
+    atoms::check_smooth(&resolved, potentials.is_some())?;
+    atoms::resolve_family(&mut resolved, potentials.as_ref())?;
+    let spec = &resolved;
+    let simd = options.simd.unwrap_or_else(Simd::detect);
+    let mut warnings = Warnings::default();
+    let mut bodies = Bodies::<D>::new(spec, shelf, potentials.as_ref(), &mut warnings)?;
+    let bonds = Bonds::new(spec, simd, &mut bodies, &mut warnings)?;
+    let mut made = Made::new(
+        spec,
+        (simd, options.trust_time_step),
+        bodies,
+        bonds,
+        warnings,
+    )?;
+    made.begin(spec, potentials.as_ref())?;
+    made.act(spec)?;
+    let Made {
+        mut system,
+        names,
+        limits,
+        dt,
+    } = made;
+    let stepper = stepper(spec, shelf, simd, &mut system, (&limits, dt))?;
+    let stages = match &spec.preload {
+        Some(preload) => system.prepare_preload(preload, &names, stepper)?,
+        None => {
+            system.regime = stepper.regime();
+            Stages::one(stepper)
+        }
+    };
+    let mut model = Model {
+        system,
+        stages,
+        stale: false,
+        probes: vec![],
+        names,
+        boltzmann: spec.boltzmann,
+    };
+    model.probes = model.probes_of(&spec.probes)?;
+    Ok(model)
+}

@@ -1,0 +1,44 @@
+//! Points stand where they are; what spreads through bonds goes on.
+
+use super::{SplitStep, Stepper};
+use crate::error::RunError;
+use crate::run::system::{Regime, System};
+use crate::state::{Archive, Owner};
+use crate::statics::Solved;
+
+/// Keeps nothing.
+pub(super) struct Rest;
+
+impl Owner for Rest {
+    fn archive(&mut self, _: &mut Archive<'_>) {}
+}
+
+impl<const D: usize> Stepper<D> for Rest {
+    fn regime(&self) -> Regime {
+        Regime::default()
+    }
+
+    fn start(&mut self, system: &mut System<D>, bonds: bool) {
+        system.begin(bonds);
+    }
+
+    fn step(&mut self, system: &mut System<D>) -> Result<(), RunError> {
+        system.spread(system.clock.time(), system.clock.dt())?;
+        system.clock.forward();
+        Ok(())
+    }
+
+    /// No step asks for forces.
+    fn changed(&mut self, _: &mut System<D>) {}
+
+    /// They are those of whole steps.
+    fn finish(&mut self, _: &mut System<D>) {}
+
+    fn solved(&self) -> Option<Solved> {
+        None
+    }
+
+    fn split(&mut self) -> Option<&mut dyn SplitStep<D>> {
+        None
+    }
+}

@@ -1,0 +1,237 @@
+//! Motion in time by velocity Verlet, and the way back from a step that failed.
+
+use super::{SplitStep, Stepper};
+use crate::dynamics::verlet::Verlet;
+use crate::error::RunError;
+use crate::execute::simd::Simd;
+use crate::run::constitutive::{ConstitutiveModel, Laws};
+use crate::run::system::{Regime, System};
+use crate::run::time_step::Limits;
+use crate::spec::{Spec, TimeStep};
+use crate::state::{Archive, Owner};
+use crate::statics::Solved;
+
+/// Part of the stable step of now that is not passed, where none was asked for.
+const HELD: f64 = 0.9;
+/// Most parts of a step: a bond that is shorter still is no bond of a solid any more.
+const PARTS: f64 = 1000.0;
+
+pub(super) struct VelocityVerlet {
+    verlet: Verlet,
+    /// Bound on the path of any point in the last drift (length).
+    path: f64,
+    /// Does `v` wait for the last half kick?
+    pending: bool,
+    /// Part of its stable step at which a body runs whose bonds become stiffer as they become shorter; `None`: its step stays as it is.
+    fraction: Option<f64>,
+}
+
+impl Owner for VelocityVerlet {
+    /// With velocities of whole steps.
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.one("path", &mut self.path);
+    }
+}
+
+impl<const D: usize> Stepper<D> for VelocityVerlet {
+    fn regime(&self) -> Regime {
+        Regime::default()
+    }
+
+    fn start(&mut self, system: &mut System<D>, bonds: bool) {
+        self.finish(system);
+        system.begin(bonds);
+    }
+
+    /// In parts where bonds have become shorter and so stiffer than the step is made for.
+    fn step(&mut self, system: &mut System<D>) -> Result<(), RunError> {
+        let parts = self.parts_now(system);
+        if parts == 1 {
+            self.depart(system)?;
+            return self.arrive(system);
+        }
+        self.finish(system);
+        system.info.parts = system.info.parts.max(parts);
+        system.clock.divide(parts);
+        let all = (0..parts).try_for_each(|_| {
+            self.depart(system)?;
+            self.arrive(system)
+        });
+        // with the length of a part, and at its time
+        self.finish(system);
+        system.clock.join(all.is_ok());
+        all
+    }
+
+    fn changed(&mut self, system: &mut System<D>) {
+        self.finish(system);
+        system.forces_held(system.given());
+    }
+
+    fn finish(&mut self, system: &mut System<D>) {
+        if self.pending {
+            let (t, dt) = (system.clock.time(), system.clock.dt());
+            let f = system.inertia.as_ref().map_or(&system.f, |i| &i.push);
+            self.verlet.kick(&system.body, &mut system.v, f, dt);
+            let all = system.prescribed.all();
+            all.for_each(|p| p.whole_velocity(&mut system.v, [t, dt]));
+            self.pending = false;
+        }
+    }
+
+    fn solved(&self) -> Option<Solved> {
+        None
+    }
+
+    fn split(&mut self) -> Option<&mut dyn SplitStep<D>> {
+        Some(self)
+    }
+}
+
+impl<const D: usize> SplitStep<D> for VelocityVerlet {
+    fn depart(&mut self, system: &mut System<D>) -> Result<f64, RunError> {
+        let (t, dt) = (system.clock.time(), system.clock.dt());
+        system.update_toughness(t + dt)?;
+        let pressed = system.pressed();
+        if system.holds_others() {
+            system.accelerate();
+        }
+        let (u, v, f) = (&system.u, &mut system.v, &mut system.f);
+        let whole = !self.pending;
+        let all = system.prescribed.all_mut();
+        all.for_each(|p| p.before_drift(u, v, f, [t, dt], whole));
+        // linear springs may go through each other: they know no distance that is too far for a step
+        let linear = |m: &ConstitutiveModel| match m.laws {
+            Laws::Springs(_) | Laws::Micromoduli(_) => true,
+            Laws::Bond(_) | Laws::Solid(_) | Laws::Atoms(_) => false,
+        };
+        let limit = match system.constitutive.all().all(linear) {
+            true => f64::INFINITY,
+            false => system.body.spacing,
+        };
+        let f = system.inertia.as_ref().map_or(&system.f, |i| &i.push);
+        let fastest = self.verlet.advance(
+            &system.body,
+            &mut system.u,
+            &mut system.v,
+            f,
+            dt,
+            self.pending,
+            limit,
+        );
+        if !(fastest < limit * limit) {
+            let error = system.refused(limit);
+            self.retreat(system, limit);
+            system.prescribed.refused(&mut system.v, [t, dt]);
+            return Err(error);
+        }
+        system.clock.forward();
+        if let Some(contact) = &mut system.contact {
+            contact.central.moved(fastest.sqrt());
+        }
+        let t = system.clock.time();
+        let all = system.prescribed.all();
+        all.for_each(|p| p.after_drift(&mut system.u, [t, dt]));
+        self.path = fastest.sqrt();
+        // whoever asks for velocities now gets those of the middle
+        self.pending = false;
+        if let Err(error) = system.spread_after(t - dt, dt, pressed) {
+            self.step_back(system);
+            return Err(error);
+        }
+        system.pay(1.0, 0.5 * dt);
+        Ok(self.path)
+    }
+
+    fn arrive(&mut self, system: &mut System<D>) -> Result<(), RunError> {
+        let (t, dt, path) = (system.clock.time(), system.clock.dt(), self.path);
+        if let Some(contact) = &mut system.contact {
+            contact.begin_step(&system.body, &system.v, dt);
+        }
+        let all = system.applied.all();
+        all.for_each(|x| x.begin_step(&system.body, &system.v, [t, dt], path));
+        system.heal(t);
+        system.forces(true, system.clock.step_end());
+        if let Some(fault) = system.fault {
+            let error = system.explained(fault);
+            system.retreat_transfers();
+            system.acting_retreat();
+            self.step_back(system);
+            return Err(error);
+        }
+        let change = system.inertia.as_ref().map(|i| i.change(dt));
+        system.account_constraints(t, dt, change.as_ref());
+        self.pending = true;
+        Ok(())
+    }
+}
+
+impl VelocityVerlet {
+    /// Of a system whose steps are `dt` long (time).
+    pub fn new<const D: usize>(
+        spec: &Spec,
+        simd: Simd,
+        system: &System<D>,
+        limits: &Limits,
+        dt: f64,
+    ) -> Self {
+        VelocityVerlet {
+            verlet: Verlet::new(simd, &system.body),
+            path: 0.0,
+            pending: false,
+            fraction: match spec.schedule.time_step {
+                TimeStep::Fixed(_) => None,
+                TimeStep::Fraction(_) | TimeStep::Auto => {
+                    Some(dt / limits.bond).filter(|x| *x > 0.0)
+                }
+            },
+        }
+    }
+
+    /// In how many parts the next step is done: the stable step of bonds whose stiffness is that of a material goes with their length (that of
+    /// waves through the shortest one, Courant, Friedrichs & Lewy 1928).
+    fn parts_now<const D: usize>(&self, system: &mut System<D>) -> u32 {
+        let Some(fraction) = self.fraction else {
+            return 1;
+        };
+        system.refresh_images();
+        let shortest = system.interaction.shortest(&system.body, &system.u);
+        let most = fraction.max(HELD);
+        let parts = (fraction / (most * shortest)).ceil().clamp(1.0, PARTS) as u32;
+        parts.max(parts_of_indenters(system, fraction))
+    }
+
+    /// Velocities and displacements of before a drift that went no further than `limit` (length), or of the last kick alone.
+    fn retreat<const D: usize>(&mut self, system: &mut System<D>, limit: f64) {
+        let dt = system.clock.dt();
+        let f = system.inertia.as_ref().map_or(&system.f, |i| &i.push);
+        let (body, u, v) = (&system.body, &mut system.u, &mut system.v);
+        self.verlet.retreat(body, u, v, f, dt, limit);
+        self.pending = false;
+    }
+
+    /// Back to the step before: where it was, and with the forces that were.
+    fn step_back<const D: usize>(&mut self, system: &mut System<D>) {
+        let dt = system.clock.dt();
+        for &s in &system.body.slots {
+            for a in 0..D {
+                system.u[a][s as usize] -= dt * system.v[a][s as usize];
+            }
+        }
+        system.clock.back();
+        if let Some(contact) = &mut system.contact {
+            contact.central.moved(self.path);
+        }
+        system.forces(true, system.clock.start());
+        self.retreat(system, 0.0);
+    }
+}
+
+/// In how many parts what touches rigid bodies asks for: the deeper a point is below a surface, the stiffer it is held.
+fn parts_of_indenters<const D: usize>(system: &System<D>, fraction: f64) -> u32 {
+    let dt = system.clock.dt();
+    let bonds = (2.0 * fraction / dt).powi(2);
+    let stiffest = system.applied.rigid.iter().map(|i| i.stiffened(bonds));
+    let lambda = stiffest.fold(0.0, f64::max);
+    (0.5 * dt * lambda.sqrt() / HELD).ceil().clamp(1.0, PARTS) as u32
+}

@@ -1,0 +1,120 @@
+//! The linear body: what a linear solution means, and whether the reference is without forces. Such a solution stands for the forces `−K u` and the
+//! energy `½ uᵀK u` of the linear body about the reference, not for those of the nonlinear law at its displacements, in which it is no equilibrium.
+//! Near incompressibility the two differ by much: the small rotations of a linear solution change volumes in second order.
+
+use super::System;
+use crate::body::Field;
+use crate::interaction::{PointEnergies, Sweep};
+use crate::law::descriptor::Memory;
+use crate::run::constitutive::Laws;
+use crate::spec::{LinearBody, Solver, Statics};
+use crate::statics::operator::SMALL;
+use crate::statics::{self, Support};
+
+/// Unknowns up to which the equations are factored, per dimension.
+const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
+
+impl<const D: usize> System<D> {
+    /// Does the state stand for the linear body about the reference? Laws that pull at rest (atoms) keep their own energy.
+    pub fn is_linear(&self) -> bool {
+        self.regime.linear && self.at_peace()
+    }
+
+    /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
+    pub fn at_peace(&self) -> bool {
+        let mut named = self.constitutive.all().filter_map(|m| m.named.as_ref());
+        let pulls = named.any(|n| n.pulls());
+        !pulls && !matches!(self.constitutive.first().laws, Laws::Atoms(_)) && !self.expands()
+    }
+
+    /// Has no law forces at the reference, and another stiffness there than here, by what it remembers? What fades has none: it is let back to there.
+    pub fn forgets(&self) -> bool {
+        let mut named = self.constitutive.all().filter_map(|m| m.named.as_ref());
+        named.all(|n| n.memory().0 == Memory::Nothing || n.fades())
+    }
+
+    /// Are equations with these unknowns factored?
+    pub fn factored(&self, options: Statics, support: &Support<D>) -> bool {
+        if self.interaction.asymmetry() > statics::SYMMETRIC {
+            return true;
+        }
+        match options.solver {
+            Solver::Direct => true,
+            Solver::ConjugateGradients => false,
+            Solver::Auto => support.unknowns() <= DIRECT[D - 1],
+        }
+    }
+
+    /// The displacements of now made so small that laws without forces at rest are linear to the last digit, as in
+    /// [`Swept`](crate::statics::Swept), and by which factor: a power of two, which rounds nothing.
+    pub fn made_small(&self) -> (Field<D>, f64) {
+        let slots = || self.body.slots.iter().map(|s| *s as usize);
+        let peak = (0..D).flat_map(|a| slots().map(move |i| (a, i)));
+        let peak = peak.fold(0.0f64, |m, (a, i)| m.max(self.u[a][i].abs()));
+        let small = match peak > 0.0 {
+            true => (SMALL * self.body.spacing / peak).log2().floor().exp2(),
+            false => 1.0,
+        };
+        let mut u = self.body.at_rest();
+        for i in slots() {
+            for a in 0..D {
+                u[a][i] = small * self.u[a][i];
+            }
+        }
+        for c in &mut u {
+            self.body.fill_images(c);
+        }
+        (u, small)
+    }
+
+    /// Energies and dilatation of all points now: of the linear body (quadratic, linear) where that is what the state stands for.
+    pub fn seen_now(&self) -> PointEnergies {
+        let mut seen = PointEnergies::default();
+        match self.is_linear() {
+            true => self.see_linear(&mut seen),
+            false => self.interaction.observe(&self.body, &self.u, &mut seen),
+        }
+        seen
+    }
+
+    fn see_linear(&self, seen: &mut PointEnergies) {
+        let (u, small) = self.made_small();
+        self.interaction.observe(&self.body, &u, seen);
+        for energy in seen.strain.iter_mut().chain(&mut seen.repulsion) {
+            *energy = *energy / small / small;
+        }
+        seen.dilatation.iter_mut().for_each(|x| *x /= small);
+    }
+
+    /// `½ uᵀK u` (energy).
+    pub fn quadratic_energy(&mut self) -> [f64; 2] {
+        let (u, small) = self.made_small();
+        let energy = self.interaction.energy(&self.body, &u);
+        energy.map(|e| e / small / small)
+    }
+
+    /// Forces `−K u` of bonds in place of those of the law; no loads.
+    pub fn linear_forces(&mut self) {
+        let (u, small) = self.made_small();
+        self.interaction
+            .forces(&self.body, &u, &mut self.f, Sweep::Hold, None);
+        for &s in &self.body.slots {
+            for a in 0..D {
+                self.f[a][s as usize] /= small;
+            }
+        }
+        if let Some(mut seen) = self.watch.energies.take() {
+            self.see_linear(&mut seen);
+            self.watch.energies = Some(seen);
+        }
+    }
+
+    /// The linear body about the displacements of now.
+    pub fn linear_now(&mut self) -> LinearBody<D> {
+        self.refresh_images();
+        LinearBody {
+            mass: self.inertia.as_ref().map(|i| i.masses.matrix().clone()),
+            ..statics::linear_body(&self.body, self.interaction.as_mut(), &self.u)
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! What acts and what it acts on: a body with its bonds, its state, and all that adds to it. Steppers move it.
+
+mod archive;
+mod forces;
+mod linear;
+mod regime;
+mod watch;
+
+pub(super) use regime::Regime;
+pub(super) use watch::Watch;
+
+use super::Info;
+use super::accounts::state::Accounts;
+use super::clock::Clock;
+use super::constitutive::ConstitutiveModels;
+use super::healing::state::Healing;
+use super::inertia::state::Inertia;
+use super::transfers::state::Transfers;
+use crate::body::{Body, Field};
+use crate::condition::applied::AppliedForces;
+use crate::condition::constraint::Constraint;
+use crate::condition::prescribed_motion::PrescribedMotion;
+use crate::condition::toughness::ToughnessField;
+use crate::interaction::{ContactForces, Fault, Interaction, PointEnergies};
+use crate::observe::Observed;
+use crate::space::Point;
+use crate::spec::Release;
+use crate::transfer::Transfer;
+
+/// A body in D dimensions, and all that acts on it.
+pub(super) struct System<const D: usize> {
+    pub info: Info,
+    pub body: Body<D>,
+    pub interaction: Box<dyn Interaction<D>>,
+    /// Between points that are not in each other's family.
+    pub contact: Option<ContactForces<D>>,
+    /// `None`: that of the materials.
+    pub toughness: Option<ToughnessField>,
+    /// `None`: what is broken stays so.
+    pub healing: Option<Healing>,
+    pub u: Field<D>,
+    pub v: Field<D>,
+    pub f: Field<D>,
+    /// Where masses couple points.
+    pub inertia: Option<Inertia<D>>,
+    pub prescribed: PrescribedMotion<D>,
+    pub applied: AppliedForces<D>,
+    /// What spreads through the bonds.
+    pub transfers: Transfers,
+    /// Laws and constants, for what is computed pair by pair.
+    pub constitutive: ConstitutiveModels,
+    pub clock: Clock,
+    pub accounts: Accounts,
+    /// What is kept of the next evaluation of forces.
+    pub watch: Watch,
+    /// When a bond past its critical stretch breaks.
+    pub release: Release,
+    /// Has somebody had enough of a search for an equilibrium?
+    pub stop: fn() -> bool,
+    /// The last forces mean nothing.
+    pub fault: Option<Fault>,
+    /// What its states mean under the stepper that moves it.
+    pub regime: Regime,
+}
+
+impl<const D: usize> System<D> {
+    /// Bytes held: body, bonds, and the state of nine numbers per slot in 3-D.
+    pub fn bytes(&self) -> usize {
+        self.body.bytes()
+            + self.interaction.bytes()
+            + self.contact.as_ref().map_or(0, ContactForces::bytes)
+            + self.inertia.as_ref().map_or(0, |i| i.masses.bytes())
+            + 3 * D * 8 * self.body.len
+            + self
+                .transfers
+                .all
+                .iter()
+                .map(Transfer::bytes)
+                .sum::<usize>()
+    }
+
+    pub fn refresh_images(&mut self) {
+        if !self.body.images.is_empty() {
+            for c in &mut self.u {
+                self.body.fill_images(c);
+            }
+        }
+    }
+
+    pub fn observed_of(&self, energies: &PointEnergies) -> Observed {
+        let field = |f: &[f64]| self.body.by_id(|i| f.get(i).copied().unwrap_or(0.0));
+        Observed {
+            strain: field(&energies.strain),
+            repulsion: field(&energies.repulsion),
+            dilatation: field(&energies.dilatation),
+            whole: field(&energies.whole),
+        }
+    }
+
+    /// Points may be anywhere now: whoever keeps track of what is near forgets it.
+    pub fn look_again(&mut self) {
+        if let Some(contact) = &mut self.contact {
+            contact.central.look_again();
+        }
+        self.applied.all().for_each(|x| x.moved(f64::INFINITY));
+    }
+
+    /// Displacements from outside.
+    pub fn set_displacements(&mut self, u: &[Point]) {
+        self.watch.forget_virials();
+        self.body.scatter(&mut self.u, u);
+        self.refresh_images();
+        self.look_again();
+    }
+
+    /// Displacements of a trial, in order of ids.
+    pub fn set_values(&mut self, x: &[[f64; D]]) {
+        let mut square = 0.0f64;
+        for (x, &s) in x.iter().zip(&self.body.slots) {
+            let mut path = 0.0;
+            for a in 0..D {
+                let u = &mut self.u[a][s as usize];
+                path += (x[a] - *u) * (x[a] - *u);
+                *u = x[a];
+            }
+            square = square.max(path);
+        }
+        self.refresh_images();
+        // who keeps track of what is near is told of every trial
+        let path = square.sqrt();
+        if let Some(contact) = &mut self.contact {
+            contact.central.moved(path);
+        }
+        self.applied.all().for_each(|x| x.moved(path));
+    }
+
+    /// Loads and constraints from now on; what those of before did is in the past.
+    pub fn set_acting(&mut self, forces: AppliedForces<D>, constraints: Vec<Constraint<D>>) {
+        let now = self.energy_now();
+        self.accounts.pass(&now);
+        // it goes on; what it took is in the past now
+        if let Some(friction) = self.contact.as_mut().and_then(|c| c.friction.as_mut()) {
+            friction.work = -friction.energy;
+        }
+        self.applied = forces;
+        self.prescribed.constraints = constraints;
+    }
+}
