@@ -303,7 +303,7 @@ fn adds_force(kind: &ConditionKind) -> bool {
         | ConditionKind::Velocity(_)
         | ConditionKind::SetForce(_)
         | ConditionKind::Damping(_)
-        | ConditionKind::Own(_) => false,
+        | ConditionKind::Force(_) => false,
     }
 }
 
@@ -315,7 +315,7 @@ fn prescribes(kind: &ConditionKind) -> bool {
         | ConditionKind::Traction { .. }
         | ConditionKind::SetForce(_)
         | ConditionKind::Damping(_)
-        | ConditionKind::Own(_) => false,
+        | ConditionKind::Force(_) => false,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, say};
 use peridyne::columns::Dimension;
-use peridyne::law::descriptor::{Bounds, Key, Need, Value};
+use peridyne::law::descriptor::{Bounds, Descriptor, Key, Need, Value};
 use peridyne::run::Shelf;
 use peridyne::space::lattice::LatticeKind;
 use serde_json::Value as Json;
@@ -41,8 +41,9 @@ const ORDER: [(&str, &str); 13] = [
 ];
 
 /// Said elsewhere, or plain.
-const LEFT_OUT: [&str; 6] = [
+const LEFT_OUT: [&str; 7] = [
     "Law",
+    "Force",
     "LatticeName",
     "AxisName",
     "PlaneName",
@@ -58,7 +59,15 @@ pub fn print() -> Result<(), Failure> {
         let known = ORDER.iter().any(|(o, _)| o == name) || LEFT_OUT.contains(&name.as_str());
         !known && (table.get("oneOf").is_some() || table.get("enum").is_some())
     });
-    say(&format!("laws (material.law)\n{}", laws()));
+    let shelf = Shelf::standard();
+    say(&format!(
+        "laws (material.law)\n{}",
+        named(shelf.descriptors())
+    ));
+    say(&format!(
+        "forces on points (condition.force)\n{}",
+        named(shelf.forces())
+    ));
     let titled = ORDER.iter().map(|(name, title)| (*name, *title));
     for (name, title) in titled.chain(others.map(|(name, _)| (name.as_str(), name.as_str()))) {
         if let Some(table) = all.get(name) {
@@ -97,12 +106,11 @@ pub fn print() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Every law of the shelf with its keys; words that several laws share are explained at the first.
-fn laws() -> String {
-    let shelf = Shelf::standard();
+/// All of a list of the shelf with their keys; words that several share are explained at the first.
+fn named<'a>(all: impl Iterator<Item = &'a Descriptor>) -> String {
     let mut text = String::new();
     let mut explained: Vec<&[(&str, &str)]> = vec![];
-    for d in shelf.descriptors() {
+    for d in all {
         let source = match &*d.source {
             "" => String::new(),
             source => format!(" [{source}]"),

@@ -137,7 +137,7 @@ fn founded(shelf: &Shelf) -> Box<dyn Simulation> {
     let mut spec = solid();
     spec.conditions = vec![ConditionSpec {
         set: "all".into(),
-        kind: ConditionKind::Own("foundation".into()),
+        kind: ConditionKind::force("foundation", Parameters::default()),
     }];
     build_with(&spec, Options::default(), shelf).unwrap()
 }
@@ -145,7 +145,7 @@ fn founded(shelf: &Shelf) -> Box<dyn Simulation> {
 #[test]
 fn a_force_from_outside_acts_and_keeps_its_account() {
     let stiffness = 0.4;
-    let shelf = Shelf::standard().with_force("foundation", move |at| {
+    let shelf = Shelf::standard().with_force_of("foundation", move |at| {
         [
             -stiffness * at.displacement[0],
             -stiffness * at.displacement[1],
@@ -183,7 +183,7 @@ fn a_force_from_outside_acts_and_keeps_its_account() {
 
 #[test]
 fn a_force_from_outside_sees_place_motion_and_time() {
-    let shelf = Shelf::standard().with_force("foundation", |at| {
+    let shelf = Shelf::standard().with_force_of("foundation", |at| {
         assert_eq!(at.density, 1.5);
         assert_eq!(at.reference[2], 0.0);
         [at.time, at.reference[1], -at.velocity[0]]
@@ -210,13 +210,13 @@ fn forces_from_outside_are_refused_where_they_cannot_be() {
     let mut spec = solid();
     spec.conditions = vec![ConditionSpec {
         set: "all".into(),
-        kind: ConditionKind::Own("wind".into()),
+        kind: ConditionKind::force("wind", Parameters::default()),
     }];
     let error = build(&spec, Options::default()).err().unwrap();
     let name = "wind".to_string();
     assert_eq!(error.kind, BuildErrorKind::Unknown { name });
     assert_eq!(error.path, "conditions[0]");
-    let shelf = Shelf::standard().with_force("wind", |_| [1.0, 0.0, 0.0]);
+    let shelf = Shelf::standard().with_force_of("wind", |_| [1.0, 0.0, 0.0]);
     let clamped = |a: usize| {
         let zero = peridyne::expression::Expression::constant(0.0);
         let mut value = [None, None, None];

@@ -61,12 +61,12 @@ pub fn main() {
     spec.schedule.time_step = TimeStep::Fraction(0.05);
     spec.conditions = vec![ConditionSpec {
         set: "all".into(),
-        kind: ConditionKind::Own("foundation".into()),
+        kind: ConditionKind::force("foundation", Parameters::default()),
     }];
     let shelf = Shelf::standard()
         .with::<Bonds<Stiffening, 1>>()
         .with_observable(&DISTANCE)
-        .with_force("foundation", |at| at.displacement.map(|u| -1e-3 * u));
+        .with_force_of("foundation", |at| at.displacement.map(|u| -1e-3 * u));
     let mut sim = build_with(&spec, Options::default(), &shelf).expect("a body of this law");
     let stretched = sim.vectors("reference").into_iter();
     sim.set_displacements(

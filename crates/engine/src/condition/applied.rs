@@ -67,6 +67,11 @@ impl<const D: usize> AppliedForces<D> {
         self.rigid.iter().filter(|i| i.is_free())
     }
 
+    /// Stiffness of the loads against displacements in the last trial, by slot: `visit(slot, −∂f/∂u)` (force / volume / length).
+    pub fn each_stiffness(&self, mut visit: impl FnMut(usize, &[[f64; D]; D])) {
+        self.loads.iter().for_each(|l| l.each_stiffness(&mut visit));
+    }
+
     /// Viscosity that resists velocities at time `t`, by slot (mass / volume / time).
     pub fn viscosity(&self, body: &Body<D>, t: f64) -> Vec<f64> {
         let mut sum = vec![0.0; body.len];

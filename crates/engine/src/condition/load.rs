@@ -3,12 +3,13 @@
 use super::Program;
 use super::condensed::Condensed;
 use super::force_field::ForceField;
-use super::own::{OwnForce, Seen};
+use super::point_force::{PointForce, Seen, Stiffness};
 use crate::body::{Body, Field};
 use crate::interaction::Evaluation;
 use crate::interaction::friction::Pressed;
 use crate::space::Point;
 use crate::state::{Archive, Owner};
+use std::sync::Arc;
 
 #[derive(Debug, Clone)]
 pub enum LoadKind<const D: usize> {
@@ -20,8 +21,8 @@ pub enum LoadKind<const D: usize> {
     Replace(Program<D>),
     /// Force density −γ v, v as it is when forces are evaluated; γ per point of the list (mass / volume / time).
     Drag(Vec<f64>),
-    /// Force density of a function of the program.
-    Own(OwnForce),
+    /// Force density of a force that the shelf has.
+    Named(Arc<dyn PointForce>),
 }
 
 impl<const D: usize> LoadKind<D> {
@@ -29,7 +30,7 @@ impl<const D: usize> LoadKind<D> {
     fn counts(&self, k: usize) -> bool {
         match self {
             LoadKind::Body(p) | LoadKind::Replace(p) => !p.leaves(k),
-            LoadKind::Damping(_) | LoadKind::Drag(_) | LoadKind::Own(_) => true,
+            LoadKind::Damping(_) | LoadKind::Drag(_) | LoadKind::Named(_) => true,
         }
     }
 }
@@ -59,15 +60,82 @@ pub struct Load<const D: usize> {
     last: Vec<[f64; D]>,
     /// The same where an implicit step departed.
     departed: Vec<[f64; D]>,
+    /// Of a force that the shelf has: which of its points each of these is, what it remembers of them now and where the step began, and its
+    /// stiffness in the last trial (force / volume / length).
+    named: Named<D>,
     /// Sum of the force densities on the points before this load acted, without those that a list leaves alone.
     pub before: [f64; 3],
     /// Work done on the body (energy).
     pub work: f64,
 }
 
+/// What is kept of a force that the shelf has.
+#[derive(Debug, Clone, Default)]
+struct Named<const D: usize> {
+    point: Vec<u32>,
+    memory: Vec<f64>,
+    began: Vec<f64>,
+    stiffness: Vec<[[f64; D]; D]>,
+}
+
+impl<const D: usize> Named<D> {
+    fn of(force: &dyn PointForce, points: usize) -> Self {
+        let memory = vec![0.0; points * force.memory()];
+        let tangents = match force.stiffness() {
+            Stiffness::Answered => points,
+            Stiffness::None | Stiffness::Unknown => 0,
+        };
+        Named {
+            point: (0..points as u32).collect(),
+            began: memory.clone(),
+            memory,
+            stiffness: vec![[[0.0; D]; D]; tangents],
+        }
+    }
+
+    /// A step begins.
+    fn begin(&mut self) {
+        self.began.copy_from_slice(&self.memory);
+    }
+
+    /// Force on point `k` of those that are left.
+    fn answer(&mut self, force: &dyn PointForce, k: usize, seen: &Seen, at: Evaluation) -> Point {
+        let each = force.memory();
+        let own = k * each..(k + 1) * each;
+        match at {
+            Evaluation::Start { .. } => {}
+            Evaluation::StepEnd { .. } | Evaluation::Trial { .. } => {
+                self.memory[own.clone()].copy_from_slice(&self.began[own.clone()]);
+            }
+        }
+        let answer = force.answer(self.point[k] as usize, seen, &mut self.memory[own]);
+        if let Some(block) = self.stiffness.get_mut(k) {
+            let k = &answer.stiffness;
+            *block = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (k[a][b] + k[b][a])));
+        }
+        answer.force
+    }
+
+    fn retain(&mut self, kept: &[usize]) {
+        let each = self.memory.len() / self.point.len().max(1);
+        let of = |all: &[f64]| {
+            kept.iter()
+                .flat_map(|k| &all[k * each..(k + 1) * each])
+                .copied()
+                .collect()
+        };
+        (self.memory, self.began) = (of(&self.memory), of(&self.began));
+        if !self.stiffness.is_empty() {
+            self.stiffness = kept.iter().map(|k| self.stiffness[*k]).collect();
+        }
+        self.point = kept.iter().map(|k| self.point[*k]).collect();
+    }
+}
+
 impl<const D: usize> Owner for Load<D> {
     fn archive(&mut self, archive: &mut Archive<'_>) {
         archive.all("force", &mut self.last);
+        archive.all("memory", &mut self.named.memory);
         archive.one("before", &mut self.before);
         archive.one("work", &mut self.work);
     }
@@ -81,8 +149,15 @@ impl<const D: usize> Load<D> {
 
     pub fn new(kind: LoadKind<D>, slots: Vec<u32>, points: Vec<Point>) -> Self {
         let last = vec![[0.0; D]; slots.len()];
+        let named = match &kind {
+            LoadKind::Named(force) => Named::of(force.as_ref(), slots.len()),
+            LoadKind::Body(_) | LoadKind::Damping(_) | LoadKind::Replace(_) | LoadKind::Drag(_) => {
+                Named::default()
+            }
+        };
         Load {
             kind,
+            named,
             slots,
             points,
             condensed: None,
@@ -143,17 +218,42 @@ impl<const D: usize> Load<D> {
             match &self.kind {
                 LoadKind::Damping(c) => visit(s as usize, c.at(0, k, &self.points[k], t)),
                 LoadKind::Drag(gamma) => visit(s as usize, gamma[k]),
-                LoadKind::Body(_) | LoadKind::Replace(_) | LoadKind::Own(_) => {}
+                LoadKind::Body(_) | LoadKind::Replace(_) | LoadKind::Named(_) => {}
+            }
+        }
+    }
+
+    /// Visits the slots of a load that depends on displacements, with its stiffness `−∂f/∂u` in the last trial (force / volume / length).
+    pub fn each_stiffness(&self, mut visit: impl FnMut(usize, &[[f64; D]; D])) {
+        for (&s, block) in self.slots.iter().zip(&self.named.stiffness) {
+            visit(s as usize, block);
+        }
+    }
+
+    /// Does it change with displacements, in a way that it tells?
+    pub fn has_stiffness(&self) -> bool {
+        !self.named.stiffness.is_empty()
+    }
+
+    /// Does it, or may it?
+    pub fn changes_with_place(&self) -> bool {
+        match &self.kind {
+            LoadKind::Named(force) => force.stiffness() != Stiffness::None,
+            LoadKind::Body(_) | LoadKind::Damping(_) | LoadKind::Replace(_) | LoadKind::Drag(_) => {
+                false
             }
         }
     }
 
     /// What it is, if it has no tangent.
     pub fn without_tangent(&self) -> Option<&'static str> {
-        match self.kind {
+        match &self.kind {
             LoadKind::Body(_) | LoadKind::Damping(_) | LoadKind::Drag(_) => None,
             LoadKind::Replace(_) => Some("a force that replaces all others"),
-            LoadKind::Own(_) => Some("a force of the program"),
+            LoadKind::Named(force) => match force.stiffness() {
+                Stiffness::None | Stiffness::Answered => None,
+                Stiffness::Unknown => Some("a force of the program"),
+            },
         }
     }
 
@@ -162,7 +262,7 @@ impl<const D: usize> Load<D> {
     }
     pub fn rank(&self) -> Rank {
         match self.kind {
-            LoadKind::Body(_) | LoadKind::Own(_) => Rank::Load,
+            LoadKind::Body(_) | LoadKind::Named(_) => Rank::Load,
             LoadKind::Damping(_) | LoadKind::Drag(_) => Rank::Resistance,
             LoadKind::Replace(_) => Rank::Override,
         }
@@ -171,6 +271,7 @@ impl<const D: usize> Load<D> {
 
 impl<const D: usize> ForceField<D> for Load<D> {
     fn begin_step(&mut self, body: &Body<D>, v: &Field<D>, [_, dt]: [f64; 2], _: f64) {
+        self.named.begin();
         for (f, &s) in self.last.iter().zip(&self.slots) {
             let i = s as usize;
             let power: f64 = (0..D).map(|a| f[a] * v[a][i]).sum();
@@ -197,16 +298,18 @@ impl<const D: usize> ForceField<D> for Load<D> {
             let mut power = 0.0;
             let counts = self.kind.counts(k);
             let own = match &self.kind {
-                LoadKind::Own(force) => {
+                LoadKind::Named(force) => {
                     let point =
                         |c: &Field<D>| std::array::from_fn(|a| c.get(a).map_or(0.0, |c| c[i]));
-                    force.at(&Seen {
+                    let seen = Seen {
                         reference: self.points[k],
                         displacement: point(u),
                         velocity: point(v),
                         time: t,
+                        step: at.led_here(),
                         density: body.density.at(i),
-                    })
+                    };
+                    self.named.answer(force.as_ref(), k, &seen, at)
                 }
                 LoadKind::Body(_)
                 | LoadKind::Damping(_)
@@ -238,7 +341,7 @@ impl<const D: usize> ForceField<D> for Load<D> {
                     }
                     LoadKind::Replace(_) => 0.0,
                     LoadKind::Drag(gamma) => -gamma[k] * v[a][i],
-                    LoadKind::Own(_) => own[a],
+                    LoadKind::Named(_) => own[a],
                 };
                 f[a][i] += added;
                 self.last[k][a] = added;
@@ -249,6 +352,7 @@ impl<const D: usize> ForceField<D> for Load<D> {
     }
 
     fn depart(&mut self, _: &Field<D>, pressed: Pressed) {
+        self.named.begin();
         match pressed {
             Pressed::Now => self.departed.clone_from(&self.last),
             // whoever makes increments counts the work of all loads
@@ -267,7 +371,9 @@ impl<const D: usize> ForceField<D> for Load<D> {
     }
 
     /// The next evaluation finds its force anew.
-    fn retreat(&mut self) {}
+    fn retreat(&mut self) {
+        self.named.memory.copy_from_slice(&self.named.began);
+    }
 
     /// It acts wherever its points are.
     fn moved(&mut self, _: f64) {}
@@ -282,6 +388,9 @@ impl<const D: usize> ForceField<D> for Load<D> {
             return condensed.pick(&kept);
         }
         self.points = kept.iter().map(|k| self.points[*k]).collect();
+        if let LoadKind::Named(_) = &self.kind {
+            self.named.retain(&kept);
+        }
         if let LoadKind::Drag(gamma) = &mut self.kind {
             *gamma = kept.iter().map(|k| gamma[*k]).collect();
         }

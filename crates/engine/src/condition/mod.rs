@@ -9,7 +9,7 @@ pub mod driven;
 pub(crate) mod force_field;
 pub mod indenter;
 pub mod load;
-pub mod own;
+pub mod point_force;
 pub(crate) mod prescribed;
 pub(crate) mod prescribed_motion;
 pub mod reaction;

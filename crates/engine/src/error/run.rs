@@ -252,6 +252,7 @@ fn shorter(error: &SolveError) -> &'static str {
         | SolveError::StillBreaking { .. }
         | SolveError::Contact
         | SolveError::NoTangent { .. }
+        | SolveError::PointStiffness
         | SolveError::NothingBreaks
         | SolveError::NotFinite
         | SolveError::NothingOpens

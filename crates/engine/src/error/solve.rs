@@ -57,6 +57,10 @@ pub enum SolveError {
     Contact,
     #[error("{what} has no tangent here: the explicit integrator knows it")]
     NoTangent { what: &'static str },
+    #[error(
+        "a force on points changes with their displacements, and modes are those of bonds alone: leave it out"
+    )]
+    PointStiffness,
     #[error("under this load no bond comes near to its critical stretch: nothing is left to break")]
     NothingBreaks,
     #[error(

@@ -30,6 +30,15 @@ impl Evaluation {
         }
     }
 
+    /// The step of any kind whose end this is, or may be (time); 0 where none led here.
+    pub fn led_here(self) -> f64 {
+        match self {
+            Evaluation::StepEnd { dt } => dt,
+            Evaluation::Trial { step } => step,
+            Evaluation::Start { .. } => 0.0,
+        }
+    }
+
     /// The explicit step that ends (time); 0 where none does, and velocities are those of the state.
     pub fn ended(self) -> f64 {
         match self {

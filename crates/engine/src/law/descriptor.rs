@@ -9,7 +9,7 @@ use crate::quantity::rounded;
 use crate::spec::{Influence, LawSpec, Moduli, Parameter, Parameters, Plane};
 use std::borrow::Cow;
 
-/// A law as its users see it.
+/// A law, or what else a spec names, as its users see it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Descriptor {
     /// Lower case with underscores; the same in decks and programs.
@@ -357,6 +357,11 @@ impl Descriptor {
     /// # Errors
     /// The key that does not fit, and why.
     pub fn check(&self, parameters: &mut Parameters) -> Result<(), Wrong> {
+        self.check_of("law", parameters)
+    }
+
+    /// The same of something else that is called `what`.
+    pub(crate) fn check_of(&self, what: &str, parameters: &mut Parameters) -> Result<(), Wrong> {
         for (name, given) in &parameters.0 {
             let wrong = |message: String| (name.clone(), message);
             match self.key(name) {
@@ -364,8 +369,8 @@ impl Descriptor {
                     let known: Vec<&str> = self.taken().map(|k| k.name).collect();
                     let known = known.join(", ");
                     return Err(wrong(format!(
-                        "the law {} has no key `{name}`; it has {known}",
-                        self.name
+                        "the {} {} has no key `{name}`; it has {known}",
+                        what, self.name
                     )));
                 }
                 Some(key) if key.need == Need::Refused => {
@@ -401,7 +406,7 @@ impl Descriptor {
             }
             let default = match key.need {
                 Need::Given => {
-                    let message = format!("the law {} needs `{}`", self.name, key.name);
+                    let message = format!("the {} {} needs `{}`", what, self.name, key.name);
                     return Err((key.name.into(), message));
                 }
                 Need::Optional | Need::OneOf | Need::TwoOf | Need::Refused => continue,

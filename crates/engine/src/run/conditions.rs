@@ -10,11 +10,13 @@ use crate::condition::condensed::Condensed;
 use crate::condition::constraint::{Constraint, Kind};
 use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
+use crate::condition::point_force::Placed;
 use crate::error::BuildError;
 use crate::expression::Expression;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::spec::{Carriers, ConditionKind, ConditionSpec, IndenterSpec};
+use crate::space::Point;
+use crate::spec::{Carriers, ConditionKind, ConditionSpec, ForceSpec, IndenterSpec};
 use std::collections::HashMap;
 
 /// Times up to the end at which a load is looked at.
@@ -27,7 +29,7 @@ fn density(kind: &ConditionKind) -> Option<(&[Option<Expression>; 3], Option<Opt
         ConditionKind::Traction { value, area } => Some((value, Some(*area))),
         ConditionKind::SetForce(_)
         | ConditionKind::Damping(_)
-        | ConditionKind::Own(_)
+        | ConditionKind::Force(_)
         | ConditionKind::Displacement(_)
         | ConditionKind::Velocity(_) => None,
     }
@@ -106,6 +108,29 @@ impl<const D: usize> Names<D> {
         Ok(load)
     }
 
+    /// A force of the shelf on these points: what it adds, and what of it resists velocities.
+    fn force(
+        &self,
+        body: &Body<D>,
+        force: &ForceSpec,
+        slots: &[u32],
+        points: &[Point],
+    ) -> Result<impl Iterator<Item = LoadKind<D>> + use<D>, BuildError> {
+        let density = slots.iter().map(|s| body.density.at(*s as usize));
+        let on = Placed {
+            dimension: D,
+            points,
+            density: &density.collect::<Vec<_>>(),
+            spacing: body.spacing,
+        };
+        let made = self.shelf.force(force, &on)?;
+        let viscosity = (0..points.len()).map(|k| [Some(made.viscosity(k)), None, None]);
+        let viscosity: Vec<_> = viscosity.collect();
+        let resists = viscosity.iter().any(|c| c[0] != Some(0.0));
+        let resists = resists.then(|| LoadKind::Damping(Program::listed(&viscosity)));
+        Ok([LoadKind::Named(made)].into_iter().chain(resists))
+    }
+
     /// All that acts, and constraints.
     pub(super) fn acting(
         &self,
@@ -152,9 +177,11 @@ impl<const D: usize> Names<D> {
                     &[Some(e.clone()), None, None],
                     &points,
                 )))),
-                ConditionKind::Own(name) => {
+                ConditionKind::Force(force) => {
                     let path = format!("conditions[{n}]");
-                    loads.push(load(LoadKind::Own(self.shelf.force(name, &path)?)))
+                    let made = self.force(body, force, &slots, &points);
+                    let made = made.map_err(|e| e.within(&path))?;
+                    loads.extend(made.map(load));
                 }
                 ConditionKind::Traction { value, area } => {
                     let areas = { self.faces.areas(body, &c.set, &slots, *area) }

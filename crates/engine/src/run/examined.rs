@@ -5,6 +5,7 @@ use super::model::Model;
 use super::system::System;
 use super::{AtomBond, Examined, Families, ModeShape};
 use crate::body::zeros;
+use crate::condition::load::Load;
 use crate::error::{RunError, SolveError};
 use crate::interaction::Sweep;
 use crate::observe::{Observed, PointForce, State};
@@ -69,6 +70,11 @@ impl<const D: usize> Examined for Model<D> {
     }
 
     fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError> {
+        // the linear body is that of bonds
+        let mut loads = self.system.applied.loads.iter();
+        if loads.any(Load::changes_with_place) {
+            return Err(SolveError::PointStiffness);
+        }
         // of a body that was loaded those of the motion that follows
         let next = self.stages.due(self.system.clock.step());
         let prescribed = next.map_or(&self.system.prescribed, |next| &next.prescribed);

@@ -1,5 +1,6 @@
 //! Initial values, and what is done to points during the run.
 
+use super::Parameters;
 use crate::expression::Expression;
 
 /// Initial values on a set; components are expressions of x, y, z (t = 0); `None` leaves a component.
@@ -43,11 +44,26 @@ pub enum ConditionKind {
     SetForce([Option<Expression>; 3]),
     /// Viscous force density −c v (mass / volume / time).
     Damping(Expression),
-    /// The force of this name on the shelf that the model is built with.
-    Own(String),
+    /// A force of the shelf that the model is built with.
+    Force(ForceSpec),
+}
+
+/// A force of the shelf by its name, with its constants.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ForceSpec {
+    pub name: String,
+    pub parameters: Parameters,
 }
 
 impl ConditionKind {
+    /// A force of the shelf.
+    pub fn force(name: &str, parameters: Parameters) -> ConditionKind {
+        ConditionKind::Force(ForceSpec {
+            name: name.into(),
+            parameters,
+        })
+    }
+
     /// Does any of its expressions?
     pub fn depends_on_time(&self) -> bool {
         match self {
@@ -57,7 +73,7 @@ impl ConditionKind {
             | ConditionKind::Traction { value: all, .. }
             | ConditionKind::SetForce(all) => all.iter().flatten().any(Expression::depends_on_time),
             ConditionKind::Damping(one) => one.depends_on_time(),
-            ConditionKind::Own(_) => true,
+            ConditionKind::Force(_) => true,
         }
     }
 }

@@ -32,7 +32,7 @@ pub use bonds::{
     HealingSpec, PrecrackSpec, ToughnessFactor, ToughnessSpec,
 };
 pub use carriers::Carriers;
-pub use condition::{ConditionKind, ConditionSpec, InitialSpec, ThermalSpec};
+pub use condition::{ConditionKind, ConditionSpec, ForceSpec, InitialSpec, ThermalSpec};
 pub use family::{Calibration, FamilyChoice, Formula, Horizon, Influence};
 pub use indenter::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
 pub use interface::InterfaceSpec;

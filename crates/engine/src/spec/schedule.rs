@@ -145,6 +145,7 @@ impl Default for Statics {
     }
 }
 
+/// How an equilibrium is found. What others ask of a method stands here alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// The equations linear about the reference.
@@ -153,6 +154,54 @@ pub enum Method {
     Newton,
     /// Adaptive dynamic relaxation: contact, and what Newton's method does not find.
     Relaxation,
+    /// The fast inertial relaxation engine: as relaxation, from states far from equilibrium, too.
+    Fire,
+}
+
+impl Method {
+    pub const ALL: [Method; 4] = [
+        Method::Linear,
+        Method::Newton,
+        Method::Relaxation,
+        Method::Fire,
+    ];
+
+    /// Lower case with underscores, as in decks; and in a few words.
+    fn told(self) -> [&'static str; 2] {
+        match self {
+            Method::Linear => ["linear", "linear equations about the reference"],
+            Method::Newton => ["newton", "Newton's method"],
+            Method::Relaxation => ["relaxation", "adaptive dynamic relaxation"],
+            Method::Fire => ["fire", "FIRE (fast inertial relaxation engine)"],
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        self.told()[0]
+    }
+
+    /// In a few words.
+    pub fn words(self) -> &'static str {
+        self.told()[1]
+    }
+
+    /// The customary tolerance: residual force over loads and reactions.
+    pub fn tolerance(self) -> f64 {
+        match self {
+            Method::Linear => 1e-10,
+            Method::Newton => 1e-8,
+            Method::Relaxation | Method::Fire => 1e-6,
+        }
+    }
+
+    /// Does it go downhill by forces alone, without equations? Contact, friction and rigid bodies need no tangent then, and the energy must have a
+    /// meaning.
+    pub fn minimizes(self) -> bool {
+        match self {
+            Method::Linear | Method::Newton => false,
+            Method::Relaxation | Method::Fire => true,
+        }
+    }
 }
 
 /// What says how far an increment goes.

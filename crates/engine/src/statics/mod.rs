@@ -6,13 +6,14 @@
 //! | what does it do to a displacement, with or without a matrix? | [`operator`] |
 //! | is it held? | [`support`] |
 //! | is it elastic? | [`Soundness`] |
-//! | where is it in equilibrium? | [`direct`] (banded in 1-D), [`cg`]; of any law [`relaxation`] |
+//! | where is it in equilibrium? | [`direct`] (banded in 1-D), [`cg`]; of any law [`relaxation`], [`fire`] |
 //! | what do its masses do where they couple points? | [`Masses`] |
 //! | how does it vibrate? | [`modes`] |
 
 pub mod assemble;
 pub mod cg;
 pub mod direct;
+pub mod fire;
 mod masses;
 pub mod modes;
 pub mod operator;

@@ -21,7 +21,7 @@ pub use crack::{BondFactor, FlatShape, Healing, Precrack, Toughness};
 pub use fields::{Centre, Fields, Smooth};
 pub use indenter::{Cohesion, Indenter, Rigid, Rotation};
 pub use influence::InfluenceWritten;
-pub use law::{Given, Law};
+pub use law::{Force, Given, Law, Listed, OfShelf};
 pub use molecules::Molecules;
 pub use names::*;
 pub use output::{Checkpoint, Output, Picture, SpaceTimes};

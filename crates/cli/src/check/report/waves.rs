@@ -3,7 +3,7 @@
 use super::row;
 use crate::check::Findings;
 use crate::numbers::whole;
-use peridyne::spec::{Control, Criterion, Method, Statics, Stepper};
+use peridyne::spec::{Control, Criterion, Statics, Stepper};
 use peridyne_io::deck::{Dim, rounded};
 
 /// How long a run is.
@@ -27,18 +27,14 @@ pub(super) fn increments(control: Control, n: u64) -> &'static str {
 }
 
 fn equilibrium(out: &mut String, name: &str, statics: &Statics, increments: u64) {
-    let how = match statics.method {
-        Method::Linear => "linear about the reference",
-        Method::Newton => "by Newton's method",
-        Method::Relaxation => "by relaxation, which finds its own step",
-    };
     row(
         out,
         name,
         format!(
-            "{} {}, {how}",
+            "{} {}, {}",
             whole(increments),
-            self::increments(statics.control, increments)
+            self::increments(statics.control, increments),
+            statics.method.words()
         ),
     );
 }

@@ -4,6 +4,7 @@ use super::problem::Problem;
 use super::state::StaticState;
 use super::system::Equations;
 use super::tried::{Inertia, Onward};
+use crate::condition::load::Load;
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::spec::LinearBody;
@@ -23,7 +24,7 @@ impl<const D: usize> Problem<'_, D> {
         statics::linear_body_touching(&self.system.body, bonds, contact, &self.system.u)
     }
 
-    /// What indenters resist with at points.
+    /// What indenters and forces on points resist with at points.
     fn pushed(&self) -> Vec<Block<D>> {
         let mut sum = vec![[[0.0; D]; D]; self.system.body.len];
         for indenter in &self.system.applied.rigid {
@@ -35,6 +36,14 @@ impl<const D: usize> Problem<'_, D> {
                 }
             });
         }
+        let system = &self.system;
+        system.applied.each_stiffness(|slot, block| {
+            for a in 0..D {
+                for b in 0..D {
+                    sum[slot][a][b] += system.body.volume.at(slot) * block[a][b];
+                }
+            }
+        });
         self.system.body.by_id(|i| sum[i])
     }
 
@@ -87,9 +96,9 @@ impl<const D: usize> Problem<'_, D> {
         let factors = match &body {
             Some(body) if factored && any => {
                 let support = resisted.as_ref().unwrap_or(support);
-                let made = match inertia {
-                    Some(_) => Direct::against(body, support, &added),
-                    None => Direct::new(body, support, 0.0),
+                let made = match added.is_empty() {
+                    false => Direct::against(body, support, &added),
+                    true => Direct::new(body, support, 0.0),
                 };
                 Some(match made {
                     Err(SolveError::Indefinite { .. })
@@ -179,7 +188,9 @@ impl<const D: usize> Problem<'_, D> {
     /// What inertia and indenters add to the stiffness at points; empty: nothing.
     fn added(&self, inertia: Option<&Inertia<D>>) -> Vec<Block<D>> {
         let Some(inertia) = inertia else {
-            return vec![];
+            // indenters have no place in equilibrium by tangents
+            let any = self.system.applied.loads.iter().any(Load::has_stiffness);
+            return if any { self.pushed() } else { vec![] };
         };
         let both = inertia.added.iter().zip(self.pushed());
         both.map(|(mass, mut block)| {

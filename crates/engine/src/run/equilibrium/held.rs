@@ -5,7 +5,7 @@ use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::error::{Loose, SolveError};
 use crate::fracture::fragments::Fragments;
 use crate::run::system::System;
-use crate::spec::{Method, Statics};
+use crate::spec::Statics;
 use crate::statics::Support;
 
 /// What is free where bonds have broken.
@@ -81,7 +81,7 @@ impl<const D: usize> Problem<'_, D> {
                 });
             }
             // relaxation has no equations: what nothing pulls does not move
-            if options.method == Method::Relaxation {
+            if options.method.minimizes() {
                 continue;
             }
             let places: Vec<[f64; D]> = own.iter().map(|i| places[*i]).collect();

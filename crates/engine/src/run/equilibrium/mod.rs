@@ -86,13 +86,21 @@ impl<const D: usize> System<D> {
             .loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::Replace(_)));
-        let own = |l: &Load<D>| matches!(l.kind, LoadKind::Own(_));
-        if self.applied.loads.iter().any(own) {
+        let unknown =
+            |l: &Load<D>| matches!(l.kind, LoadKind::Named(_)) && l.without_tangent().is_some();
+        if self.applied.loads.iter().any(unknown) {
             return Err(BuildError::unsupported(
                 "conditions",
                 "a force of the program has no tangent, which equilibrium needs",
             )
             .help("take velocity Verlet, or write the force as expressions of x, y, z and t"));
+        }
+        if options.method != Method::Newton && self.applied.loads.iter().any(Load::has_stiffness) {
+            return Err(BuildError::unsupported(
+                "statics.method",
+                "a force that changes with displacements is no load, and Newton's method alone has its stiffness",
+            )
+            .help("write method = \"newton\""));
         }
         let wrong = match (moving, replaced) {
             (true, _) => Some("a prescribed velocity has no meaning in statics"),
@@ -113,13 +121,12 @@ impl<const D: usize> System<D> {
                 .help("prescribe a displacement, as a function of t from 0 to 1"));
         }
         let atoms = |r: &ConstitutiveModel| matches!(r.laws, Laws::Atoms(_));
-        if options.method != Method::Relaxation
+        if !options.method.minimizes()
             && (self.factored(options, &support) || self.constitutive.all().any(atoms))
         {
             self.enough_memory_for_rows()?;
         }
-        if options.method != Method::Relaxation
-            && (self.contact.is_some() || !self.applied.rigid.is_empty())
+        if !options.method.minimizes() && (self.contact.is_some() || !self.applied.rigid.is_empty())
         {
             return Err(BuildError::unsupported(
                 "statics.method",
@@ -135,9 +142,9 @@ impl<const D: usize> System<D> {
                     "conjugate gradients need a symmetric body",
                     "write solver = \"direct\"",
                 )),
-                (_, Method::Relaxation) => Some((
+                (_, Method::Relaxation | Method::Fire) => Some((
                     "statics.method",
-                    "relaxation seeks the least energy",
+                    "this method seeks the least energy",
                     "write method = \"linear\"",
                 )),
                 (Solver::Auto | Solver::Direct, Method::Linear | Method::Newton) => None,
@@ -280,7 +287,7 @@ impl<const D: usize> Problem<'_, D> {
             let solved = match method {
                 Method::Linear => self.solve_linear(state, &support)?,
                 Method::Newton => self.solve_newton(state, &support)?,
-                Method::Relaxation => self.relax(state, &support)?,
+                Method::Relaxation | Method::Fire => self.relax(state, &support)?,
             };
             total.iterations += solved.iterations;
             total.residual = solved.residual;

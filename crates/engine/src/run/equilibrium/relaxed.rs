@@ -1,4 +1,4 @@
-//! How one increment finds its equilibrium by dynamic relaxation, friction included: what presses is held while the points move, and taken anew
+//! How one increment finds its equilibrium by dynamic relaxation or FIRE, friction included: what presses is held while the points move, and taken anew
 //! until nothing moves. Held, friction has a potential; with the pressure of every trial it has none, and points may circle for ever.
 
 use super::problem::Problem;
@@ -7,6 +7,8 @@ use crate::condition::indenter::Indenter;
 use crate::dynamics::stable_step::largest_ratio;
 use crate::error::SolveError;
 use crate::interaction::friction::Friction;
+use crate::spec::Method;
+use crate::statics::fire::minimize;
 use crate::statics::relaxation::relax;
 use crate::statics::{Solved, Support};
 
@@ -55,7 +57,8 @@ impl<const D: usize> Problem<'_, D> {
         for _ in 0..PRESSINGS {
             self.press();
             let mut calls = 0;
-            let solved = relax(&mut x, own.clone(), support, goal, path, |x, f, mass| {
+            let masses = own.clone();
+            let force = |x: &mut [[f64; D]], f: &mut [[f64; D]], mass: &mut [f64]| {
                 let scale = self.imbalance(x, &mut r, support).hypot(reference);
                 if calls % LOOK == 0 {
                     if !repels && self.repels_inside() {
@@ -71,7 +74,13 @@ impl<const D: usize> Problem<'_, D> {
                 f.copy_from_slice(&r);
                 self.weigh(&mut sum, &own, mass);
                 Some(scale)
-            })?;
+            };
+            let solved = match state.options.method {
+                Method::Fire => minimize(&mut x, masses, support, goal, force)?,
+                Method::Linear | Method::Newton | Method::Relaxation => {
+                    relax(&mut x, masses, support, goal, path, force)?
+                }
+            };
             total.iterations += solved.iterations;
             total.residual = solved.residual;
             if solved.iterations == 0 || !self.rubs() {

@@ -116,7 +116,7 @@ impl<const D: usize> System<D> {
             ..PrescribedMotion::default()
         };
         self.agrees(&prescribed, preload.end())?;
-        let knows_contact = statics.method == Method::Relaxation;
+        let knows_contact = statics.method.minimizes();
         let next = Stage {
             stepper: motion,
             begin: preload.increments,

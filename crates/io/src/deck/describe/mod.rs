@@ -9,9 +9,9 @@ use material::{between_atoms, criterion, material, potentials};
 use peridyne::run::Shelf;
 use peridyne::spec::{
     BodySpec, BondFactorSpec, Calibration, Control, Criterion, FamilyChoice, Fold, Horizon,
-    IndenterMotion, Influence, LawSpec, Measure, Method, Part, PieceSpec, Plane, PotentialSpec,
-    ProbeSpec, Release, RigidQuantity, Spec, Statics, Stepper, SurfaceFactor, TimeStep,
-    ToughnessFactor, TransferMethod, TransferSpec,
+    IndenterMotion, Influence, LawSpec, Measure, Part, PieceSpec, Plane, PotentialSpec, ProbeSpec,
+    Release, RigidQuantity, Spec, Statics, Stepper, SurfaceFactor, TimeStep, ToughnessFactor,
+    TransferMethod, TransferSpec,
 };
 use shape::{body, rigid};
 
@@ -349,11 +349,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
 
 /// Increments of load and how each finds its equilibrium.
 fn equilibrium(statics: &Statics, increments: u64, units: UnitSystem) -> String {
-    let method = match statics.method {
-        Method::Linear => "linear equations about the reference",
-        Method::Newton => "Newton's method",
-        Method::Relaxation => "adaptive dynamic relaxation",
-    };
+    let method = statics.method.words();
     let many = match statics.control {
         Control::Load => counted(increments, "increment") + " of load",
         _ if increments == 1 => "1 equilibrium".into(),

@@ -1,6 +1,6 @@
 //! What is done to a body: contact, initial values, conditions.
 
-use super::{Cohesion, Convection, Radiation, Shape, SpeciesExchange, StageName};
+use super::{Cohesion, Convection, Force, Radiation, Shape, SpeciesExchange, StageName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Components, Number, Or, Written};
 use schemars::JsonSchema;
@@ -98,6 +98,8 @@ pub struct Condition {
     /// Viscous force density / velocity.
     #[schemars(extend("dimension" = Dim::DAMPING.name()))]
     pub damping: Option<Number>,
+    /// A force by its name, with its constants.
+    pub force: Option<At<Force>>,
     /// Temperature held there, an expression of x, y, z, t; of [heat], as those that follow.
     #[schemars(extend("dimension" = Dim::TEMPERATURE.name()))]
     pub temperature: Option<Number>,

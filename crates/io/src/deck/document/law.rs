@@ -1,4 +1,4 @@
-//! The law of a material as written: a name of the shelf, and its keys by its descriptor.
+//! What a deck names of the shelf, the law of a material or a force on points: a name, and its keys by its descriptor.
 
 use crate::deck::value::{At, Number, Written};
 use peridyne::columns::Dimension;
@@ -9,12 +9,53 @@ use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, MapAccess, Vi
 use serde_json::json;
 use std::borrow::Cow;
 use std::fmt;
+use std::marker::PhantomData;
 
-/// A law as written.
+/// One of a list of the shelf.
+pub trait Listed {
+    /// `"law"`, the key that takes it.
+    const WHAT: &'static str;
+    /// Who has one of them.
+    const OF: &'static str;
+    const SCHEMA: &'static str;
+    fn all(shelf: &Shelf) -> Vec<&Descriptor>;
+}
+
 #[derive(Debug)]
-pub struct Law {
+pub struct OfMaterials;
+
+impl Listed for OfMaterials {
+    const WHAT: &'static str = "law";
+    const OF: &'static str = "a material";
+    const SCHEMA: &'static str = "Law";
+    fn all(shelf: &Shelf) -> Vec<&Descriptor> {
+        shelf.descriptors().collect()
+    }
+}
+
+#[derive(Debug)]
+pub struct OnPoints;
+
+impl Listed for OnPoints {
+    const WHAT: &'static str = "force";
+    const OF: &'static str = "a condition";
+    const SCHEMA: &'static str = "Force";
+    fn all(shelf: &Shelf) -> Vec<&Descriptor> {
+        shelf.forces().collect()
+    }
+}
+
+/// A law of a material as written.
+pub type Law = OfShelf<OfMaterials>;
+/// A force on points as written.
+pub type Force = OfShelf<OnPoints>;
+
+/// What is named of a list, with its constants.
+#[derive(Debug)]
+pub struct OfShelf<L> {
     pub name: String,
     pub given: Vec<(String, Given)>,
+    list: PhantomData<L>,
 }
 
 #[derive(Debug)]
@@ -25,7 +66,29 @@ pub enum Given {
     Word(At<String>),
 }
 
-impl Law {
+impl<L: Listed> OfShelf<L> {
+    fn new(name: &str, given: Vec<(String, Given)>) -> Self {
+        OfShelf {
+            name: name.into(),
+            given,
+            list: PhantomData,
+        }
+    }
+
+    /// What the shelf says of one of these names.
+    pub fn descriptor<'a>(shelf: &'a Shelf, name: &str) -> Option<&'a Descriptor> {
+        L::all(shelf).into_iter().find(|d| d.name == name)
+    }
+
+    fn unknown<E: Error>(shelf: &Shelf, name: &str) -> E {
+        let known = L::all(shelf).into_iter().map(|d| format!("`{}`", d.name));
+        let known: Vec<String> = known.collect();
+        E::custom(format!(
+            "unknown variant `{name}`, expected one of {}",
+            known.join(", ")
+        ))
+    }
+
     /// The word that a key has.
     pub fn word(&self, key: &str) -> Option<&At<String>> {
         self.given.iter().find_map(|(name, given)| match given {
@@ -40,59 +103,55 @@ fn plain(descriptor: &Descriptor) -> bool {
     descriptor.keys.is_empty()
 }
 
-fn unknown<E: Error>(shelf: &Shelf, name: &str) -> E {
-    let known: Vec<String> = shelf
-        .descriptors()
-        .map(|d| format!("`{}`", d.name))
-        .collect();
-    E::custom(format!(
-        "unknown variant `{name}`, expected one of {}",
-        known.join(", ")
-    ))
-}
-
-impl<'de> Deserialize<'de> for Law {
+impl<'de, L: Listed> Deserialize<'de> for OfShelf<L> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct LawVisitor;
-        impl<'de> Visitor<'de> for LawVisitor {
-            type Value = Law;
+        struct OfShelfVisitor<L>(PhantomData<L>);
+        impl<'de, L: Listed> Visitor<'de> for OfShelfVisitor<L> {
+            type Value = OfShelf<L>;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a law such as { lps = { … } }")
-            }
-            fn visit_str<E: Error>(self, name: &str) -> Result<Law, E> {
                 let shelf = Shelf::standard();
-                match shelf.descriptor(name) {
-                    Some(descriptor) if plain(descriptor) => Ok(Law {
-                        name: name.into(),
-                        given: vec![],
-                    }),
-                    Some(_) => Err(E::custom(format!("the law {name} needs its constants"))),
-                    None => Err(unknown(&shelf, name)),
+                let all = L::all(&shelf);
+                let name = all.iter().map(|d| &*d.name).find(|n| *n == "lps");
+                let name = name.or(all.first().map(|d| &*d.name)).unwrap_or("name");
+                write!(f, "a {} such as {{ {name} = {{ … }} }}", L::WHAT)
+            }
+            fn visit_str<E: Error>(self, name: &str) -> Result<OfShelf<L>, E> {
+                let shelf = Shelf::standard();
+                match OfShelf::<L>::descriptor(&shelf, name) {
+                    Some(descriptor) if plain(descriptor) => Ok(OfShelf::new(name, vec![])),
+                    Some(_) => {
+                        let what = L::WHAT;
+                        Err(E::custom(format!("the {what} {name} needs its constants")))
+                    }
+                    None => Err(OfShelf::<L>::unknown(&shelf, name)),
                 }
             }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Law, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<OfShelf<L>, A::Error> {
+                let what = L::WHAT;
                 let Some(name) = map.next_key::<String>()? else {
-                    return Err(A::Error::custom("a law has a name: { lps = { … } }"));
+                    let message = format!("a {what} has a name: {{ NAME = {{ … }} }}");
+                    return Err(A::Error::custom(message));
                 };
                 let shelf = Shelf::standard();
-                let given = match shelf.descriptor(&name) {
+                let given = match OfShelf::<L>::descriptor(&shelf, &name) {
                     Some(descriptor) if plain(descriptor) => {
-                        return Err(A::Error::custom(
-                            "this law has no constants: write its name alone",
-                        ));
+                        return Err(A::Error::custom(format!(
+                            "this {what} has no constants: write its name alone"
+                        )));
                     }
                     Some(descriptor) => map.next_value_seed(Constants(descriptor))?,
-                    None => return Err(unknown(&shelf, &name)),
+                    None => return Err(OfShelf::<L>::unknown(&shelf, &name)),
                 };
                 match map.next_key::<String>()? {
-                    None => Ok(Law { name, given }),
+                    None => Ok(OfShelf::new(&name, given)),
                     Some(more) => Err(A::Error::custom(format!(
-                        "a material has one law, this has `{name}` and `{more}`"
+                        "{} has one {what}, this has `{name}` and `{more}`",
+                        L::OF
                     ))),
                 }
             }
         }
-        deserializer.deserialize_any(LawVisitor)
+        deserializer.deserialize_any(OfShelfVisitor(PhantomData))
     }
 }
 
@@ -109,7 +168,7 @@ impl<'de> DeserializeSeed<'de> for Constants<'_> {
 impl<'de> Visitor<'de> for Constants<'_> {
     type Value = Vec<(String, Given)>;
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "the constants of the law, {}", self.0.example)
+        write!(f, "its constants, {}", self.0.example)
     }
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut all: Vec<(String, Given)> = vec![];
@@ -155,14 +214,14 @@ impl<'de> Visitor<'de> for Constants<'_> {
     }
 }
 
-impl JsonSchema for Law {
+impl<L: Listed> JsonSchema for OfShelf<L> {
     fn schema_name() -> Cow<'static, str> {
-        "Law".into()
+        L::SCHEMA.into()
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let number = generator.subschema_for::<Written>();
         let shelf = Shelf::standard();
-        let laws = shelf.descriptors().map(|d| {
+        let laws = L::all(&shelf).into_iter().map(|d| {
             let description = d.doc.trim();
             if plain(d) {
                 let source = &d.source;

@@ -3,8 +3,12 @@
 use super::{ControlName, IntegratorName, MeasureName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Vector, Written};
-use schemars::JsonSchema;
+use peridyne::spec::Method;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use serde::de::{Deserializer, Error};
+use serde_json::json;
+use std::borrow::Cow;
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -56,7 +60,7 @@ pub enum ReleaseName {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Statics {
-    /// linear (about the reference) when left out, newton before [run]; newton for large deformation, relaxation for contact.
+    /// linear (about the reference) when left out, newton before [run]; newton for large deformation, relaxation or fire for contact.
     pub method: Option<MethodName>,
     /// load when left out; breaking follows bond after bond, also where load and displacement fall (snap-back), with method = "linear";
     /// opening and arc_length follow softening and large deformation there, with method = "newton".
@@ -104,12 +108,30 @@ pub struct LoadCycles {
     pub most: Option<Number>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum MethodName {
-    Linear,
-    Newton,
-    Relaxation,
+/// A method of the engine's list.
+#[derive(Debug, Clone, Copy)]
+pub struct MethodName(pub Method);
+
+impl<'de> Deserialize<'de> for MethodName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let found = Method::ALL.into_iter().find(|m| m.name() == name);
+        found.map(MethodName).ok_or_else(|| {
+            let known = Method::ALL.map(|m| format!("`{}`", m.name())).join(", ");
+            D::Error::custom(format!("unknown variant `{name}`, expected one of {known}"))
+        })
+    }
+}
+
+impl JsonSchema for MethodName {
+    fn schema_name() -> Cow<'static, str> {
+        "MethodName".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let each = Method::ALL
+            .map(|m| json!({ "type": "string", "const": m.name(), "description": m.words() }));
+        json_schema!({ "oneOf": each })
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]

@@ -1,14 +1,14 @@
 //! A written law as a law: its keys by its descriptor.
 
 use super::context::{Context, Result};
-use crate::deck::document::{Given, Law};
+use crate::deck::document::{Force, Given, Law, Listed, OfShelf};
 use crate::deck::error::DeckError;
 use crate::deck::value::{At, Number};
 use peridyne::columns::Dimension;
 use peridyne::error::BuildError;
 use peridyne::law::descriptor::{Key, Value};
 use peridyne::run::Shelf;
-use peridyne::spec::{LawSpec, NamedLaw, Parameter, Parameters};
+use peridyne::spec::{ForceSpec, LawSpec, NamedLaw, Parameter, Parameters};
 use std::ops::Range;
 
 /// A law whose keys were read.
@@ -24,15 +24,34 @@ pub(super) fn read<'a>(
     written: &'a At<Law>,
     file: impl Fn(&At<String>, &Key) -> Result<Parameter>,
 ) -> Result<ReadLaw<'a>> {
-    let shelf = Shelf::standard();
+    let law = NamedLaw {
+        name: written.value.name.clone(),
+        parameters: constants(context, written, file)?,
+        linear: None,
+        isotropic: true,
+    };
+    Ok(ReadLaw {
+        written,
+        law,
+        shelf: Shelf::standard(),
+    })
+}
+
+/// Reads the keys of what a deck names of the shelf.
+fn constants<L: Listed>(
+    context: &Context,
+    written: &At<OfShelf<L>>,
+    file: impl Fn(&At<String>, &Key) -> Result<Parameter>,
+) -> Result<Parameters> {
+    let (shelf, what) = (Shelf::standard(), L::WHAT);
     let name = &written.value.name;
-    let Some(descriptor) = shelf.descriptor(name) else {
-        return Err(context.error(&written.span, format!("there is no law named {name}")));
+    let Some(descriptor) = OfShelf::<L>::descriptor(&shelf, name) else {
+        return Err(context.error(&written.span, format!("there is no {what} named {name}")));
     };
     let mut parameters = Parameters::default();
     for (name, given) in &written.value.given {
         let Some(key) = descriptor.key(name) else {
-            let message = format!("the law has no key `{name}`");
+            let message = format!("the {what} has no key `{name}`");
             return Err(context.error(&written.span, message));
         };
         let value = match (given, key.value) {
@@ -70,17 +89,21 @@ pub(super) fn read<'a>(
         };
         parameters.set(name, value);
     }
-    let law = NamedLaw {
-        name: name.clone(),
-        parameters,
-        linear: None,
-        isotropic: true,
+    Ok(parameters)
+}
+
+/// A force on points, whose constants were looked at.
+pub(super) fn force(context: &Context, written: &At<Force>) -> Result<ForceSpec> {
+    let none =
+        |file: &At<String>, _: &Key| Err(context.error(&file.span, "a force reads no files"));
+    let mut force = ForceSpec {
+        name: written.value.name.clone(),
+        parameters: constants(context, written, none)?,
     };
-    Ok(ReadLaw {
-        written,
-        law,
-        shelf,
-    })
+    let shelf = Shelf::standard();
+    let checked = shelf.check_force(&mut force);
+    checked.map_err(|e| refused(context, written, &shelf, &e))?;
+    Ok(force)
 }
 
 type Column = (&'static str, Dimension, peridyne::law::descriptor::Bounds);
@@ -128,17 +151,23 @@ impl ReadLaw<'_> {
 }
 
 /// What is wrong with a key of a law, or with all of them.
-fn refused(context: &Context, written: &At<Law>, shelf: &Shelf, error: &BuildError) -> DeckError {
+fn refused<L: Listed>(
+    context: &Context,
+    written: &At<OfShelf<L>>,
+    shelf: &Shelf,
+    error: &BuildError,
+) -> DeckError {
     let law = &written.value;
     let given = law.given.iter().find(|(name, _)| *name == error.path);
     let message = &*error.message;
     let span = given.map_or(&written.span, |(_, given)| given.span());
-    match shelf
-        .descriptor(&law.name)
-        .filter(|d| !d.example.is_empty())
-    {
+    match OfShelf::<L>::descriptor(shelf, &law.name).filter(|d| !d.example.is_empty()) {
         Some(d) => {
-            let help = format!("write for example law = {{ {} = {} }}", d.name, d.example);
+            let what = L::WHAT;
+            let help = format!(
+                "write for example {what} = {{ {} = {} }}",
+                d.name, d.example
+            );
             context.error_with(span, message, help)
         }
         None => context.error(span, message),

@@ -2,6 +2,7 @@
 
 use super::Files;
 use super::context::{Context, Result};
+use super::law::force;
 use super::region::region;
 use super::transfer::{self, Said};
 use crate::deck::document::{
@@ -130,8 +131,11 @@ pub(super) fn condition(
     if let Some(v) = &c.damping {
         kinds.push(ConditionKind::Damping(context.expression(v, Dim::DAMPING)?));
     }
+    if let Some(written) = &c.force {
+        kinds.push(ConditionKind::Force(force(context, written)?));
+    }
     if kinds.is_empty() && exchanged.len() == already {
-        let message = "a condition needs one of displacement, velocity, body_force, traction, damping, temperature, heat_flux, heat_source, convection, radiation, concentration, species_flux, species_source, species_exchange";
+        let message = "a condition needs one of displacement, velocity, body_force, traction, damping, force, temperature, heat_flux, heat_source, convection, radiation, concentration, species_flux, species_source, species_exchange";
         return Err(context.error(&at.span, message));
     }
     Ok(kinds

@@ -84,17 +84,11 @@ fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<Ru
     let method = match written.method {
         None if matches!(control, Control::Opening(_) | Control::ArcLength(_)) => Method::Newton,
         None => usual,
-        Some(MethodName::Linear) => Method::Linear,
-        Some(MethodName::Newton) => Method::Newton,
-        Some(MethodName::Relaxation) => Method::Relaxation,
+        Some(MethodName(method)) => method,
     };
     let tolerance = match &written.tolerance {
         Some(number) => context.positive(number, Dim::NUMBER, "the tolerance")?,
-        None => match method {
-            Method::Linear => 1e-10,
-            Method::Newton => 1e-8,
-            Method::Relaxation => 1e-6,
-        },
+        None => method.tolerance(),
     };
     let increments = written.increments.as_ref().map_or(1, |n| n.value);
     let modes = written.modes.as_ref().map_or(0, |n| n.value);

@@ -76,7 +76,7 @@ pub(super) fn of_time(condition: &ConditionSpec) -> bool {
         | ConditionKind::SetForce(e) => depends(e),
         ConditionKind::Traction { value, .. } => depends(value),
         ConditionKind::Damping(e) => e.depends_on_time(),
-        ConditionKind::Own(_) => false,
+        ConditionKind::Force(_) => false,
     }
 }
 

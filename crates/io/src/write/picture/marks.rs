@@ -119,7 +119,7 @@ fn made(condition: &ConditionSpec, (point, at): (usize, Point), end: f64) -> Opt
         ConditionKind::BodyForce(v) => ("body force", Dimension::FORCE_DENSITY, v),
         ConditionKind::SetForce(v) => ("force density", Dimension::FORCE_DENSITY, v),
         ConditionKind::Traction { value: v, .. } => ("traction", Dimension::PRESSURE, v),
-        ConditionKind::Damping(_) | ConditionKind::Own(_) => return None,
+        ConditionKind::Damping(_) | ConditionKind::Force(_) => return None,
     };
     let holds = matches!(
         condition.kind,

@@ -47,7 +47,7 @@ pub fn alone(spec: &Spec) -> Spec {
         | ConditionKind::Velocity(_)
         | ConditionKind::SetForce(_)
         | ConditionKind::Damping(_)
-        | ConditionKind::Own(_) => false,
+        | ConditionKind::Force(_) => false,
     });
     spec.probes.retain(|p| match p.measure {
         Measure::Energy | Measure::Over { .. } | Measure::Value { .. } => true,

@@ -7,7 +7,7 @@ pub(crate) use atoms::{AnyPotentials, Neighbours};
 pub(super) use materials::chosen;
 pub(crate) use materials::{Chosen, Place, Softens};
 
-use crate::condition::own::{OwnForce, Seen};
+use crate::condition::point_force::{self, OfFunction, Placed, PointForce, Seen};
 use crate::error::BuildError;
 use crate::law::descriptor::{Descriptor, Shelved, Wrong};
 use crate::law::fan;
@@ -18,7 +18,7 @@ use crate::observe::Observable;
 use crate::observe::observables;
 use crate::space::Point;
 use crate::space::lattice::LatticeKind;
-use crate::spec::{LawSpec, NamedLaw, Parameters, Spec};
+use crate::spec::{ForceSpec, LawSpec, NamedLaw, Parameters, Spec};
 use atoms::Atoms;
 use materials::Materials;
 use std::sync::Arc;
@@ -41,12 +41,20 @@ enum Runs {
     Atoms(Atoms),
 }
 
-/// All that a spec can name: laws, potentials, observables, and forces that a program brings along.
+/// A force on the shelf.
+struct Force {
+    descriptor: Descriptor,
+    make: Box<MakeForce>,
+}
+
+type MakeForce = dyn Fn(&Parameters, &Placed) -> Result<Arc<dyn PointForce>, Wrong> + Send + Sync;
+
+/// All that a spec can name: laws, potentials, observables, and forces on points.
 #[derive(Clone)]
 pub struct Shelf {
     entries: Vec<Arc<Entry>>,
     observables: Vec<&'static Observable>,
-    forces: Vec<(String, OwnForce)>,
+    forces: Vec<Arc<Force>>,
 }
 
 impl Default for Shelf {
@@ -102,6 +110,15 @@ impl material::Kinds for Shelf {
     }
 }
 
+impl point_force::Kinds for Shelf {
+    fn force<F: point_force::Described>(&mut self) {
+        let make = |p: &Parameters, on: &Placed| -> Result<Arc<dyn PointForce>, Wrong> {
+            Ok(Arc::new(F::new(p, on)?))
+        };
+        self.put_force(F::descriptor(), Box::new(make));
+    }
+}
+
 impl linear::Laws for Shelf {
     fn linear<L: Linear>(&mut self) {
         let runs = Runs::Linear {
@@ -124,6 +141,7 @@ impl Shelf {
         potential::each(&mut shelf);
         fan::each(&mut shelf);
         material::each(&mut shelf);
+        point_force::each(&mut shelf);
         shelf
     }
 
@@ -159,16 +177,34 @@ impl Shelf {
         self
     }
 
-    /// The same of a force (force / volume) on the points of a set, for [`ConditionKind::Own`](crate::spec::ConditionKind::Own). Its
-    /// work is accounted for. What it does to the stability of explicit steps, the engine does not know.
-    pub fn with_force(
+    /// The same of a force on the points of a set, for [`ConditionKind::Force`](crate::spec::ConditionKind::Force).
+    pub fn with_force<F: point_force::Described>(mut self) -> Shelf {
+        point_force::Kinds::force::<F>(&mut self);
+        self
+    }
+
+    /// The same of a force (force / volume) that is a function of what it sees. Its work is accounted for. What it does to the stability of
+    /// explicit steps, the engine does not know.
+    pub fn with_force_of(
         mut self,
-        name: &str,
+        name: &'static str,
         force: impl Fn(&Seen) -> Point + Send + Sync + 'static,
     ) -> Shelf {
-        self.forces.retain(|(n, _)| n != name);
-        self.forces.push((name.into(), OwnForce::new(force)));
+        let force: Arc<dyn PointForce> = Arc::new(OfFunction(force));
+        let make = move |_: &Parameters, _: &Placed| Ok(force.clone());
+        let doc = "A force of the program.";
+        self.put_force(Descriptor::new(name, doc), Box::new(make));
         self
+    }
+
+    fn put_force(&mut self, descriptor: Descriptor, make: Box<MakeForce>) {
+        self.forces.retain(|f| f.descriptor.name != descriptor.name);
+        self.forces.push(Arc::new(Force { descriptor, make }));
+    }
+
+    /// What the forces on points say of themselves.
+    pub fn forces(&self) -> impl Iterator<Item = &Descriptor> {
+        self.forces.iter().map(|f| &f.descriptor)
     }
 
     /// All observables, in the order in which they are listed.
@@ -182,13 +218,40 @@ impl Shelf {
         all.find(|o| o.declaration.name == name)
     }
 
-    pub(crate) fn force(&self, name: &str, path: &str) -> Result<OwnForce, BuildError> {
-        let found = self.forces.iter().find(|(n, _)| n == name);
-        found.map(|(_, force)| force.clone()).ok_or_else(|| {
-            let message = format!("there is no force named {name} on the shelf");
-            BuildError::unknown(path, name, message)
-                .help("put it there: Shelf::standard().with_force(..)")
+    fn force_of(&self, name: &str) -> Result<&Force, BuildError> {
+        let found = self.forces.iter().find(|f| f.descriptor.name == name);
+        found.map(Arc::as_ref).ok_or_else(|| {
+            let known: Vec<&str> = self.forces().map(|d| d.name.as_ref()).collect();
+            let known = known.join(", ");
+            let message = format!("there is no force named {name}; the shelf has {known}");
+            BuildError::unknown("", name, message)
+                .help("put it there: Shelf::standard().with_force::<..>()")
         })
+    }
+
+    /// Do its constants fit a force? Defaults are filled in.
+    ///
+    /// # Errors
+    /// There is none of this name, or constants that do not fit it; the path is the constant that is wrong, empty if it is not one alone.
+    pub fn check_force(&self, force: &mut ForceSpec) -> Result<(), BuildError> {
+        let descriptor = &self.force_of(&force.name)?.descriptor;
+        let checked = descriptor.check_of("force", &mut force.parameters);
+        checked.map_err(|(key, message)| BuildError::invalid(key, message))
+    }
+
+    /// A force of a spec, for the points of its set.
+    ///
+    /// # Errors
+    /// As of [`Shelf::check_force`], and what does not fit these points.
+    pub(crate) fn force(
+        &self,
+        force: &ForceSpec,
+        on: &Placed,
+    ) -> Result<Arc<dyn PointForce>, BuildError> {
+        let mut force = force.clone();
+        self.check_force(&mut force)?;
+        let made = (self.force_of(&force.name)?.make)(&force.parameters, on);
+        made.map_err(|(key, message)| BuildError::invalid(key, message))
     }
 
     fn put(&mut self, descriptor: Descriptor, runs: Runs) {
