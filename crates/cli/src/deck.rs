@@ -6,7 +6,7 @@ use crate::numbers::{memory, whole};
 use peridyne::execute::simd::Simd;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::{Info, Options, Simulation, TransferInfo, build};
-use peridyne::spec::{Spec, Stepper, TransferMethod};
+use peridyne::spec::{Spec, TransferMethod};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use peridyne_io::read::{encoding, source};
 
@@ -214,23 +214,7 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         rounded(i.family.1, 4),
         i.family_kind,
         units.show(i.horizon, Dim::LENGTH),
-        match i.stepper {
-            Stepper::Statics(_) => String::new(),
-            Stepper::Still => format!(
-                "\nstep      {}, no point moves",
-                units.show(i.time_step, Dim::TIME)
-            ),
-            Stepper::Verlet => format!(
-                "\nstep      {}, stable up to {}",
-                units.show(i.time_step, Dim::TIME),
-                units.show(i.stable_step, Dim::TIME)
-            ),
-            Stepper::Newmark(_) => format!(
-                "\nstep      {}, implicit (explicit ones are stable up to {})",
-                units.show(i.time_step, Dim::TIME),
-                units.show(i.stable_step, Dim::TIME)
-            ),
-        },
+        step(i, units),
         memory(bytes),
         bytes / i.points.max(1) as f64,
         i.simd,
@@ -256,4 +240,17 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         text += &format!("\nwarning: {}", units.tell(w));
     }
     text
+}
+
+/// How long a step is, and how long it may be.
+fn step(info: &Info, units: UnitSystem) -> String {
+    let [step, stable] = [info.time_step, info.stable_step].map(|t| units.show(t, Dim::TIME));
+    match info.stepper {
+        _ if info.stepper.statics().is_some() => String::new(),
+        stepper if stepper.rests() => format!("\nstep      {step}, no point moves"),
+        stepper if stepper.solves() => {
+            format!("\nstep      {step}, implicit (explicit ones are stable up to {stable})")
+        }
+        _ => format!("\nstep      {step}, stable up to {stable}"),
+    }
 }

@@ -28,7 +28,7 @@ use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::marks::Marks;
 use peridyne_io::write::picture::shown::{About, component_of};
-use peridyne_io::write::run_json::{MarkNotes, Status};
+use peridyne_io::write::run_json::{MarkNotes, RunReport, Status};
 use peridyne_io::write::space_time::DENSITY;
 use std::path::PathBuf;
 
@@ -201,42 +201,48 @@ pub fn run_deck(
     let result = drive(sim.as_mut(), &plan, &mut progress, from);
     progress.end();
     match result {
-        Ok(done) => {
-            say(&format!(
-                "{}: {} in {:.2} s{}{}",
-                done.outcome(),
-                counted(done.steps, "step"),
-                done.seconds_stepping,
-                done.ns_per_bond_step.map_or(String::new(), |ns| format!(
-                    ", {ns:.2} ns per bond and step"
-                )),
-                match done.fragments {
-                    Some(fragments) => format!(
-                        ", {} broken, {}",
-                        counted(done.broken_directed_bonds, "directed bond"),
-                        counted(fragments, "fragment")
-                    ),
-                    None => String::new(),
-                },
-            ));
-            say(&done.seconds.told(done.seconds_stepping));
-            for picture in &done.pictures {
-                say(&format!("picture: {}", plan.dir.join(picture).display()));
-            }
-            if plan.report {
-                say(&report::told(&plan.dir));
-            }
-            say(&report::state(done.hash));
-            if done.status == Status::Ended {
-                say(&format!("go on:    peridyne resume {}", plan.dir.display()));
-            }
-            match signals::received() {
-                Some(signal) if done.status == Status::Ended => Err(Failure::Ended(signal)),
-                _ => Ok(()),
-            }
-        }
+        Ok(done) => ended(&done, &plan),
         Err(DriveError::Resume(e)) => Err(Failure::input(e.to_string())),
         Err(e) => Err(Failure::Run(e.to_string())),
+    }
+}
+
+/// Says what a run has done and where its results are.
+///
+/// # Errors
+/// A signal has ended it.
+fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
+    say(&format!(
+        "{}: {} in {:.2} s{}{}",
+        done.outcome(),
+        counted(done.steps, "step"),
+        done.seconds_stepping,
+        done.ns_per_bond_step.map_or(String::new(), |ns| format!(
+            ", {ns:.2} ns per bond and step"
+        )),
+        match done.fragments {
+            Some(fragments) => format!(
+                ", {} broken, {}",
+                counted(done.broken_directed_bonds, "directed bond"),
+                counted(fragments, "fragment")
+            ),
+            None => String::new(),
+        },
+    ));
+    say(&done.seconds.told(done.seconds_stepping));
+    for picture in &done.pictures {
+        say(&format!("picture: {}", plan.dir.join(picture).display()));
+    }
+    if plan.report {
+        say(&report::told(&plan.dir));
+    }
+    say(&report::state(done.hash));
+    if done.status == Status::Ended {
+        say(&format!("go on:    peridyne resume {}", plan.dir.display()));
+    }
+    match signals::received() {
+        Some(signal) if done.status == Status::Ended => Err(Failure::Ended(signal)),
+        _ => Ok(()),
     }
 }
 

@@ -160,6 +160,7 @@ fn methods_agree_where_strains_are_small() {
                 (Method::Newton, Solver::Direct, 1e-7, 1e-7),
                 (Method::Newton, Solver::ConjugateGradients, 1e-7, 1e-6),
                 (Method::Relaxation, Solver::Auto, 1e-7, 1e-5),
+                (Method::Fire, Solver::Auto, 1e-7, 1e-5),
             ] {
                 let mut sim = solved(&with(&spec, method, solver, tolerance));
                 for (u, r) in sim.displacements().iter().zip(&reference) {
@@ -180,6 +181,7 @@ fn newton_and_relaxation_agree_where_strains_are_large() {
     let spec = clamped(2, LawSpec::Pmb(PmbStiffness::Young(2.0)), 0.4);
     let mut newton = solved(&with(&spec, Method::Newton, Solver::Auto, 1e-12));
     let mut relaxed = solved(&with(&spec, Method::Relaxation, Solver::Auto, 1e-10));
+    let mut fire = solved(&with(&spec, Method::Fire, Solver::Auto, 1e-10));
     let mut linear = solved(&with(&spec, Method::Linear, Solver::Auto, 1e-10));
     let apart = |a: &mut dyn Simulation, b: &mut dyn Simulation| {
         let pairs = a.displacements().into_iter().zip(b.displacements());
@@ -188,6 +190,7 @@ fn newton_and_relaxation_agree_where_strains_are_large() {
             .fold(0.0, f64::max)
     };
     assert!(apart(newton.as_mut(), relaxed.as_mut()) < 1e-8);
+    assert!(apart(newton.as_mut(), fire.as_mut()) < 1e-8);
     assert!(apart(newton.as_mut(), linear.as_mut()) > 1e-3);
     assert!(
         linear

@@ -244,6 +244,38 @@ impl Fields {
         }
     }
 
+    /// Fields of the parts of the potential, where they are kept apart.
+    #[inline]
+    fn put_parts(&mut self, layout: &Layout, bonds: &[f64], own: &[f64], velocity: [f64; 3]) {
+        for (k, part) in self.parts.iter_mut().enumerate() {
+            let b = &bonds[k * BOND..][..BOND];
+            part.stress.extend_from_slice(&b[..9]);
+            part.churning.extend_from_slice(&b[12..]);
+            part.energy.push(own[2 + k]);
+            if layout.moving {
+                part.heat.extend(heat(b, velocity));
+            }
+        }
+    }
+
+    /// `∂(ρy)/∂t = Σ m (v − x_j v·∇)φ`.
+    #[inline]
+    fn coordinate_rate(
+        &self,
+        p: usize,
+        layout: &Layout,
+        momentum: [f64; 3],
+        density: f64,
+        carried: &[f64],
+    ) -> [f64; 3] {
+        std::array::from_fn(|a| match carried.get(a) {
+            Some(carried) if !layout.averaged[a] => {
+                momentum[a] + self.points[p][a] * density + carried
+            }
+            _ => f64::NAN,
+        })
+    }
+
     fn point(
         &mut self,
         p: usize,
@@ -274,15 +306,7 @@ impl Fields {
             true => three(rest).map(|p| p / density),
             false => [f64::NAN; 3],
         };
-        for (k, part) in self.parts.iter_mut().enumerate() {
-            let b = &bonds[k * BOND..][..BOND];
-            part.stress.extend_from_slice(&b[..9]);
-            part.churning.extend_from_slice(&b[12..]);
-            part.energy.push(own[2 + k]);
-            if layout.moving {
-                part.heat.extend(heat(b, velocity));
-            }
-        }
+        self.put_parts(layout, bonds, own, velocity);
         let (slopes, moments) = own[layout.width()..].split_at(3 * layout.slopes());
         let place = layout.places.then(|| {
             // y = x − Σ m d φ/ρ
@@ -360,13 +384,7 @@ impl Fields {
         if layout.rates {
             let mut rates = rates(&rest[15..], slopes, drift);
             let carried = moments.get(3 * layout.moments()..).unwrap_or_default();
-            // ∂(ρy)/∂t = Σ m (v − x_j v·∇)φ
-            rates.coordinate = std::array::from_fn(|a| match carried.get(a) {
-                Some(carried) if !layout.averaged[a] => {
-                    momentum[a] + self.points[p][a] * rates.density + carried
-                }
-                _ => f64::NAN,
-            });
+            rates.coordinate = self.coordinate_rate(p, layout, momentum, rates.density, carried);
             self.rates.push(rates);
         }
     }

@@ -27,6 +27,7 @@ pub mod bond;
 mod bonds;
 mod collect;
 pub mod effort;
+mod error;
 pub mod fields;
 pub mod frame;
 mod gauss;
@@ -50,6 +51,7 @@ pub mod sums;
 pub mod targets;
 mod wide;
 
+pub use error::FieldsError;
 pub use fields::{Fields, Quantity};
 pub use frame::{Cell, Frame};
 pub use kernel::{Kernel, Shape};
@@ -57,8 +59,3 @@ pub use method::{Method, Progress};
 pub use partition::{PairForce, Partition};
 pub use sums::evaluate;
 pub use targets::Targets;
-
-/// Why fields cannot be had.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct FieldsError(pub String);

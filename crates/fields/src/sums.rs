@@ -42,17 +42,7 @@ pub fn evaluate(
     method: &Method,
 ) -> Result<Fields, FieldsError> {
     frame.check()?;
-    // particles that are bonded alone feel nobody else
-    let alone = sites.reach() == 0.0 && method.molecules.is_some();
-    let reach = if alone {
-        method.kernel.width()
-    } else {
-        sites.reach()
-    };
-    let mut neighbours = Neighbours::new(frame, reach)?;
-    if let Some(families) = &method.families {
-        neighbours = neighbours.held(families)?;
-    }
+    let neighbours = neighbours(frame, sites, method)?;
     let bonds = bonds_within(frame, sites.reach());
     Effort::of(frame, bonds, sites.reach(), targets, method).check(targets, method)?;
     let mut bins = Bins::new(targets, &frame.cell, &method.kernel)?;
@@ -61,14 +51,7 @@ pub fn evaluate(
     if let Some(molecules) = molecules {
         molecules.check(frame.len(), sites)?;
     }
-    let names = match method.by_part {
-        true => {
-            let bonded = molecules.map_or(&[][..], |m| m.parts());
-            let bonded = bonded.iter().map(|p| p.to_string());
-            sites.parts().into_iter().chain(bonded).collect()
-        }
-        false => vec!["all".to_string()],
-    };
+    let names = names(sites, method);
     let parts = names.len();
     let drift = frame.drift();
     let velocity = frame.velocities_beside(drift);
@@ -115,11 +98,7 @@ pub fn evaluate(
                 let spare = spares.lock().ok().and_then(|mut all| all.pop());
                 let mut room = spare.unwrap_or_default();
                 let mut block = collector.collect(&centres, &mut room)?;
-                let form = match block.churns || method.pair_force == PairForce::Differences {
-                    true => Form::Whole,
-                    false if layout.moving => Form::Moving,
-                    false => Form::Still,
-                };
+                let form = form(&block, &layout, method);
                 room.bonds = std::mem::take(&mut block.bonds);
                 let of = &room.bonds;
                 let sums = accumulate::bonds(&method.kernel, &patch, of, parts, form);
@@ -163,6 +142,48 @@ pub fn evaluate(
         totals,
         own.force,
     ))
+}
+
+/// Who may feel whom.
+fn neighbours<'a>(
+    frame: &'a Frame,
+    sites: &dyn Sites,
+    method: &'a Method,
+) -> Result<Neighbours<'a>, FieldsError> {
+    // particles that are bonded alone feel nobody else
+    let alone = sites.reach() == 0.0 && method.molecules.is_some();
+    let reach = if alone {
+        method.kernel.width()
+    } else {
+        sites.reach()
+    };
+    let neighbours = Neighbours::new(frame, reach)?;
+    match &method.families {
+        Some(families) => neighbours.held(families),
+        None => Ok(neighbours),
+    }
+}
+
+/// Of the parts of the potential that are kept apart.
+fn names(sites: &dyn Sites, method: &Method) -> Vec<String> {
+    match method.by_part {
+        true => {
+            let bonded = method.molecules.as_deref().map_or(&[][..], |m| m.parts());
+            let bonded = bonded.iter().map(|p| p.to_string());
+            sites.parts().into_iter().chain(bonded).collect()
+        }
+        false => vec!["all".to_string()],
+    }
+}
+
+/// What of the bonds of a block is needed.
+#[inline]
+fn form(block: &Block, layout: &Layout, method: &Method) -> Form {
+    match block.churns || method.pair_force == PairForce::Differences {
+        true => Form::Whole,
+        false if layout.moving => Form::Moving,
+        false => Form::Still,
+    }
 }
 
 fn tell(method: &Method, part: f64) {

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use peridyne::error::{RunError, SolveError};
 use peridyne::observe::{Ledger, Snapshot};
 use peridyne::run::Simulation;
-use peridyne::spec::{Control, Stepper};
+use peridyne::spec::Control;
 use peridyne::state::Archive;
 use peridyne_fields::FieldsError;
 
@@ -534,9 +534,10 @@ fn sum_of_body(sim: &mut dyn Simulation) -> u32 {
 
 /// Time of a frame, as a snapshot has it: of loads that may fall the number of the equilibrium.
 fn frame_time(sim: &dyn Simulation) -> f64 {
-    match sim.info().stepper {
-        Stepper::Statics(s) if s.control != Control::Load => sim.step_number() as f64,
-        Stepper::Statics(_) | Stepper::Verlet | Stepper::Newmark(_) | Stepper::Still => sim.clock(),
+    let statics = sim.info().stepper.statics();
+    match statics.is_some_and(|s| s.control != Control::Load) {
+        true => sim.step_number() as f64,
+        false => sim.clock(),
     }
 }
 

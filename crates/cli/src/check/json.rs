@@ -4,7 +4,6 @@ use super::advice::advice;
 use super::continuum::{Found, Seen};
 use super::{Findings, directions, mean};
 use crate::failure::json_text;
-use peridyne::spec::Stepper;
 use peridyne_theory::patch_test::Class;
 use peridyne_theory::voigt::{Stiffness, components};
 use serde_json::{Value, json};
@@ -59,13 +58,7 @@ pub fn write(found: &Findings) -> String {
         "steps": found.steps,
         "increments_before": found.increments,
         "time_step": found.spec.schedule.statics().is_none().then_some(info.time_step),
-        "integrator": match info.stepper {
-            Stepper::Verlet => Some("verlet"),
-            Stepper::Newmark(n) if n.alpha != 0.0 => Some("hht"),
-            Stepper::Newmark(_) => Some("newmark"),
-            Stepper::Still => Some("still"),
-            Stepper::Statics(_) => None,
-        },
+        "integrator": info.stepper.name(),
         "stable_step": info.stable_step,
         "spreads": info.transfers.iter().map(|t| json!({
             "quantity": t.quantity.name(), "diffusivity": t.diffusivity, "stable_step": t.stable_step, "over_the_body": t.spread,

@@ -4,6 +4,7 @@ mod continuum;
 mod loads;
 mod look;
 mod points;
+mod row;
 mod spread;
 mod stiffness;
 mod waves;
@@ -15,15 +16,11 @@ use loads::loads;
 use look::look;
 use peridyne_io::deck::{counted, describe};
 use points::{families, points};
+use row::row;
 use spread::spread;
 use std::fmt::Write;
 use stiffness::stiffness;
 use waves::{contact, fracture, waves};
-
-const AXES: [&str; 3] = ["x", "y", "z"];
-
-/// Width of the names of rows.
-const NAME: usize = 18;
 
 /// What is known at once: what would run, its points and loads.
 pub fn first(found: &Findings) -> String {
@@ -70,11 +67,6 @@ pub fn rest(found: &Findings) -> String {
         }
     }
     out.trim_end().to_string()
-}
-
-fn row(out: &mut String, name: &str, value: impl std::fmt::Display) {
-    // writing to a String cannot fail
-    let _ = writeln!(out, "  {name:NAME$}{value}");
 }
 
 fn cost(found: &Findings) -> String {

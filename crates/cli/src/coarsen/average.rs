@@ -1,6 +1,6 @@
 //! `peridyne coarsen --average`: level 0 of atoms at a temperature, from the frames of a run.
 
-use super::CoarsenArguments;
+use super::arguments::CoarsenArguments;
 use crate::failure::{Failure, note, say};
 use peridyne::observe::{Values, temperature_of};
 use peridyne::run::Simulation;
@@ -42,45 +42,14 @@ pub(super) fn averaged<const D: usize>(
 ) -> Result<(LinearBody<D>, Vec<Point>), Failure> {
     let began = Instant::now();
     let mut run = Run::new(deck, sim, sites, path)?;
-    let skip = arguments.average_skip;
-    let count = Frames::count(path).map_err(|e| Failure::input(e.to_string()))?;
-    if count <= skip {
-        return Err(Failure::input(format!(
-            "--average-skip {skip}: {} has {count} frames",
-            path.display()
-        )));
-    }
-    let numbers = (count - skip) as f64 * (D * sites.points()) as f64;
-    room("what is kept of the frames", COPIES * numbers)
-        .map_err(|e| Failure::input(format!("{}: {e}: give fewer frames", path.display())))?;
-    let mut frames = Frames::open(path).map_err(|e| Failure::input(e.to_string()))?;
-    let mut index = 0;
-    while let Some(atoms) = frames
-        .next_frame()
-        .map_err(|e| Failure::input(e.to_string()))?
-    {
-        if index >= skip {
-            let wrong =
-                |m: String| Failure::input(format!("{}: frame {index}: {m}", path.display()));
-            run.take(&atoms).map_err(wrong)?;
-        }
-        index += 1;
-    }
+    run.take_all(path, arguments.average_skip)?;
     let periods = sites.period.iter().flatten();
     let most = periods.fold(f64::INFINITY, |m, p| m.min(MOST * p));
     let least = LEAST * sites.range();
     let chosen = arguments.average_radius;
     let mut options = thermal::Options {
         radius: chosen.unwrap_or((LONGER * least).min(most).max(least)),
-        symmetry: match arguments.average_symmetry.as_str() {
-            "lattice" => true,
-            "none" => false,
-            other => {
-                return Err(Failure::input(format!(
-                    "--average-symmetry {other}: expected lattice or none"
-                )));
-            }
-        },
+        symmetry: symmetry(arguments)?,
     };
     let n = run.displacement.len() as f64;
     let data = thermal::Frames {
@@ -156,6 +125,17 @@ pub(super) fn averaged<const D: usize>(
         ..made.body
     };
     Ok((body, moved))
+}
+
+/// Are constants alike that the lattice makes alike?
+fn symmetry(arguments: &CoarsenArguments) -> Result<bool, Failure> {
+    match arguments.average_symmetry.as_str() {
+        "lattice" => Ok(true),
+        "none" => Ok(false),
+        other => Err(Failure::input(format!(
+            "--average-symmetry {other}: expected lattice or none"
+        ))),
+    }
 }
 
 fn pad<const D: usize>(x: &[f64; D]) -> Point {
@@ -234,6 +214,34 @@ impl<'a, const D: usize> Run<'a, D> {
             Some(p) => x[a] - p * (x[a] / p).round(),
             None => x[a],
         })
+    }
+
+    /// All frames of a file but the first so many.
+    fn take_all(&mut self, path: &Path, skip: usize) -> Result<(), Failure> {
+        let count = Frames::count(path).map_err(|e| Failure::input(e.to_string()))?;
+        if count <= skip {
+            return Err(Failure::input(format!(
+                "--average-skip {skip}: {} has {count} frames",
+                path.display()
+            )));
+        }
+        let numbers = (count - skip) as f64 * (D * self.sites.points()) as f64;
+        room("what is kept of the frames", COPIES * numbers)
+            .map_err(|e| Failure::input(format!("{}: {e}: give fewer frames", path.display())))?;
+        let mut frames = Frames::open(path).map_err(|e| Failure::input(e.to_string()))?;
+        let mut index = 0;
+        while let Some(atoms) = frames
+            .next_frame()
+            .map_err(|e| Failure::input(e.to_string()))?
+        {
+            if index >= skip {
+                let wrong =
+                    |m: String| Failure::input(format!("{}: frame {index}: {m}", path.display()));
+                self.take(&atoms).map_err(wrong)?;
+            }
+            index += 1;
+        }
+        Ok(())
     }
 
     fn take(&mut self, atoms: &Atoms) -> Result<(), String> {

@@ -2,9 +2,10 @@
 
 mod results;
 
+use super::arguments::CoarsenArguments;
 use super::levels::{Thinning, options, selection, step};
 use super::way::Way;
-use super::{CoarsenArguments, kept, marked, no_faces, prescribes};
+use super::{kept, marked, no_faces, prescribes};
 use crate::deck;
 use crate::failure::{Failure, say};
 use crate::signals;

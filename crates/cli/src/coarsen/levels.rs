@@ -1,8 +1,9 @@
 //! Level after level: made, written, run.
 
+use super::arguments::CoarsenArguments;
+use super::level::{Acting, Level};
 use super::report::{card, record, told, waves_table};
 use super::way::Way;
-use super::{Acting, CoarsenArguments, Level};
 use crate::failure::{Failure, say};
 use crate::side_by_side::{Reference, compare, run, save};
 use peridyne::space::Point;

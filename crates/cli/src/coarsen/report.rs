@@ -1,6 +1,6 @@
 //! What is told and recorded of a level.
 
-use super::Level;
+use super::level::Level;
 use super::way::Way;
 use peridyne::statics::SYMMETRIC;
 use peridyne_io::deck::{Dim, UnitSystem, rounded};

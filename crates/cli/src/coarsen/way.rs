@@ -1,6 +1,6 @@
 //! What the flags of coarsening want.
 
-use super::CoarsenArguments;
+use super::arguments::CoarsenArguments;
 use crate::failure::Failure;
 use peridyne_theory::coarsen::{Mass, Scheme};
 

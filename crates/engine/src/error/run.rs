@@ -94,7 +94,6 @@ pub enum RunError {
 impl RunError {
     /// What happened, with numbers that know what they measure.
     pub fn message(&self) -> Message {
-        let length = |x: f64| Dimension::LENGTH.of(x);
         let point = |step: &u64, id: &u64, x: &[f64; 3]| {
             message![format!("step {step}: point {id} at "), place(x)]
         };
@@ -111,15 +110,7 @@ impl RunError {
                 path,
                 spacing,
                 contact,
-            } => message![
-                point(step, id, position),
-                " would move ",
-                length(*path),
-                " in one step, more than the spacing ",
-                length(*spacing),
-                ": ",
-                blame(*contact, "the run is unstable or the step too long".into()),
-            ],
+            } => too_fast(point(step, id, position), [*path, *spacing], *contact),
             RunError::Density {
                 step,
                 id,
@@ -156,15 +147,7 @@ impl RunError {
                 axis,
                 asked,
                 found,
-            } => message![
-                format!("after {step} increments of statics: motion asks for a displacement of "),
-                length(*asked),
-                format!(" along {axis} at "),
-                place(position),
-                ", where statics left it at ",
-                length(*found),
-                ": prescribe a velocity of 0 to hold a point where it is",
-            ],
+            } => jump(*step, position, axis, [*asked, *found]),
             RunError::Touching { step, pairs } => format!(
                 "after {step} increments of statics, which knew no contact, {pairs} pairs of points touch or attract each other: write method = \"relaxation\" under [statics], or contact = false"
             )
@@ -200,30 +183,14 @@ impl RunError {
                 Dimension::ENERGY.of(*after),
                 " are there; flow or breaking within this increment went further than the law follows: take more increments, or let it break in motion ([run])",
             ],
-            RunError::Made { step, given, made } => message![
-                format!("step {step}: breaking has made "),
-                Dimension::ENERGY.of(*made),
-                " of energy in a body that was given ",
-                Dimension::ENERGY.of(*given),
-                ": its points hold more without the bonds that broke than with them, so what follows is no fracture; take a law whose points lose stiffness then (`correspondence`, `position_aware`), a smaller critical stretch, or less compression beside what breaks",
-            ],
+            RunError::Made { step, given, made } => energy_made(*step, *given, *made),
             RunError::Unstable {
                 step,
                 before,
                 after,
                 time_step,
                 contact,
-            } => message![
-                format!("step {step}: total energy grew from "),
-                Dimension::ENERGY.of(*before),
-                " to ",
-                Dimension::ENERGY.of(*after),
-                " without work: ",
-                blame(
-                    *contact,
-                    message!["the step ", Dimension::TIME.of(*time_step), " is unstable"]
-                ),
-            ],
+            } => grown(*step, [*before, *after], *time_step, *contact),
         }
     }
 }
@@ -235,6 +202,57 @@ impl fmt::Display for RunError {
 }
 
 impl std::error::Error for RunError {}
+
+/// A `path` of one step that is longer than the spacing.
+fn too_fast(point: Message, [path, spacing]: [f64; 2], contact: Option<f64>) -> Message {
+    message![
+        point,
+        " would move ",
+        Dimension::LENGTH.of(path),
+        " in one step, more than the spacing ",
+        Dimension::LENGTH.of(spacing),
+        ": ",
+        blame(contact, "the run is unstable or the step too long".into()),
+    ]
+}
+
+/// Motion that does not begin where statics ended.
+fn jump(step: u64, position: &[f64; 3], axis: &str, [asked, found]: [f64; 2]) -> Message {
+    message![
+        format!("after {step} increments of statics: motion asks for a displacement of "),
+        Dimension::LENGTH.of(asked),
+        format!(" along {axis} at "),
+        place(position),
+        ", where statics left it at ",
+        Dimension::LENGTH.of(found),
+        ": prescribe a velocity of 0 to hold a point where it is",
+    ]
+}
+
+fn energy_made(step: u64, given: f64, made: f64) -> Message {
+    message![
+        format!("step {step}: breaking has made "),
+        Dimension::ENERGY.of(made),
+        " of energy in a body that was given ",
+        Dimension::ENERGY.of(given),
+        ": its points hold more without the bonds that broke than with them, so what follows is no fracture; take a law whose points lose stiffness then (`correspondence`, `position_aware`), a smaller critical stretch, or less compression beside what breaks",
+    ]
+}
+
+/// Energy that grew without work.
+fn grown(step: u64, [before, after]: [f64; 2], time_step: f64, contact: Option<f64>) -> Message {
+    message![
+        format!("step {step}: total energy grew from "),
+        Dimension::ENERGY.of(before),
+        " to ",
+        Dimension::ENERGY.of(after),
+        " without work: ",
+        blame(
+            contact,
+            message!["the step ", Dimension::TIME.of(time_step), " is unstable"]
+        ),
+    ]
+}
 
 /// Does a shorter implicit step help?
 fn shorter(error: &SolveError) -> &'static str {

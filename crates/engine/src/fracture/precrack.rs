@@ -58,159 +58,130 @@ impl<const D: usize> Crack<D> {
     /// radius of zero, a polygon with fewer than three corners, without area, or not flat (to 1e-6 of its size). A
     /// polygon that crosses itself is cracked where a ray from outside enters an odd number of times.
     pub fn new(shape: &CrackShape, period: [Option<f64>; D]) -> Result<Self, BuildError> {
-        let fail = |message: Message| Err(BuildError::invalid("precracks", message));
-        let numbers: Vec<f64> = match shape {
-            CrackShape::Segment { from, to } => [*from, *to].concat(),
+        is_finite(shape)?;
+        fits::<D>(shape)?;
+        let crack = match shape {
+            CrackShape::Surface(all) => return Crack::surface(all, period),
+            CrackShape::Point { x } => Crack::point(*x),
+            CrackShape::Segment { from, to } => Crack::segment(from, to)?,
             CrackShape::Disk {
                 center,
                 normal,
                 radius,
-            } => [center.as_slice(), normal, &[*radius]].concat(),
-            CrackShape::Polygon { corners } => corners.concat(),
-            CrackShape::Point { x } => vec![*x],
-            CrackShape::Surface(triangles) => triangles.corner.concat(),
-        };
-        if numbers.iter().any(|x| !x.is_finite()) {
-            return fail(message![format!(
-                "a crack's numbers must be finite, this one has {numbers:?}"
-            )]);
-        }
-        let fits = match shape {
-            CrackShape::Segment { .. } => D == 2 || D == 3,
-            CrackShape::Disk { .. } | CrackShape::Polygon { .. } | CrackShape::Surface(_) => D == 3,
-            CrackShape::Point { .. } => D == 1,
-        };
-        if !fits {
-            let name = match shape {
-                CrackShape::Segment { .. } => "segment",
-                CrackShape::Disk { .. } => "disk",
-                CrackShape::Polygon { .. } => "polygon",
-                CrackShape::Point { .. } => "point",
-                CrackShape::Surface(_) => "surface of triangles",
-            };
-            let instead = [
-                "a point x",
-                "a segment",
-                "a segment (extruded along z), a disk, a polygon or a surface of triangles",
-            ];
-            return Err(BuildError::conflict(
-                "precracks",
-                format!("a {name} cannot crack a body in {D} dimensions"),
-            )
-            .help(format!("use {}", instead[D.clamp(1, 3) - 1])));
-        }
-        if let CrackShape::Surface(all) = shape {
-            return Crack::surface(all, period);
-        }
-        let cut = |x: &[f64; 3]| -> [f64; D] { std::array::from_fn(|a| x[a]) };
-        let (point, normal, outline, low, high) = match shape {
-            CrackShape::Surface(_) => unreachable!("made above"),
-            CrackShape::Point { x } => {
-                let x = cut(&[*x, 0.0, 0.0]);
-                (x, cut(&[1.0, 0.0, 0.0]), Outline::Whole, x, x)
-            }
-            CrackShape::Segment { from, to } => {
-                let t = [to[0] - from[0], to[1] - from[1], 0.0];
-                let length = dot(&t, &t).sqrt();
-                if length == 0.0 {
-                    return fail(message![
-                        "the crack's segment has no length: both ends are at ",
-                        place(&from[..2]),
-                        " in the plane",
-                    ]);
-                }
-                let t = t.map(|c| c / length);
-                let bound = |pick: fn(f64, f64) -> f64, open: f64| {
-                    std::array::from_fn(|a| if a < 2 { pick(from[a], to[a]) } else { open })
-                };
-                (
-                    cut(from),
-                    cut(&[-t[1], t[0], 0.0]),
-                    Outline::Segment {
-                        along: cut(&t),
-                        length,
-                    },
-                    bound(f64::min, f64::NEG_INFINITY),
-                    bound(f64::max, f64::INFINITY),
-                )
-            }
-            CrackShape::Disk {
-                center,
-                normal,
-                radius,
-            } => {
-                let Some(n) = unit(*normal) else {
-                    return fail("the normal of a crack's disk is zero".into());
-                };
-                if *radius <= 0.0 {
-                    return fail(message![
-                        "the radius of a crack's disk is ",
-                        Dimension::LENGTH.of(*radius),
-                        ", expected a positive length",
-                    ]);
-                }
-                // how far a disk reaches along an axis
-                let half = |a: usize| radius * (1.0 - n[a] * n[a]).max(0.0).sqrt();
-                (
-                    cut(center),
-                    cut(&n),
-                    Outline::Disk { radius: *radius },
-                    std::array::from_fn(|a| center[a] - half(a)),
-                    std::array::from_fn(|a| center[a] + half(a)),
-                )
-            }
-            CrackShape::Polygon { corners } => {
-                if corners.len() < 3 {
-                    return fail(message![format!(
-                        "a crack's polygon has {} corners, expected three or more",
-                        corners.len()
-                    )]);
-                }
-                let low: [f64; 3] =
-                    std::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MAX, f64::min));
-                let high: [f64; 3] =
-                    std::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MIN, f64::max));
-                let size = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
-                let area = area(corners);
-                let n = match unit(area) {
-                    Some(n) if dot(&area, &n) > 1e-12 * size * size => n,
-                    _ => return fail("the corners of a crack's polygon enclose no area".into()),
-                };
-                for (k, c) in corners.iter().enumerate() {
-                    let off = dot(&sub(c, &corners[0]), &n);
-                    if off.abs() > 1e-6 * size {
-                        return fail(message![
-                            format!("a crack's polygon must be flat; corner {} is ", k + 1),
-                            Dimension::LENGTH.of(off),
-                            " off the plane of the others",
-                        ]);
-                    }
-                }
-                // the projection along the largest component of the normal keeps the most
-                let drop = (0..3)
-                    .max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs()))
-                    .unwrap_or(2);
-                let axes = [(drop + 1) % 3, (drop + 2) % 3];
-                let flat = corners.iter().map(|c| [c[axes[0]], c[axes[1]]]).collect();
-                (
-                    cut(&corners[0]),
-                    cut(&n),
-                    Outline::Polygon {
-                        corners: flat,
-                        axes,
-                    },
-                    cut(&low),
-                    cut(&high),
-                )
-            }
+            } => Crack::disk(center, normal, *radius)?,
+            CrackShape::Polygon { corners } => Crack::polygon(corners)?,
         };
         Ok(Crack {
-            point,
-            normal,
-            low,
-            high,
-            outline,
             shifts: shifts(period),
+            ..crack
+        })
+    }
+
+    fn point(x: f64) -> Self {
+        let x = cut(&[x, 0.0, 0.0]);
+        Crack {
+            point: x,
+            normal: cut(&[1.0, 0.0, 0.0]),
+            low: x,
+            high: x,
+            outline: Outline::Whole,
+            shifts: vec![],
+        }
+    }
+
+    fn segment(from: &[f64; 3], to: &[f64; 3]) -> Result<Self, BuildError> {
+        let t = [to[0] - from[0], to[1] - from[1], 0.0];
+        let length = dot(&t, &t).sqrt();
+        if length == 0.0 {
+            return fail(message![
+                "the crack's segment has no length: both ends are at ",
+                place(&from[..2]),
+                " in the plane",
+            ]);
+        }
+        let t = t.map(|c| c / length);
+        let bound = |pick: fn(f64, f64) -> f64, open: f64| {
+            std::array::from_fn(|a| if a < 2 { pick(from[a], to[a]) } else { open })
+        };
+        Ok(Crack {
+            point: cut(from),
+            normal: cut(&[-t[1], t[0], 0.0]),
+            low: bound(f64::min, f64::NEG_INFINITY),
+            high: bound(f64::max, f64::INFINITY),
+            outline: Outline::Segment {
+                along: cut(&t),
+                length,
+            },
+            shifts: vec![],
+        })
+    }
+
+    fn disk(center: &[f64; 3], normal: &[f64; 3], radius: f64) -> Result<Self, BuildError> {
+        let Some(n) = unit(*normal) else {
+            return fail("the normal of a crack's disk is zero".into());
+        };
+        if radius <= 0.0 {
+            return fail(message![
+                "the radius of a crack's disk is ",
+                Dimension::LENGTH.of(radius),
+                ", expected a positive length",
+            ]);
+        }
+        // how far a disk reaches along an axis
+        let half = |a: usize| radius * (1.0 - n[a] * n[a]).max(0.0).sqrt();
+        Ok(Crack {
+            point: cut(center),
+            normal: cut(&n),
+            low: std::array::from_fn(|a| center[a] - half(a)),
+            high: std::array::from_fn(|a| center[a] + half(a)),
+            outline: Outline::Disk { radius },
+            shifts: vec![],
+        })
+    }
+
+    fn polygon(corners: &[[f64; 3]]) -> Result<Self, BuildError> {
+        if corners.len() < 3 {
+            return fail(message![format!(
+                "a crack's polygon has {} corners, expected three or more",
+                corners.len()
+            )]);
+        }
+        let low: [f64; 3] =
+            std::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MAX, f64::min));
+        let high: [f64; 3] =
+            std::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MIN, f64::max));
+        let size = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+        let area = area(corners);
+        let n = match unit(area) {
+            Some(n) if dot(&area, &n) > 1e-12 * size * size => n,
+            _ => return fail("the corners of a crack's polygon enclose no area".into()),
+        };
+        for (k, c) in corners.iter().enumerate() {
+            let off = dot(&sub(c, &corners[0]), &n);
+            if off.abs() > 1e-6 * size {
+                return fail(message![
+                    format!("a crack's polygon must be flat; corner {} is ", k + 1),
+                    Dimension::LENGTH.of(off),
+                    " off the plane of the others",
+                ]);
+            }
+        }
+        // the projection along the largest component of the normal keeps the most
+        let drop = (0..3)
+            .max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs()))
+            .unwrap_or(2);
+        let axes = [(drop + 1) % 3, (drop + 2) % 3];
+        let flat = corners.iter().map(|c| [c[axes[0]], c[axes[1]]]).collect();
+        Ok(Crack {
+            point: cut(&corners[0]),
+            normal: cut(&n),
+            low: cut(&low),
+            high: cut(&high),
+            outline: Outline::Polygon {
+                corners: flat,
+                axes,
+            },
+            shifts: vec![],
         })
     }
 
@@ -301,6 +272,59 @@ impl<const D: usize> Crack<D> {
             Outline::Polygon { corners, axes } => inside(corners, [x[axes[0]], x[axes[1]]], tiny),
         }
     }
+}
+
+fn fail<T>(message: Message) -> Result<T, BuildError> {
+    Err(BuildError::invalid("precracks", message))
+}
+
+fn is_finite(shape: &CrackShape) -> Result<(), BuildError> {
+    let numbers: Vec<f64> = match shape {
+        CrackShape::Segment { from, to } => [*from, *to].concat(),
+        CrackShape::Disk {
+            center,
+            normal,
+            radius,
+        } => [center.as_slice(), normal, &[*radius]].concat(),
+        CrackShape::Polygon { corners } => corners.concat(),
+        CrackShape::Point { x } => vec![*x],
+        CrackShape::Surface(triangles) => triangles.corner.concat(),
+    };
+    if numbers.iter().any(|x| !x.is_finite()) {
+        return fail(message![format!(
+            "a crack's numbers must be finite, this one has {numbers:?}"
+        )]);
+    }
+    Ok(())
+}
+
+/// Is it a crack in D dimensions?
+fn fits<const D: usize>(shape: &CrackShape) -> Result<(), BuildError> {
+    let (fits, name) = match shape {
+        CrackShape::Segment { .. } => (D == 2 || D == 3, "segment"),
+        CrackShape::Disk { .. } => (D == 3, "disk"),
+        CrackShape::Polygon { .. } => (D == 3, "polygon"),
+        CrackShape::Surface(_) => (D == 3, "surface of triangles"),
+        CrackShape::Point { .. } => (D == 1, "point"),
+    };
+    if fits {
+        return Ok(());
+    }
+    let instead = [
+        "a point x",
+        "a segment",
+        "a segment (extruded along z), a disk, a polygon or a surface of triangles",
+    ];
+    Err(BuildError::conflict(
+        "precracks",
+        format!("a {name} cannot crack a body in {D} dimensions"),
+    )
+    .help(format!("use {}", instead[D.clamp(1, 3) - 1])))
+}
+
+/// The components that D dimensions have.
+fn cut<const D: usize>(x: &[f64; 3]) -> [f64; D] {
+    std::array::from_fn(|a| x[a])
 }
 
 /// Is `x` inside the polygon (even–odd rule) or within `tiny` of its rim?

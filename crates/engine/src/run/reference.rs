@@ -11,7 +11,7 @@ use crate::quantity::Dimension;
 use crate::space::fill::fill;
 use crate::space::lattice::{Lattice, LatticeKind};
 use crate::space::{AXES, Point};
-use crate::spec::{BodySpec, FamilyChoice, Horizon, Perturbation, Spec};
+use crate::spec::{BodySpec, Cloud, FamilyChoice, Horizon, Perturbation, Spec};
 
 /// Where the points are, and what their family is.
 pub(super) struct Reference<const D: usize> {
@@ -95,100 +95,6 @@ fn bulk_family<const D: usize>(
 }
 
 pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, BuildError> {
-    let on_lattice = |kind: LatticeKind,
-                      spacing: f64,
-                      origin: [f64; 3],
-                      quarters: &[[i32; 3]],
-                      volume: Option<f64>| {
-        if kind.dimension() != D {
-            return Err(BuildError::conflict(
-                "body.lattice",
-                format!(
-                    "a {} lattice has {} dimensions, the run has {D}",
-                    kind.name(),
-                    kind.dimension()
-                ),
-            ));
-        }
-        let horizon = match current_neighbours(spec) {
-            // only the lattice is wanted
-            true => Horizon::Length(spacing * kind.nearest()),
-            false => spec.horizon,
-        };
-        Stencil::fits(kind, spacing, horizon)?;
-        let stencil = Stencil::new(kind, spacing, horizon);
-        let periodic: [bool; D] = std::array::from_fn(|a| spec.periodic[a].is_some());
-        let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.section);
-        let horizon = horizon.length(spacing);
-        if horizon < spacing * kind.nearest() {
-            return Err(BuildError::conflict(
-                "horizon",
-                message![
-                    "the horizon ",
-                    Dimension::LENGTH.of(horizon),
-                    " is below the distance ",
-                    Dimension::LENGTH.of(spacing * kind.nearest()),
-                    " of nearest points",
-                ],
-            )
-            .help("three spacings are usual: horizon = { m_ratio = 3 }"));
-        }
-        if stencil.bonds() > MOST {
-            return Err(too_many(
-                stencil.bonds() as f64,
-                spec.horizon,
-                horizon / spacing,
-            ));
-        }
-        let body = Body::<D>::on_lattice(
-            Lattice {
-                kind,
-                spacing,
-                origin,
-            },
-            quarters,
-            stencil.reach,
-            periodic,
-            volume,
-        )?;
-        for a in 0..D {
-            if let (Some(given), Some(p)) = (spec.periodic[a], body.period[a])
-                && given > 0.0
-                && (given - p).abs() > 1e-9 * p
-            {
-                return Err(BuildError::conflict(
-                    "periodic",
-                    message![
-                        format!("the period along {} is ", AXES[a]),
-                        Dimension::LENGTH.of(given),
-                        ", the lattice body repeats after ",
-                        Dimension::LENGTH.of(p),
-                    ],
-                ));
-            }
-        }
-        let (bulk, family) = bulk_family::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
-        Ok(Reference {
-            body,
-            stencil: Some(stencil),
-            bulk: Some(bulk),
-            family,
-            horizon,
-        })
-    };
-    let list_if_asked = |r: Reference<D>| {
-        let listed = matches!(spec.family, FamilyChoice::List | FamilyChoice::Reference);
-        let list = listed || !spec.pairs.is_empty();
-        if list || current_neighbours(spec) {
-            Ok(Reference {
-                body: r.body.to_cloud()?,
-                stencil: None,
-                ..r
-            })
-        } else {
-            Ok(r)
-        }
-    };
     match &spec.body {
         BodySpec::Lattice {
             kind,
@@ -209,17 +115,15 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 origin: *origin,
             };
             let sites = fill(&lattice, region)?;
+            let r = on_lattice(spec, lattice, &sites.quarters, None)?;
             match perturb {
-                Some(p) => {
-                    let r = on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?;
-                    Ok(Reference {
-                        body: perturbed(&r.body, p)?,
-                        stencil: None,
-                        family: vec![],
-                        ..r
-                    })
-                }
-                None => list_if_asked(on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?),
+                Some(p) => Ok(Reference {
+                    body: perturbed(&r.body, p)?,
+                    stencil: None,
+                    family: vec![],
+                    ..r
+                }),
+                None => listed_if_asked(spec, r),
             }
         }
         BodySpec::Sites {
@@ -228,38 +132,145 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
             origin,
             quarters,
             volume,
-        } => list_if_asked(on_lattice(*kind, *spacing, *origin, quarters, *volume)?),
-        BodySpec::Cloud(cloud) => {
-            if spec.family == FamilyChoice::Stencil {
-                return Err(BuildError::unsupported(
-                    "family",
-                    "a stencil needs a lattice body, this is a cloud of points",
-                ));
-            }
-            let mean =
-                cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.section;
-            let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
-            let period = std::array::from_fn(|a| spec.periodic[a]);
-            let body = Body::<D>::from_cloud(
-                &cloud.position,
-                &cloud.volume,
-                &cloud.mark,
-                spacing,
-                period,
-            )?;
-            Ok(Reference {
-                body,
-                stencil: None,
-                bulk: None,
-                family: vec![],
-                horizon: spec.horizon.length(spacing),
-            })
+        } => {
+            let lattice = Lattice {
+                kind: *kind,
+                spacing: *spacing,
+                origin: *origin,
+            };
+            listed_if_asked(spec, on_lattice(spec, lattice, quarters, *volume)?)
         }
+        BodySpec::Cloud(cloud) => of_cloud(spec, cloud),
         BodySpec::Several(_) => Err(BuildError::unsupported(
             "body",
             "several bodies inside one of several bodies",
         )),
     }
+}
+
+/// Points on sites of a lattice, each of `volume` or of that of its cell, and their stencil.
+fn on_lattice<const D: usize>(
+    spec: &Spec,
+    lattice: Lattice,
+    quarters: &[[i32; 3]],
+    volume: Option<f64>,
+) -> Result<Reference<D>, BuildError> {
+    let Lattice { kind, spacing, .. } = lattice;
+    if kind.dimension() != D {
+        return Err(BuildError::conflict(
+            "body.lattice",
+            format!(
+                "a {} lattice has {} dimensions, the run has {D}",
+                kind.name(),
+                kind.dimension()
+            ),
+        ));
+    }
+    let (stencil, horizon) = stencil_of(spec, kind, spacing)?;
+    let periodic: [bool; D] = std::array::from_fn(|a| spec.periodic[a].is_some());
+    let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.section);
+    let body = Body::<D>::on_lattice(lattice, quarters, stencil.reach, periodic, volume)?;
+    periods_fit(spec, &body)?;
+    let (bulk, family) = bulk_family::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
+    Ok(Reference {
+        body,
+        stencil: Some(stencil),
+        bulk: Some(bulk),
+        family,
+        horizon,
+    })
+}
+
+/// The family of a site, and its horizon as a length.
+fn stencil_of(spec: &Spec, kind: LatticeKind, spacing: f64) -> Result<(Stencil, f64), BuildError> {
+    let horizon = match current_neighbours(spec) {
+        // only the lattice is wanted
+        true => Horizon::Length(spacing * kind.nearest()),
+        false => spec.horizon,
+    };
+    Stencil::fits(kind, spacing, horizon)?;
+    let stencil = Stencil::new(kind, spacing, horizon);
+    let horizon = horizon.length(spacing);
+    if horizon < spacing * kind.nearest() {
+        return Err(BuildError::conflict(
+            "horizon",
+            message![
+                "the horizon ",
+                Dimension::LENGTH.of(horizon),
+                " is below the distance ",
+                Dimension::LENGTH.of(spacing * kind.nearest()),
+                " of nearest points",
+            ],
+        )
+        .help("three spacings are usual: horizon = { m_ratio = 3 }"));
+    }
+    if stencil.bonds() > MOST {
+        return Err(too_many(
+            stencil.bonds() as f64,
+            spec.horizon,
+            horizon / spacing,
+        ));
+    }
+    Ok((stencil, horizon))
+}
+
+/// Are the periods that somebody gave those of the lattice?
+fn periods_fit<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildError> {
+    for a in 0..D {
+        if let (Some(given), Some(p)) = (spec.periodic[a], body.period[a])
+            && given > 0.0
+            && (given - p).abs() > 1e-9 * p
+        {
+            return Err(BuildError::conflict(
+                "periodic",
+                message![
+                    format!("the period along {} is ", AXES[a]),
+                    Dimension::LENGTH.of(given),
+                    ", the lattice body repeats after ",
+                    Dimension::LENGTH.of(p),
+                ],
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// As a cloud, where the spec wants lists of neighbours.
+fn listed_if_asked<const D: usize>(
+    spec: &Spec,
+    r: Reference<D>,
+) -> Result<Reference<D>, BuildError> {
+    let listed = matches!(spec.family, FamilyChoice::List | FamilyChoice::Reference);
+    let list = listed || !spec.pairs.is_empty();
+    if list || current_neighbours(spec) {
+        Ok(Reference {
+            body: r.body.to_cloud()?,
+            stencil: None,
+            ..r
+        })
+    } else {
+        Ok(r)
+    }
+}
+
+fn of_cloud<const D: usize>(spec: &Spec, cloud: &Cloud) -> Result<Reference<D>, BuildError> {
+    if spec.family == FamilyChoice::Stencil {
+        return Err(BuildError::unsupported(
+            "family",
+            "a stencil needs a lattice body, this is a cloud of points",
+        ));
+    }
+    let mean = cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.section;
+    let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
+    let period = std::array::from_fn(|a| spec.periodic[a]);
+    let body = Body::<D>::from_cloud(&cloud.position, &cloud.volume, &cloud.mark, spacing, period)?;
+    Ok(Reference {
+        body,
+        stencil: None,
+        bulk: None,
+        family: vec![],
+        horizon: spec.horizon.length(spacing),
+    })
 }
 
 /// Every site moved by a uniform random vector in ±amplitude per axis.

@@ -47,7 +47,7 @@ pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
 pub use preload::PreloadSpec;
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
 pub use schedule::{
-    Control, Cycles, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep,
+    Control, Cycles, Integrator, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep,
 };
 pub use smooth::{SmoothSpec, Window};
 use std::sync::Arc;

@@ -12,10 +12,7 @@ pub struct Schedule {
 impl Schedule {
     /// `None`: motion in time.
     pub fn statics(&self) -> Option<Statics> {
-        match self.stepper {
-            Stepper::Statics(statics) => Some(statics),
-            Stepper::Verlet | Stepper::Newmark(_) | Stepper::Still => None,
-        }
+        self.stepper.statics()
     }
 }
 
@@ -33,7 +30,63 @@ pub enum Stepper {
     Statics(Statics),
 }
 
+/// An integrator of motion by its name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Integrator {
+    /// Lower case with underscores, as in decks.
+    pub name: &'static str,
+    pub doc: &'static str,
+    /// With its customary options.
+    pub stepper: Stepper,
+}
+
 impl Stepper {
+    /// All integrators of motion.
+    pub fn integrators() -> [Integrator; 4] {
+        let of = |name, doc, stepper| Integrator { name, doc, stepper };
+        [
+            of(
+                "verlet",
+                "Velocity Verlet: explicit, stable below a limit of the step.",
+                Stepper::Verlet,
+            ),
+            of(
+                "newmark",
+                "Newmark's method: implicit, stable at any step.",
+                Stepper::Newmark(Newmark::default()),
+            ),
+            of(
+                "hht",
+                "The method of Hilber, Hughes and Taylor: implicit, and damps what is fast beside the step.",
+                Stepper::Newmark(Newmark::hht(-0.1)),
+            ),
+            of(
+                "still",
+                "Points stand where they are; heat and species go on.",
+                Stepper::Still,
+            ),
+        ]
+    }
+
+    /// Its name among the [integrators](Stepper::integrators); `None`: its steps are no steps in time.
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            Stepper::Verlet => Some("verlet"),
+            Stepper::Newmark(n) if n.alpha != 0.0 => Some("hht"),
+            Stepper::Newmark(_) => Some("newmark"),
+            Stepper::Still => Some("still"),
+            Stepper::Statics(_) => None,
+        }
+    }
+
+    /// How equilibria are found, where every step ends in one.
+    pub fn statics(self) -> Option<Statics> {
+        match self {
+            Stepper::Statics(statics) => Some(statics),
+            Stepper::Verlet | Stepper::Newmark(_) | Stepper::Still => None,
+        }
+    }
+
     /// Do forces accelerate points?
     pub fn has_inertia(self) -> bool {
         match self {

@@ -66,72 +66,129 @@ pub fn lowest<const D: usize>(
             Direct::against(&shifted, support, &own)?
         }
     };
-    let times_mass = |x: &[[f64; D]]| -> Vec<[f64; D]> {
-        match &coupled {
-            None => x.iter().zip(&mass).map(|(x, m)| x.map(|c| c * m)).collect(),
-            Some(masses) => {
-                let mut product = masses.times(x);
-                support.mask(&mut product);
-                product
-            }
-        }
+    let mut q = all_in_motion(body.points());
+    support.mask(&mut q);
+    let of = Vibration {
+        body,
+        support,
+        mass,
+        coupled,
+        stiffest,
     };
-    // every point in motion, no symmetry
-    let mut q: Vec<[f64; D]> = (0..body.points())
+    let krylov = of.krylov(q, &factors, steps);
+    let n = krylov.basis.len();
+    let (_, vectors) =
+        symmetric_eigen(n, |i, j| krylov.entry(i, j)).ok_or(SolveError::NotFinite)?;
+    let modes = (n - count.min(n)..n).rev();
+    let modes = modes.map(|k| of.mode(&krylov.basis, &vectors[k]));
+    let mut modes = modes.collect::<Result<Vec<_>, _>>()?;
+    modes.sort_by(|a, b| a.square.total_cmp(&b.square));
+    Ok(modes)
+}
+
+/// A displacement in which every point moves and that has no symmetry.
+fn all_in_motion<const D: usize>(points: usize) -> Vec<[f64; D]> {
+    (0..points)
         .map(|i| {
             std::array::from_fn(|a| {
                 ((i * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
             })
         })
-        .collect();
-    support.mask(&mut q);
-    let mut basis: Vec<Vec<[f64; D]>> = vec![];
-    let mut images: Vec<Vec<[f64; D]>> = vec![];
-    let (mut alpha, mut beta): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
-    for _ in 0..steps {
-        let mut mq = times_mass(&q);
-        // twice is enough
-        for _ in 0..2 {
-            for (b, m) in basis.iter().zip(&images) {
-                let part = dot(&q, m);
-                add(&mut q, -part, b);
-            }
-            mq = times_mass(&q);
+        .collect()
+}
+
+/// What Lanczos found: an orthonormal basis, its products with the masses, and the tridiagonal matrix on it.
+struct Krylov<const D: usize> {
+    basis: Vec<Vec<[f64; D]>>,
+    images: Vec<Vec<[f64; D]>>,
+    alpha: Vec<f64>,
+    beta: Vec<f64>,
+}
+
+impl<const D: usize> Krylov<D> {
+    /// Of the lower triangle.
+    fn entry(&self, i: usize, j: usize) -> f64 {
+        match i - j {
+            0 => self.alpha[i],
+            1 => self.beta[j],
+            _ => 0.0,
         }
-        let norm = dot(&q, &mq).sqrt();
-        let scale = alpha
-            .iter()
-            .copied()
-            .fold(0.0f64, |m, a: f64| m.max(a.abs()));
-        if !(norm > 1e-13 * scale) {
-            break;
-        }
-        if !alpha.is_empty() {
-            beta.push(norm);
-        }
-        for c in q.iter_mut().chain(&mut mq).flatten() {
-            *c /= norm;
-        }
-        let next = factors.solve(&mq);
-        alpha.push(dot(&next, &mq));
-        basis.push(std::mem::replace(&mut q, next));
-        images.push(mq);
     }
-    let n = basis.len();
-    let tridiagonal = |i: usize, j: usize| match i - j {
-        0 => alpha[i],
-        1 => beta[j],
-        _ => 0.0,
-    };
-    let (_, vectors) = symmetric_eigen(n, tridiagonal).ok_or(SolveError::NotFinite)?;
-    let mut modes = vec![];
-    for k in (n - count.min(n)..n).rev() {
+}
+
+/// A supported body that vibrates.
+struct Vibration<'a, const D: usize> {
+    body: &'a LinearBody<D>,
+    support: &'a Support<D>,
+    mass: Vec<f64>,
+    /// Where masses couple points.
+    coupled: Option<Masses<D>>,
+    /// A bound on `ω²`.
+    stiffest: f64,
+}
+
+impl<const D: usize> Vibration<'_, D> {
+    fn times_mass(&self, x: &[[f64; D]]) -> Vec<[f64; D]> {
+        match &self.coupled {
+            None => {
+                let both = x.iter().zip(&self.mass);
+                both.map(|(x, m)| x.map(|c| c * m)).collect()
+            }
+            Some(masses) => {
+                let mut product = masses.times(x);
+                self.support.mask(&mut product);
+                product
+            }
+        }
+    }
+
+    /// From `q` on, as many steps or until nothing new comes.
+    fn krylov(&self, mut q: Vec<[f64; D]>, factors: &Direct<D>, steps: usize) -> Krylov<D> {
+        let mut made = Krylov {
+            basis: vec![],
+            images: vec![],
+            alpha: vec![],
+            beta: vec![],
+        };
+        for _ in 0..steps {
+            let mut mq = self.times_mass(&q);
+            // twice is enough
+            for _ in 0..2 {
+                for (b, m) in made.basis.iter().zip(&made.images) {
+                    let part = dot(&q, m);
+                    add(&mut q, -part, b);
+                }
+                mq = self.times_mass(&q);
+            }
+            let norm = dot(&q, &mq).sqrt();
+            let entries = made.alpha.iter().copied();
+            let scale = entries.fold(0.0f64, |m, a: f64| m.max(a.abs()));
+            if !(norm > 1e-13 * scale) {
+                break;
+            }
+            if !made.alpha.is_empty() {
+                made.beta.push(norm);
+            }
+            for c in q.iter_mut().chain(&mut mq).flatten() {
+                *c /= norm;
+            }
+            let next = factors.solve(&mq);
+            made.alpha.push(dot(&next, &mq));
+            made.basis.push(std::mem::replace(&mut q, next));
+            made.images.push(mq);
+        }
+        made
+    }
+
+    /// The mode that has these parts of the basis, if it is one.
+    fn mode(&self, basis: &[Vec<[f64; D]>], parts: &[f64]) -> Result<Mode<D>, SolveError> {
+        let body = self.body;
         let mut shape = vec![[0.0; D]; body.points()];
-        for (i, b) in basis.iter().enumerate() {
-            add(&mut shape, vectors[k][i], b);
+        for (part, b) in parts.iter().zip(basis) {
+            add(&mut shape, *part, b);
         }
         // Rayleigh's quotient is better than the eigenvalue, above all for rigid motions
-        let m = times_mass(&shape);
+        let m = self.times_mass(&shape);
         let energy: f64 = (0..body.points())
             .map(|i| {
                 let f = body.force(&shape, i);
@@ -142,23 +199,21 @@ pub fn lowest<const D: usize>(
         let residual: f64 = (0..body.points())
             .map(|i| {
                 let f = body.force(&shape, i);
-                let free = (0..D).filter(|a| support.free[i][*a]);
-                free.map(|a| (body.volume[i] * f[a] + square * m[i][a]).powi(2) / mass[i])
+                let free = (0..D).filter(|a| self.support.free[i][*a]);
+                free.map(|a| (body.volume[i] * f[a] + square * m[i][a]).powi(2) / self.mass[i])
                     .sum::<f64>()
             })
             .sum::<f64>()
             .sqrt();
-        if residual > TOLERANCE.sqrt() * stiffest {
+        if residual > TOLERANCE.sqrt() * self.stiffest {
             return Err(SolveError::NotConverged {
-                iterations: n,
-                residual: residual / stiffest,
+                iterations: basis.len(),
+                residual: residual / self.stiffest,
                 tolerance: TOLERANCE.sqrt(),
             });
         }
-        modes.push(Mode { square, shape });
+        Ok(Mode { square, shape })
     }
-    modes.sort_by(|a, b| a.square.total_cmp(&b.square));
-    Ok(modes)
 }
 
 fn largest<const D: usize>(c: &[[f64; D]; D]) -> f64 {

@@ -1,9 +1,12 @@
 //! Crystals left to themselves.
 
 use super::sample::{atoms, potentials};
+use peridyne::expression::Expression;
+use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind::{Fcc, Triangular};
-use peridyne::spec::{BodySpec, FamilyChoice, LinearBody, Spec};
+use peridyne::space::region::Region;
+use peridyne::spec::*;
 
 /// A crystal without the site nearest to its middle.
 fn with_vacancy(mut spec: Spec) -> Spec {
@@ -74,5 +77,58 @@ fn crystals_with_a_vacancy_relax() {
                 check::<3>(&name, &with_vacancy(spec));
             }
         }
+    }
+}
+
+/// Thirteen Lennard-Jones atoms have their least energy, −44.326801 ε, as an icosahedron (M. R. Hoare and P. Pal 1971, Adv. Phys. 20, 161;
+/// D. J. Wales and J. P. K. Doye 1997, J. Phys. Chem. A 101, 5111). A cuboctahedron, which fcc has, is no minimum: it turns into that.
+#[test]
+fn thirteen_atoms_become_an_icosahedron() {
+    let nearest = 2f64.powf(1.0 / 6.0);
+    let lj = PotentialSpec::of(LennardJones {
+        epsilon: 1.0,
+        sigma: 1.0,
+    });
+    let ball = Region::Sphere {
+        center: [0.0; 3],
+        radius: 1.1 * nearest,
+    };
+    let body = BodySpec::Lattice {
+        kind: Fcc,
+        spacing: nearest * 2f64.sqrt(),
+        origin: [0.0; 3],
+        region: ball,
+        perturb: None,
+    };
+    let mut spec = Spec::new(3, body, 1.0, LawSpec::Atoms(lj.ended(10.0, End::Truncated)));
+    spec.horizon = Horizon::Length(10.0);
+    let bent = |e: &str| Some(Expression::parse(e, &[]).unwrap());
+    spec.initial = vec![InitialSpec {
+        set: "all".into(),
+        displacement: [bent("0.02*y*z"), bent("0.03*sin(3*x)*z"), bent("0.01*x")],
+        velocity: [None, None, None],
+    }];
+    spec.schedule.stepper = Stepper::Statics(Statics {
+        method: Method::Fire,
+        tolerance: 1e-8,
+        ..Statics::default()
+    });
+    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.schedule.steps = 1;
+    for family in [FamilyChoice::Neighbours, FamilyChoice::Reference] {
+        spec.family = family;
+        let mut model = build(&spec, Options::default()).unwrap();
+        assert_eq!(model.info().points, 13);
+        model.start(true);
+        model.step().unwrap();
+        let energy = model.ledger().unwrap().strain;
+        assert!((energy + 44.326801).abs() < 1e-5, "{family:?}: {energy}");
+        // the nearest twelve are at one distance from the middle, and each of these has five among them
+        let x = model.vectors("position");
+        let distance =
+            |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        let bonds = (0..13).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let near = bonds.filter(|(i, j)| distance(&x[*i], &x[*j]) < 1.3);
+        assert_eq!(near.count(), 42);
     }
 }

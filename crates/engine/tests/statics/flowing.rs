@@ -60,6 +60,7 @@ fn methods_agree_on_what_flows_and_breaks() {
         for (method, solver, tolerance) in [
             (Method::Newton, Solver::ConjugateGradients, 1e-9),
             (Method::Relaxation, Solver::Auto, 1e-8),
+            (Method::Fire, Solver::Auto, 1e-8),
         ] {
             let (other, count, own) = of(method, solver, tolerance);
             let case = format!("{method:?} {solver:?}, breaks: {breaks}");

@@ -26,12 +26,13 @@ fn chain() -> Spec {
 }
 
 /// Every way to find an equilibrium, and the tolerance of its forces.
-const ALL: [(Method, Solver, f64); 5] = [
+const ALL: [(Method, Solver, f64); 6] = [
     (Method::Linear, Solver::Direct, 1e-12),
     (Method::Linear, Solver::ConjugateGradients, 1e-12),
     (Method::Newton, Solver::Direct, 1e-12),
     (Method::Newton, Solver::ConjugateGradients, 1e-12),
     (Method::Relaxation, Solver::Auto, 1e-9),
+    (Method::Fire, Solver::Auto, 1e-9),
 ];
 
 /// A chain that is pulled apart: at t = 0.75 its ten springs have a stretch of 0.0375, and eight of them break. Points that have lost theirs rest where
@@ -55,7 +56,7 @@ fn points_that_have_lost_their_bonds_rest_where_they_are() {
         assert_eq!([u[0][0], u[10][0]], [0.0, 0.5], "{case}");
         // made of equal points, they meet at their centre or where the first of them rests
         let meet = match method {
-            Method::Relaxation => 0.1875,
+            Method::Relaxation | Method::Fire => 0.1875,
             Method::Linear | Method::Newton => 0.15,
         };
         for n in 4..7 {

@@ -23,7 +23,11 @@ fn rows(name: &str, way: f64, y: f64) -> SetSpec {
 
 /// Before the first of so many increments, in which t goes from 0 to 1.
 fn relaxed(spec: &Spec, increments: u32) -> Box<dyn Simulation> {
-    let mut spec = with(spec, Method::Relaxation, Solver::Auto, 1e-6);
+    minimized(spec, Method::Relaxation, increments)
+}
+
+fn minimized(spec: &Spec, method: Method, increments: u32) -> Box<dyn Simulation> {
+    let mut spec = with(spec, method, Solver::Auto, 1e-6);
     spec.schedule.steps = u64::from(increments);
     spec.schedule.time_step = TimeStep::Fixed(1.0 / f64::from(increments));
     let mut sim = build(&spec, Options::default()).unwrap();
@@ -34,10 +38,11 @@ fn relaxed(spec: &Spec, increments: u32) -> Box<dyn Simulation> {
 /// Force of the disk on the block (along, across) at every increment: the disk goes by `way` from above the middle of the block, and its floor by
 /// `floor`; t goes from 0 to 1.
 fn forces(way: [&str; 2], floor: [&str; 2], stiffness: f64) -> Vec<[f64; 2]> {
-    forces_rubbed(way, floor, stiffness, None)
+    forces_rubbed(Method::Relaxation, way, floor, stiffness, None)
 }
 
 fn forces_rubbed(
+    method: Method,
     way: [&str; 2],
     floor: [&str; 2],
     stiffness: f64,
@@ -66,7 +71,7 @@ fn forces_rubbed(
             of: Some(RigidQuantity::Force),
         },
     }];
-    let mut sim = relaxed(&spec, INCREMENTS);
+    let mut sim = minimized(&spec, method, INCREMENTS);
     let mut all = vec![];
     for n in 0..INCREMENTS {
         sim.step().unwrap_or_else(|e| panic!("{n}: {e}"));
@@ -104,7 +109,7 @@ fn friction_of_statics_is_that_at_rest() {
     };
     let way = ["2*max(t - 0.5, 0)", "-0.5*min(2*t, 1)"];
     for law in [falling, FrictionSpec::constant(0.2)] {
-        let all = forces_rubbed(way, ["0", "0"], 250.0, Some(law));
+        let all = forces_rubbed(Method::Relaxation, way, ["0", "0"], 250.0, Some(law));
         let [along, across] = all[11];
         println!("{along} {across}");
         // as far as the normal of the disk leans: a contact of ten spacings on a radius of a hundred
@@ -272,6 +277,23 @@ fn faces_of_a_crack_rub() {
                 // it sticks before it slips
                 let [drag, press, lean, ..] = all[11];
                 assert!(drag / press < 0.8 * (angle - lean.atan()).tan(), "{all:?}");
+            }
+        }
+    }
+}
+
+/// A stiff disk, with and without friction, is met by FIRE as by relaxation.
+#[test]
+fn fire_finds_what_relaxation_finds() {
+    let way = ["2*max(t - 0.5, 0)", "-0.5*min(2*t, 1)"];
+    for friction in [None, Some(FrictionSpec::constant(0.2))] {
+        let [relaxed, fire] = [Method::Relaxation, Method::Fire]
+            .map(|method| forces_rubbed(method, way, ["0", "0"], 250.0, friction.clone()));
+        let most = relaxed.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
+        for (a, b) in relaxed.iter().zip(&fire) {
+            for k in 0..2 {
+                let off = (a[k] - b[k]).abs();
+                assert!(off < 1e-3 * most, "{off:e}: {relaxed:?} {fire:?}");
             }
         }
     }

@@ -193,95 +193,103 @@ struct Block<'a> {
     entry: &'a Entry,
 }
 
+/// Names what of families has no counterpart.
+fn refuse_families(discretization: &Entry) {
+    discretization.idle(&["Distribution Type", "Store Exodus Mesh"]);
+    discretization.refuse_entry(
+        "Omit Bonds Between Blocks",
+        "give blocks bodies of their own: [[body]]",
+    );
+    let ball = discretization.text("NeighborhoodType");
+    if ball.is_some_and(|t| !t.eq_ignore_ascii_case("Spherical")) {
+        discretization.refuse_entry("NeighborhoodType", "families are balls");
+    }
+}
+
+/// Why no material was made.
+fn unmapped_materials(root: &Entry) -> String {
+    let mut whys: Vec<String> = root.unmapped().into_iter().map(|u| u.why).collect();
+    // what nobody asked for yet says nothing
+    whys.retain(|why| !why.contains("counterpart"));
+    whys.dedup();
+    format!(
+        "no block has a material that can be mapped: {}",
+        whys.join("; ")
+    )
+}
+
+/// Keys of the whole deck: its plane, its family, and what bonds do.
+fn head(
+    materials: &Materials,
+    dimension: usize,
+    horizon: f64,
+    discretization: Option<&Entry>,
+) -> String {
+    let mut out = String::new();
+    if dimension == 2 {
+        out += "dimension = 2\n";
+        out += &format!("plane = \"{}\"\n", materials.plane.unwrap_or("strain"));
+    }
+    if let Some(height) = materials.height {
+        out += &format!("thickness = {height:?}\n");
+    }
+    out += &format!("horizon = {horizon:?}\n");
+    let influence = discretization.map_or("constant", influence);
+    out += &format!("influence = \"{influence}\"\n");
+    out += "volume_scaling = false\ncalibration = \"continuum\"\n";
+    if materials.bonds {
+        // each end gives half of its own constant
+        out += "interface = \"parallel\"\n";
+    }
+    if materials.breaks {
+        out += "contact = false\n";
+    }
+    out
+}
+
+/// Conditions that take a part of the velocity, for blocks with their densities.
+fn damped(densities: &[(String, f64)], damping: f64) -> String {
+    let each = densities.iter().map(|(set, density)| {
+        format!(
+            "\n[[condition]]\nset = {}\ndamping = {:?}\n",
+            quoted(if densities.len() == 1 { "all" } else { set }),
+            density * damping
+        )
+    });
+    each.collect()
+}
+
 impl<'a> Converter<'a> {
     fn deck(&mut self, title: &str, mesh: &str) -> Result<String, String> {
         self.root.idle(&["Verbose"]);
         let root = self.root;
         let discretization = root.list("Discretization");
         let given = root.list("Boundary Conditions");
-        let sets = discretization.and_then(|d| d.list("Node Sets"));
-        for list in given.into_iter().chain(sets) {
-            for entry in list.all() {
-                if tree::same(&entry.key, "Create Node Set For Rank Deficient Nodes") {
-                    match list.is_true(&entry.key) {
-                        true => entry.refuse("points that lose all bonds are not held here"),
-                        false => list.idle(&[&entry.key]),
-                    }
-                    continue;
-                }
-                if let (Value::Text(_), Some(text)) = (&entry.value, entry.own()) {
-                    self.points.add_set(&entry.key, text, &self.folder)?;
-                }
-            }
-        }
-        for entry in given.into_iter().flat_map(Entry::lists) {
-            if self.program == Program::PeriLab
-                && let Some(sets) = entry.text("Node Set")
-            {
-                self.points.add_union(sets);
-            }
-        }
+        self.point_sets(discretization, given)?;
         self.remarks.append(&mut self.points.notes);
         if let Some(d) = discretization {
-            d.idle(&["Distribution Type", "Store Exodus Mesh"]);
-            d.refuse_entry(
-                "Omit Bonds Between Blocks",
-                "give blocks bodies of their own: [[body]]",
-            );
-            let ball = d.text("NeighborhoodType");
-            if ball.is_some_and(|t| !t.eq_ignore_ascii_case("Spherical")) {
-                d.refuse_entry("NeighborhoodType", "families are balls");
-            }
+            refuse_families(d);
         }
         let blocks = self.blocks()?;
         let given_horizon = self.horizon(&blocks)?;
         let horizon = self.family(&blocks, given_horizon);
         let solver = solver::solver(root, self.program, &mut self.remarks)?;
-        let Materials {
-            text: materials,
-            plane,
-            height,
-            breaks,
-            bonds,
-            densities,
-        } = self.materials(&blocks, given_horizon, solver.damage);
-        if materials.is_empty() {
-            let mut whys: Vec<String> = root.unmapped().into_iter().map(|u| u.why).collect();
-            // what nobody asked for yet says nothing
-            whys.retain(|why| !why.contains("counterpart"));
-            whys.dedup();
-            return Err(format!(
-                "no block has a material that can be mapped: {}",
-                whys.join("; ")
-            ));
+        let materials = self.materials(&blocks, given_horizon, solver.damage);
+        if materials.text.is_empty() {
+            return Err(unmapped_materials(root));
         }
-        let dimension = match plane {
+        let dimension = match materials.plane {
             Some(_) => 2,
             None => self.points.dimension,
         };
-        let mut out = format!("title = {}\nunits = \"none\"\n", quoted(title));
-        if dimension == 2 {
-            out += "dimension = 2\n";
-            out += &format!("plane = \"{}\"\n", plane.unwrap_or("strain"));
-        }
-        if let Some(height) = height {
-            out += &format!("thickness = {height:?}\n");
+        if let Some(height) = materials.height {
             // of a plane they are areas
             self.points.volume.iter_mut().for_each(|v| *v /= height);
         }
-        out += &format!("horizon = {horizon:?}\n");
-        let influence = discretization.map_or("constant", influence);
-        out += &format!("influence = \"{influence}\"\n");
-        out += "volume_scaling = false\ncalibration = \"continuum\"\n";
-        if bonds {
-            // each end gives half of its own constant
-            out += "interface = \"parallel\"\n";
-        }
-        if breaks {
-            out += "contact = false\n";
-        }
+        let mut out = format!("title = {}\nunits = \"none\"\n", quoted(title));
+        out += &head(&materials, dimension, horizon, discretization);
         out += &format!("body = {{ file = {} }}\n", quoted(mesh));
-        out += &materials;
+        out += &materials.text;
         if let Some(filters) = discretization.and_then(|d| d.list("Bond Filters")) {
             let target = filters::Target {
                 program: self.program,
@@ -308,12 +316,8 @@ impl<'a> Converter<'a> {
             };
             out += &conditions::conditions(given, &stage, &mut self.remarks);
         }
-        for (set, density) in densities.iter().filter(|_| solver.damping > 0.0) {
-            out += &format!(
-                "\n[[condition]]\nset = {}\ndamping = {:?}\n",
-                quoted(if densities.len() == 1 { "all" } else { set }),
-                density * solver.damping
-            );
+        if solver.damping > 0.0 {
+            out += &damped(&materials.densities, solver.damping);
         }
         let mut labels = vec![];
         if let Some(all) = root.list("Compute Class Parameters") {
@@ -327,6 +331,37 @@ impl<'a> Converter<'a> {
             contact.refuse("contact acts between bodies and where bonds broke, with a stiffness of its own: `contact`, `[[body]]`");
         }
         Ok(out)
+    }
+
+    /// Sets of points that the mesh and the conditions name.
+    fn point_sets(
+        &mut self,
+        discretization: Option<&Entry>,
+        given: Option<&Entry>,
+    ) -> Result<(), String> {
+        let sets = discretization.and_then(|d| d.list("Node Sets"));
+        for list in given.into_iter().chain(sets) {
+            for entry in list.all() {
+                if tree::same(&entry.key, "Create Node Set For Rank Deficient Nodes") {
+                    match list.is_true(&entry.key) {
+                        true => entry.refuse("points that lose all bonds are not held here"),
+                        false => list.idle(&[&entry.key]),
+                    }
+                    continue;
+                }
+                if let (Value::Text(_), Some(text)) = (&entry.value, entry.own()) {
+                    self.points.add_set(&entry.key, text, &self.folder)?;
+                }
+            }
+        }
+        for entry in given.into_iter().flat_map(Entry::lists) {
+            if self.program == Program::PeriLab
+                && let Some(sets) = entry.text("Node Set")
+            {
+                self.points.add_union(sets);
+            }
+        }
+        Ok(())
     }
 
     /// Blocks of the mesh with their lists.

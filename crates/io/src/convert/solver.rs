@@ -43,6 +43,44 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
     for other in others {
         other.refuse("a deck has one solver: write a second deck");
     }
+    refuse_models(solver);
+    let damage = match program {
+        Program::Peridigm => true,
+        Program::PeriLab => solver.is_true("Damage Models"),
+    };
+    let [from, to] = times(solver)?;
+    if !(to > from) {
+        return Err(format!("the solver ends at {to}, and begins at {from}"));
+    }
+    let all = All {
+        solver,
+        program,
+        from,
+        to,
+        damage,
+    };
+    if let Some(list) = solver.list("Verlet") {
+        return Ok(all.verlet(list, remarks));
+    }
+    let list = |name: &&str| solver.list(name);
+    if let Some(list) = ["Implicit", "Newmark"].iter().find_map(list) {
+        return Ok(all.newmark(list, remarks));
+    }
+    for name in [
+        "QuasiStatic",
+        "NOXQuasiStatic",
+        "Static",
+        "Linear Static Matrix Based",
+    ] {
+        if let Some(list) = solver.list(name) {
+            return Ok(all.statics(name, list, remarks));
+        }
+    }
+    Err("the solver is none of Verlet, Implicit, Newmark, QuasiStatic, NOXQuasiStatic, Static, Linear Static Matrix Based".into())
+}
+
+/// Names models and limits that there are none of here.
+fn refuse_models(solver: &Entry) {
     solver.idle(&["Verbose"]);
     if solver
         .text("Material Models")
@@ -59,14 +97,6 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
         }
         _ => {}
     }
-    let damage = match program {
-        Program::Peridigm => true,
-        Program::PeriLab => solver.is_true("Damage Models"),
-    };
-    let [from, to] = times(solver)?;
-    if !(to > from) {
-        return Err(format!("the solver ends at {to}, and begins at {from}"));
-    }
     for off in [
         "Thermal Models",
         "Additive Models",
@@ -79,19 +109,47 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
             solver.refuse_entry(off, "there are no such models");
         }
     }
-    let moving = Clock {
-        start: from,
-        scale: 1.0,
-    };
-    if let Some(list) = solver.list("Verlet") {
-        let (time, steps) = step(list, to - from, program);
+}
+
+/// What any method is about.
+struct All<'a> {
+    solver: &'a Entry,
+    program: Program,
+    from: f64,
+    to: f64,
+    damage: bool,
+}
+
+impl All<'_> {
+    fn duration(&self) -> f64 {
+        self.to - self.from
+    }
+
+    /// One that moves points.
+    fn motion(&self, text: String, steps: Option<u64>, damping: f64) -> Solver {
+        Solver {
+            text,
+            clock: Clock {
+                start: self.from,
+                scale: 1.0,
+            },
+            from: self.from,
+            to: self.to,
+            damage: self.damage,
+            steps,
+            damping,
+        }
+    }
+
+    fn verlet(&self, list: &Entry, remarks: &mut Vec<String>) -> Solver {
+        let (time, steps) = step(list, self.duration(), self.program);
         // a part of the velocity is taken in each step; Peridigm has no such entry
-        let part = match program {
+        let part = match self.program {
             Program::PeriLab => list.number("Numerical Damping"),
             Program::Peridigm => None,
         };
         let damping = match (part, steps) {
-            (Some(part), Some(steps)) if part >= 0.0 => part * steps as f64 / (to - from),
+            (Some(part), Some(steps)) if part >= 0.0 => part * steps as f64 / self.duration(),
             (Some(part), _) if part != 0.0 => {
                 list.refuse_entry(
                     "Numerical Damping",
@@ -101,36 +159,26 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
             }
             _ => 0.0,
         };
-        if program == Program::PeriLab {
+        if self.program == Program::PeriLab {
             remarks.push("Verlet of PeriLab (as of August 2026) adds half of the acceleration in each step: its points move as if twice as heavy, from the second step on".into());
         }
-        return Ok(Solver {
-            text: format!("\n[run]\n{time}"),
-            clock: moving,
-            from,
-            to,
-            damage,
-            steps,
-            damping,
-        });
+        self.motion(format!("\n[run]\n{time}"), steps, damping)
     }
-    for name in ["Implicit", "Newmark"] {
-        let Some(list) = solver.list(name) else {
-            continue;
-        };
-        let (time, steps) = match program {
-            Program::Peridigm => step(list, to - from, program),
+
+    fn newmark(&self, list: &Entry, remarks: &mut Vec<String>) -> Solver {
+        let (time, steps) = match self.program {
+            Program::Peridigm => step(list, self.duration(), self.program),
             Program::PeriLab => {
                 // its steps are those of statics
                 list.idle(&["Safety Factor", "Fixed dt", "Numerical Damping"]);
-                let steps = increments(solver, list, to - from, program);
-                let step = (to - from) / steps as f64;
+                let steps = increments(self.solver, list, self.duration(), self.program);
+                let step = self.duration() / steps as f64;
                 let text = format!("steps = {steps}\ntime_step = {step:?}\n");
                 (text, Some(steps))
             }
         };
         let mut text = format!("\n[run]\nintegrator = \"newmark\"\n{time}");
-        let names = match program {
+        let names = match self.program {
             Program::Peridigm => [("Beta", "beta"), ("Gamma", "gamma")],
             Program::PeriLab => [("Newmark Alpha", "beta"), ("Newmark Delta", "gamma")],
         };
@@ -140,29 +188,15 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
             }
         }
         residuals(list);
-        if program == Program::Peridigm {
+        if self.program == Program::Peridigm {
             remarks.push("Peridigm takes the first acceleration of implicit motion as 0; here forces act from the start: loads that are there at t = 0 differ by half a step of them".into());
         }
-        return Ok(Solver {
-            text,
-            clock: moving,
-            from,
-            to,
-            damage,
-            steps,
-            damping: 0.0,
-        });
+        self.motion(text, steps, 0.0)
     }
-    for name in [
-        "QuasiStatic",
-        "NOXQuasiStatic",
-        "Static",
-        "Linear Static Matrix Based",
-    ] {
-        let Some(list) = solver.list(name) else {
-            continue;
-        };
-        let increments = increments(solver, list, to - from, program);
+
+    fn statics(&self, name: &str, list: &Entry, remarks: &mut Vec<String>) -> Solver {
+        let from = self.from;
+        let increments = increments(self.solver, list, self.duration(), self.program);
         let method = if name.starts_with("Linear") {
             "linear"
         } else {
@@ -171,15 +205,15 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
         residuals(list);
         // as many whole steps as are nearest to the time that is asked for
         let fixed = list.number("Fixed dt").filter(|dt| *dt > 0.0);
-        let to = match (program, fixed) {
+        let to = match (self.program, fixed) {
             (Program::PeriLab, Some(dt)) if same(name, "Static") => from + dt * increments as f64,
-            _ => to,
+            _ => self.to,
         };
         remarks.push(format!(
             "t goes from 0 to 1 in statics: conditions have ({from:?} + {:?} t) in place of t",
             to - from
         ));
-        return Ok(Solver {
+        Solver {
             text: format!("\n[statics]\nmethod = \"{method}\"\nincrements = {increments}\n"),
             clock: Clock {
                 start: from,
@@ -187,12 +221,11 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
             },
             from,
             to,
-            damage,
+            damage: self.damage,
             steps: Some(increments),
             damping: 0.0,
-        });
+        }
     }
-    Err("the solver is none of Verlet, Implicit, Newmark, QuasiStatic, NOXQuasiStatic, Static, Linear Static Matrix Based".into())
 }
 
 fn residuals(list: &Entry) {

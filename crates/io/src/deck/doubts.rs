@@ -5,7 +5,7 @@ use peridyne::law::micromodulus::Moments;
 use peridyne::message;
 use peridyne::quantity::{Dimension, Message, Quantity};
 use peridyne::run::Info;
-use peridyne::spec::{Criterion, LawSpec, MaterialSpec, Spec, Stepper};
+use peridyne::spec::{Criterion, LawSpec, MaterialSpec, Spec};
 use peridyne_theory::nominal::nominal_moduli;
 
 /// Densities of solids (kg/m³): foams have 20, osmium 22,590.
@@ -51,7 +51,7 @@ pub fn doubts(spec: &Spec, info: &Info, units: UnitSystem) -> Vec<Doubt> {
             all.push(Doubt { path, text });
         };
         // equilibrium asks for no density
-        if !matches!(info.stepper, Stepper::Statics(_)) {
+        if info.stepper.statics().is_none() {
             match (of_density(m, units), of_speed(m, nominal.young, units)) {
                 (Some(text), _) => tell("density", text),
                 (None, Some(text)) => tell("law", text),

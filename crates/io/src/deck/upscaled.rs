@@ -98,7 +98,6 @@ pub fn upscaled(
     let mut table = table(deck)?;
     let mut files = beside(deck, &mut table);
     let mut notes = vec![];
-    let plain = |value: f64, dim: Dim| Value::Float(value / deck.units.plain_factor(dim));
     let title = deck.spec.title.clone();
     table.insert(
         "title".into(),
@@ -108,21 +107,57 @@ pub fn upscaled(
         )
         .into(),
     );
+    upscale_body(deck, coarse, factor, &mut table)?;
+    let horizon = match coarse.horizon {
+        Horizon::Ratio(m) => {
+            let mut ratio = Table::new();
+            ratio.insert("m_ratio".into(), Value::Integer(i64::from(m)));
+            Value::Table(ratio)
+        }
+        Horizon::Length(d) => plain(deck, d, Dim::LENGTH),
+    };
+    table.insert("horizon".into(), horizon);
+    if table.remove("thermal").is_some() {
+        notes.push(
+            "Temperature was left out: the coarse model has no thermal motion of its own.".into(),
+        );
+    }
+    if coarse.potential().is_some() {
+        upscale_potentials(deck, coarse, &mut table)?;
+        // a file whose rows became keys is no longer named
+        let named = toml::to_string(&table).map_err(|e| e.to_string())?;
+        files.retain(|(_, name)| named.contains(&**name));
+    }
+    upscale_times(deck, coarse, factor, end, &mut table);
+    Ok(Rewritten {
+        text: toml::to_string_pretty(&table).map_err(|e| e.to_string())?,
+        files,
+        notes,
+    })
+}
+
+/// A number as the deck writes it without a unit.
+fn plain(deck: &Deck, value: f64, dim: Dim) -> Value {
+    Value::Float(value / deck.units.plain_factor(dim))
+}
+
+/// Spacing, origin and cells of the coarse body.
+fn upscale_body(deck: &Deck, coarse: &Spec, factor: u32, table: &mut Table) -> Result<(), String> {
     let spacing = match &coarse.body {
         BodySpec::Lattice { spacing, .. } | BodySpec::Sites { spacing, .. } => *spacing,
         BodySpec::Cloud(_) | BodySpec::Several(_) => {
             return Err("only a lattice body can be upscaled".into());
         }
     };
-    let body = inner(&mut table, "body").ok_or("the deck has no body")?;
-    body.insert("spacing".into(), plain(spacing, Dim::LENGTH));
+    let body = inner(table, "body").ok_or("the deck has no body")?;
+    body.insert("spacing".into(), plain(deck, spacing, Dim::LENGTH));
     // coarse points are points of the fine body
     if let BodySpec::Lattice { origin, .. } = &coarse.body
         && !body.contains_key("origin")
         && *origin != [0.0; 3]
     {
         let along = origin[..coarse.dimension].iter();
-        let along = along.map(|c| plain(*c, Dim::LENGTH));
+        let along = along.map(|c| plain(deck, *c, Dim::LENGTH));
         body.insert("origin".into(), Value::Array(along.collect()));
     }
     if let Some(Value::Array(cells)) = body.get_mut("cells") {
@@ -136,67 +171,58 @@ pub fn upscaled(
             *n = Value::Integer(count / i64::from(factor));
         }
     }
-    let horizon = match coarse.horizon {
-        Horizon::Ratio(m) => {
-            let mut ratio = Table::new();
-            ratio.insert("m_ratio".into(), Value::Integer(i64::from(m)));
-            Value::Table(ratio)
+    Ok(())
+}
+
+/// The family of atoms, their density, and the numbers of their potentials.
+fn upscale_potentials(deck: &Deck, coarse: &Spec, table: &mut Table) -> Result<(), String> {
+    match coarse.family {
+        FamilyChoice::Neighbours => {
+            // of atoms that are near now the cut-off is the potential's
+            table.remove("horizon");
+            table.remove("family");
         }
-        Horizon::Length(d) => plain(d, Dim::LENGTH),
-    };
-    table.insert("horizon".into(), horizon);
-    if table.remove("thermal").is_some() {
-        notes.push(
-            "Temperature was left out: the coarse model has no thermal motion of its own.".into(),
-        );
+        FamilyChoice::Auto
+        | FamilyChoice::Stencil
+        | FamilyChoice::List
+        | FamilyChoice::Reference => {
+            table.insert("family".into(), "stencil".into());
+        }
     }
-    if coarse.potential().is_some() {
-        match coarse.family {
-            FamilyChoice::Neighbours => {
-                // of atoms that are near now the cut-off is the potential's
-                table.remove("horizon");
-                table.remove("family");
-            }
-            FamilyChoice::Auto
-            | FamilyChoice::Stencil
-            | FamilyChoice::List
-            | FamilyChoice::Reference => {
-                table.insert("family".into(), "stencil".into());
-            }
+    let written = materials(table).ok_or("the deck has no material")?;
+    for (n, material) in written.into_iter().enumerate() {
+        let [Some(fine), Some(new)] = [&deck.spec, coarse].map(|s| s.materials.get(n)) else {
+            return Err("the deck has more materials than its body".into());
+        };
+        material.remove("mass");
+        material.insert("density".into(), plain(deck, new.density, Dim::DENSITY));
+        let law = inner(material, "law").ok_or("the material has no law")?;
+        if let (Some(fine), Some(new)) = (fine.law.potential(), new.law.potential()) {
+            law_numbers(law, deck, fine, new)?;
         }
-        let written = materials(&mut table).ok_or("the deck has no material")?;
-        for (n, material) in written.into_iter().enumerate() {
-            let [Some(fine), Some(new)] = [&deck.spec, coarse].map(|s| s.materials.get(n)) else {
-                return Err("the deck has more materials than its body".into());
-            };
-            material.remove("mass");
-            material.insert("density".into(), plain(new.density, Dim::DENSITY));
-            let law = inner(material, "law").ok_or("the material has no law")?;
-            if let (Some(fine), Some(new)) = (fine.law.potential(), new.law.potential()) {
-                law_numbers(law, deck, fine, new)?;
-            }
-        }
-        if let Some(Value::Array(pairs)) = table.get_mut("pair") {
-            let both = deck.spec.potentials.iter().zip(&coarse.potentials);
-            for (pair, (fine, new)) in pairs.iter_mut().zip(both) {
-                let law = pair.as_table_mut().and_then(|p| inner(p, "law"));
-                if let Some(law) = law {
-                    law_numbers(law, deck, &fine.potential, &new.potential)?;
-                }
-            }
-        }
-        // a file whose rows became keys is no longer named
-        let named = toml::to_string(&table).map_err(|e| e.to_string())?;
-        files.retain(|(_, name)| named.contains(&**name));
     }
+    if let Some(Value::Array(pairs)) = table.get_mut("pair") {
+        let both = deck.spec.potentials.iter().zip(&coarse.potentials);
+        for (pair, (fine, new)) in pairs.iter_mut().zip(both) {
+            let law = pair.as_table_mut().and_then(|p| inner(p, "law"));
+            if let Some(law) = law {
+                law_numbers(law, deck, &fine.potential, &new.potential)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Steps, and how often something is written.
+fn upscale_times(deck: &Deck, coarse: &Spec, factor: u32, end: Option<f64>, table: &mut Table) {
     // statics have increments of load, which stay
-    if let Some(run) = inner(&mut table, "run") {
+    if let Some(run) = inner(table, "run") {
         if let TimeStep::Fixed(dt) = coarse.schedule.time_step {
-            run.insert("time_step".into(), plain(dt, Dim::TIME));
+            run.insert("time_step".into(), plain(deck, dt, Dim::TIME));
         }
         if let Some(end) = end {
             run.remove("steps");
-            run.insert("duration".into(), plain(end, Dim::TIME));
+            run.insert("duration".into(), plain(deck, end, Dim::TIME));
         } else if run.contains_key("steps") {
             run.insert("steps".into(), Value::Integer(coarse.schedule.steps as i64));
         }
@@ -208,18 +234,13 @@ pub fn upscaled(
         Some(_) => 1.0 / f64::from(factor),
         None => after / before,
     };
-    if let Some(output) = inner(&mut table, "output") {
+    if let Some(output) = inner(table, "output") {
         for key in ["every", "history"] {
             if let Some(Value::Integer(n)) = output.get_mut(key) {
                 *n = ((*n as f64 * fewer).ceil() as i64).max(1);
             }
         }
     }
-    Ok(Rewritten {
-        text: toml::to_string_pretty(&table).map_err(|e| e.to_string())?,
-        files,
-        notes,
-    })
 }
 
 /// The numbers of the coarse potential that are others into the law's table.

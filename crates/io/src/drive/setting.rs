@@ -5,7 +5,6 @@ use crate::deck::Dim;
 use crate::write::run_json::{FieldNote, RigidNote, Setting, UnitNames};
 use peridyne::observe::Snapshot;
 use peridyne::run::Simulation;
-use peridyne::spec::Stepper;
 
 impl Plan {
     /// What reports tell of this run.
@@ -44,7 +43,7 @@ impl Plan {
             sources: self.sources.clone(),
             dimension: sim.info().dimension,
             spacing: sim.info().spacing,
-            statics: matches!(sim.info().stepper, Stepper::Statics(_)),
+            statics: sim.info().stepper.statics().is_some(),
             atoms: self.atoms.is_some(),
             units: UnitNames {
                 length: self.units.unit(Dim::LENGTH),

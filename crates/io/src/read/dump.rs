@@ -289,44 +289,149 @@ const OWN: [&str; 15] = [
     "x", "y", "z", "xu", "yu", "zu", "xs", "ys", "zs", "xsu", "ysu", "zsu", "ix", "iy", "iz",
 ];
 
+/// Columns in which a dump has what is known of atoms.
+struct Found {
+    id: usize,
+    number: Option<usize>,
+    /// The element, or the number of the type.
+    kind: usize,
+    plain: Option<[usize; 3]>,
+    scaled: Option<[usize; 3]>,
+    /// One of both.
+    place: [usize; 3],
+    velocity: Option<[usize; 3]>,
+    force: Option<[usize; 3]>,
+    energy: Option<usize>,
+    mass: Option<usize>,
+}
+
+/// An atom.
+struct Row {
+    id: usize,
+    species: u32,
+    position: [f64; 3],
+    velocity: Option<[f64; 3]>,
+    force: Option<[f64; 3]>,
+    energy: Option<f64>,
+    mass: Option<f64>,
+}
+
+impl Found {
+    fn of<R: BufRead>(stream: &Stream<R>, columns: &[String]) -> Result<Found, ReadError> {
+        let find = |name: &str| columns.iter().position(|c| c == name);
+        let missing = |what: &str| {
+            stream.error(format!(
+                "the dump has no column {what}; it has {}",
+                columns.join(" ")
+            ))
+        };
+        let id = find("id").ok_or_else(|| missing("`id`"))?;
+        let number = find("type");
+        let kind = find("element").or(number);
+        let plain = triple(columns, ["x", "y", "z"]).or(triple(columns, ["xu", "yu", "zu"]));
+        let scaled = triple(columns, ["xs", "ys", "zs"]).or(triple(columns, ["xsu", "ysu", "zsu"]));
+        Ok(Found {
+            id,
+            number,
+            kind: kind.ok_or_else(|| missing("`type` or `element`"))?,
+            plain,
+            scaled,
+            place: plain
+                .or(scaled)
+                .ok_or_else(|| missing("`x y z`, `xu yu zu` or `xs ys zs`"))?,
+            velocity: triple(columns, ["vx", "vy", "vz"]),
+            force: triple(columns, ["fx", "fy", "fz"]),
+            energy: find("c_pe"),
+            mass: find("mass"),
+        })
+    }
+
+    /// All other columns.
+    fn more(&self, columns: &[String]) -> Vec<usize> {
+        let known = |c: usize| {
+            let vectors = [self.plain, self.scaled, self.velocity, self.force];
+            vectors.into_iter().flatten().flatten().any(|k| k == c)
+                || [
+                    Some(self.id),
+                    Some(self.kind),
+                    self.number,
+                    self.energy,
+                    self.mass,
+                ]
+                .contains(&Some(c))
+                || OWN.contains(&&*columns[c])
+        };
+        (0..columns.len()).filter(|c| !known(*c)).collect()
+    }
+
+    /// The atom of the stream's line, which has these words.
+    fn row<R: BufRead>(
+        &self,
+        stream: &Stream<R>,
+        head: &Head,
+        words: &[&str],
+        species: u32,
+    ) -> Result<Row, ReadError> {
+        let vector = |at: [usize; 3]| -> Result<[f64; 3], ReadError> {
+            let mut v = [0.0; 3];
+            for (c, column) in v.iter_mut().zip(at) {
+                *c = stream.finite(words[column], &head.columns[column])?;
+            }
+            Ok(v)
+        };
+        let mut position = vector(self.place)?;
+        if self.plain.is_none() {
+            position = head.scaled(position);
+        }
+        Ok(Row {
+            id: stream.count(words[self.id], "the id")?,
+            species,
+            position,
+            velocity: self.velocity.map(vector).transpose()?,
+            force: self.force.map(vector).transpose()?,
+            energy: { self.energy }
+                .map(|c| stream.finite(words[c], "c_pe"))
+                .transpose()?,
+            mass: match { self.mass }
+                .map(|c| stream.finite(words[c], "the mass"))
+                .transpose()?
+            {
+                Some(m) if m <= 0.0 => {
+                    return Err(stream.error(format!("the mass is {m}: it must be positive")));
+                }
+                own => own,
+            },
+        })
+    }
+}
+
+/// Rows of a frame in order of their ids.
+///
+/// # Errors
+/// Two have one id.
+fn sorted<R: BufRead>(stream: &Stream<R>, head: &Head, rows: &mut [Row]) -> Result<(), ReadError> {
+    rows.sort_by_key(|r| r.id);
+    if let Some(w) = rows.windows(2).find(|w| w[0].id == w[1].id) {
+        return Err(stream.error(format!(
+            "the id {} occurs twice in the frame of step {}",
+            w[0].id, head.step
+        )));
+    }
+    Ok(())
+}
+
 pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadError> {
     let columns = &head.columns;
-    let find = |name: &str| columns.iter().position(|c| c == name);
-    let missing = |what: &str| {
-        stream.error(format!(
-            "the dump has no column {what}; it has {}",
-            columns.join(" ")
-        ))
-    };
-    let id = find("id").ok_or_else(|| missing("`id`"))?;
-    let number = find("type");
-    let kind = find("element").or(number);
-    let kind = kind.ok_or_else(|| missing("`type` or `element`"))?;
-    let plain = triple(columns, ["x", "y", "z"]).or(triple(columns, ["xu", "yu", "zu"]));
-    let scaled = triple(columns, ["xs", "ys", "zs"]).or(triple(columns, ["xsu", "ysu", "zsu"]));
-    let place = plain
-        .or(scaled)
-        .ok_or_else(|| missing("`x y z`, `xu yu zu` or `xs ys zs`"))?;
-    let velocity = triple(columns, ["vx", "vy", "vz"]);
-    let force = triple(columns, ["fx", "fy", "fz"]);
-    let energy = find("c_pe");
-    let mass = find("mass");
-    let known = |c: usize| {
-        let vectors = [plain, scaled, velocity, force].into_iter().flatten();
-        vectors.flatten().any(|k| k == c)
-            || [Some(id), Some(kind), number, energy, mass].contains(&Some(c))
-            || OWN.contains(&&*columns[c])
-    };
-    let more: Vec<usize> = (0..columns.len()).filter(|c| !known(*c)).collect();
+    let found = Found::of(stream, columns)?;
+    let more = found.more(columns);
     let mut others: Vec<(String, Vec<f64>)> = { more.iter() }
         .map(|c| (columns[*c].clone(), vec![]))
         .collect();
-    let mut ids = vec![];
     let mut names = Names::default();
     // the number of the type, of each species
     let mut numbers: Vec<u32> = vec![];
     stream.room(head.count, columns.len())?;
-    let mut rows = Vec::with_capacity(head.count.min(1 << 20));
+    let mut rows: Vec<Row> = Vec::with_capacity(head.count.min(1 << 20));
     for k in 0..head.count {
         stream.expect(|| {
             format!(
@@ -343,61 +448,24 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
                 columns.join(" ")
             )));
         }
-        let vector = |at: [usize; 3]| -> Result<[f64; 3], ReadError> {
-            let mut v = [0.0; 3];
-            for (c, column) in v.iter_mut().zip(at) {
-                *c = stream.finite(words[column], &columns[column])?;
-            }
-            Ok(v)
-        };
-        let mut x = vector(place)?;
-        if plain.is_none() {
-            x = head.scaled(x);
-        }
-        let species = names.place(words[kind]);
+        let species = names.place(words[found.kind]);
         if numbers.len() < names.species.len() {
-            let written = number.map_or(words[kind], |c| words[c]);
+            let written = found.number.map_or(words[found.kind], |c| words[c]);
             numbers.push(written.parse().unwrap_or(u32::MAX));
         }
         for (c, (_, values)) in more.iter().zip(&mut others) {
             values.push(number::number(words[*c]).unwrap_or(f64::NAN));
         }
-        let own = stream.count(words[id], "the id")?;
-        ids.push(own);
-        rows.push((
-            own,
-            species,
-            x,
-            velocity.map(vector).transpose()?,
-            force.map(vector).transpose()?,
-            energy
-                .map(|c| stream.finite(words[c], "c_pe"))
-                .transpose()?,
-            match mass
-                .map(|c| stream.finite(words[c], "the mass"))
-                .transpose()?
-            {
-                Some(m) if m <= 0.0 => {
-                    return Err(stream.error(format!("the mass is {m}: it must be positive")));
-                }
-                own => own,
-            },
-        ));
+        rows.push(found.row(stream, &head, &words, species)?);
     }
-    rows.sort_by_key(|r| r.0);
-    let mut places: Vec<usize> = (0..ids.len()).collect();
-    places.sort_by_key(|k| ids[*k]);
+    let mut places: Vec<usize> = (0..rows.len()).collect();
+    places.sort_by_key(|k| rows[*k].id);
     for (_, values) in &mut others {
         *values = places.iter().map(|k| values[*k]).collect();
     }
     // words are no numbers
     others.retain(|(_, values)| values.iter().any(|v| v.is_finite()));
-    if let Some(w) = rows.windows(2).find(|w| w[0].0 == w[1].0) {
-        return Err(stream.error(format!(
-            "the id {} occurs twice in the frame of step {}",
-            w[0].0, head.step
-        )));
-    }
+    sorted(stream, &head, &mut rows)?;
     // type 1 is the first species whatever atom comes first
     let mut order: Vec<u32> = (0..names.species.len() as u32).collect();
     order.sort_by_key(|k| (numbers[*k as usize], *k));
@@ -413,11 +481,17 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
             .iter()
             .map(|k| names.species[*k as usize].clone())
             .collect(),
-        kind: rows.iter().map(|r| new[r.1 as usize]).collect(),
-        position: rows.iter().map(|r| r.2).collect(),
-        velocity: velocity.map(|_| rows.iter().filter_map(|r| r.3).collect()),
-        force: force.map(|_| rows.iter().filter_map(|r| r.4).collect()),
-        energy: energy.map(|_| rows.iter().filter_map(|r| r.5).collect()),
+        kind: rows.iter().map(|r| new[r.species as usize]).collect(),
+        position: rows.iter().map(|r| r.position).collect(),
+        velocity: found
+            .velocity
+            .map(|_| rows.iter().filter_map(|r| r.velocity).collect()),
+        force: found
+            .force
+            .map(|_| rows.iter().filter_map(|r| r.force).collect()),
+        energy: found
+            .energy
+            .map(|_| rows.iter().filter_map(|r| r.energy).collect()),
         low: head.low,
         high: head.high,
         periodic: head.periodic,
@@ -427,8 +501,8 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
         from_momenta: false,
         columns: others,
     };
-    if mass.is_some() {
-        atoms.take_masses(rows.iter().filter_map(|r| r.6).collect());
+    if found.mass.is_some() {
+        atoms.take_masses(rows.iter().filter_map(|r| r.mass).collect());
     }
     Ok(atoms)
 }

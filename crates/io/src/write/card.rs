@@ -163,7 +163,6 @@ fn json(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Value {
 
 fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> String {
     let mut t = String::new();
-    let pressure = Dim::PRESSURE;
     let h = card.coarse.spacing / card.fine.spacing;
     let _ = writeln!(
         t,
@@ -177,7 +176,34 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
         let _ = writeln!(t, "- {}", units.tell(note));
     }
     let _ = writeln!(t, "\nGradient equations: {}.", card.verdict);
-    t += "\n| | fine | coarse |\n|---|---:|---:|\n";
+    t += &both_models(card, units);
+    let what = match card.statics {
+        true => "points × bonds, of an iteration",
+        false => "points × bonds × steps, both at their stable step",
+    };
+    let _ = writeln!(t, "\nPredicted cost ({what}): 1 : {:.1}.\n", card.cost);
+    t += &waves(card, units);
+    if !card.kernels.is_empty() {
+        t += "\nKernels for the coarse model, each fitted to the same moduli, the best first:\n\n| influence | horizon | bonds | gradient equation | c₄ | length scale √\\|c₄/c₂\\| | 1 % waves shorter than |\n|---|---:|---:|---|---:|---:|---:|\n";
+    }
+    for row in kernel_rows(&card.kernels, units) {
+        let _ = writeln!(t, "| {} |", row.join(" | "));
+    }
+    t += &strain_energies(card, units);
+    t += &nonlinear(card, units);
+    if let Some(m) = measured {
+        t += &both_runs(m, units);
+    }
+    t += "\n![dispersion](dispersion.png)\n\n![energy](energy.png)\n";
+    if measured.is_some_and(|m| m.energies.time.len() > 1) {
+        t += "\n![energies of both runs](energies.png)\n";
+    }
+    t
+}
+
+/// A table of what both models are.
+fn both_models(card: &Card, units: UnitSystem) -> String {
+    let mut t = String::from("\n| | fine | coarse |\n|---|---:|---:|\n");
     let mut row = |name: &str, f: f64, c: f64, dim: Dim| {
         let (f, c) = (units.show(f, dim), units.show(c, dim));
         let _ = writeln!(t, "| {name} | {f} | {c} |");
@@ -204,7 +230,7 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
         "pressure of the reference",
         card.fine.pressure,
         card.coarse.pressure,
-        pressure,
+        Dim::PRESSURE,
     );
     let n = card.fine.stiffness.len();
     for (i, j) in [(0, 0), (0, 1), (n - 1, n - 1)] {
@@ -213,7 +239,7 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
                 &format!("C{}{}", i + 1, j + 1),
                 card.fine.stiffness[i][j],
                 card.coarse.stiffness[i][j],
-                pressure,
+                Dim::PRESSURE,
             );
         }
         if n == 1 {
@@ -234,12 +260,12 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
             coefficient(g.order),
         );
     }
-    let what = match card.statics {
-        true => "points × bonds, of an iteration",
-        false => "points × bonds × steps, both at their stable step",
-    };
-    let _ = writeln!(t, "\nPredicted cost ({what}): 1 : {:.1}.\n", card.cost);
-    t += "| direction | error | waves shorter than |\n|---|---:|---:|\n";
+    t
+}
+
+/// A table of the waves that the coarse model has right.
+fn waves(card: &Card, units: UnitSystem) -> String {
+    let mut t = String::from("| direction | error | waves shorter than |\n|---|---:|---:|\n");
     for d in &card.dispersion {
         for (tolerance, wavelength) in &d.wavelengths {
             let text = wavelength.map_or("none".into(), |l| {
@@ -252,24 +278,31 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
             let _ = writeln!(t, "| {} | {} % | {text} |", d.direction, 100.0 * tolerance);
         }
     }
-    if !card.kernels.is_empty() {
-        t += "\nKernels for the coarse model, each fitted to the same moduli, the best first:\n\n| influence | horizon | bonds | gradient equation | c₄ | length scale √\\|c₄/c₂\\| | 1 % waves shorter than |\n|---|---:|---:|---|---:|---:|---:|\n";
-    }
-    for row in kernel_rows(&card.kernels, units) {
-        let _ = writeln!(t, "| {} |", row.join(" | "));
-    }
-    t += "\n| strain | mode | energy density, fine | coarse | difference |\n|---:|---|---:|---:|---:|\n";
+    t
+}
+
+/// A table of energies under homogeneous strain.
+fn strain_energies(card: &Card, units: UnitSystem) -> String {
+    let mut t = String::from(
+        "\n| strain | mode | energy density, fine | coarse | difference |\n|---:|---|---:|---:|---:|\n",
+    );
     for e in &card.energies {
         let _ = writeln!(
             t,
             "| {} | {} | {} | {} | {:+.3} % |",
             e.strain,
             e.mode,
-            units.show(e.fine, pressure),
-            units.show(e.coarse, pressure),
+            units.show(e.fine, Dim::PRESSURE),
+            units.show(e.coarse, Dim::PRESSURE),
             100.0 * (e.coarse - e.fine) / e.fine
         );
     }
+    t
+}
+
+/// A table of the nonlinear gradient equation, where there is one.
+fn nonlinear(card: &Card, units: UnitSystem) -> String {
+    let mut t = String::new();
     if !card.nonlinear.is_empty() {
         t += "\nThe nonlinear gradient equation ρ ÿ = Σ c · term, at the stretch y':\n\n| y' | order | term | fine | coarse |\n|---:|---:|---|---:|---:|\n";
     }
@@ -284,26 +317,26 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
             units.show(g.coarse, coefficient(g.order))
         );
     }
-    if let Some(m) = measured {
-        let _ = writeln!(
-            t,
-            "\nBoth were run to {}, the end of the coarse deck: {} and {} steps in {:.3} and {:.3} s of stepping, {:.1} times as fast. The displacements at the {} coarse points differ by {:.3} % (root mean square, largest displacement {}).",
-            units.show(m.time, Dim::TIME),
-            m.steps[0],
-            m.steps[1],
-            m.seconds[0],
-            m.seconds[1],
-            m.seconds[0] / m.seconds[1],
-            m.points,
-            100.0 * m.error,
-            units.show(m.largest, Dim::LENGTH)
-        );
-        let _ = writeln!(t, "\nThe {}.", energies_told(&m.energies));
-    }
-    t += "\n![dispersion](dispersion.png)\n\n![energy](energy.png)\n";
-    if measured.is_some_and(|m| m.energies.time.len() > 1) {
-        t += "\n![energies of both runs](energies.png)\n";
-    }
+    t
+}
+
+/// What running both models said.
+fn both_runs(m: &Measured, units: UnitSystem) -> String {
+    let mut t = String::new();
+    let _ = writeln!(
+        t,
+        "\nBoth were run to {}, the end of the coarse deck: {} and {} steps in {:.3} and {:.3} s of stepping, {:.1} times as fast. The displacements at the {} coarse points differ by {:.3} % (root mean square, largest displacement {}).",
+        units.show(m.time, Dim::TIME),
+        m.steps[0],
+        m.steps[1],
+        m.seconds[0],
+        m.seconds[1],
+        m.seconds[0] / m.seconds[1],
+        m.points,
+        100.0 * m.error,
+        units.show(m.largest, Dim::LENGTH)
+    );
+    let _ = writeln!(t, "\nThe {}.", energies_told(&m.energies));
     t
 }
 

@@ -11,6 +11,7 @@ use crate::fix::FixKind;
 use crate::fix::average::{Ave, Average, Source};
 use crate::printf::Format;
 use crate::session::Session;
+use crate::text::Word;
 use crate::thermo::columns::Column;
 
 /// Steps that anybody takes.
@@ -81,78 +82,27 @@ impl Session<'_> {
         if words.is_empty() {
             args.next("a value: c_ID, c_ID[i], f_ID, f_ID[i] or v_name")?;
         }
-        let (mut vector, mut ave, mut start) = (false, Ave::One, 0);
-        let (mut file, mut titles) = (None, [None, None, None]);
-        let mut format = Format::parse(" %g").map_err(Problem::new)?;
-        let mut plain = vec![false; words.len()];
-        while let Some(word) = args.optional() {
-            match word.as_str() {
-                "mode" => {
-                    let mode = args.next("scalar or vector")?;
-                    vector = match mode.as_str() {
-                        "scalar" => false,
-                        "vector" => true,
-                        _ => return Err(args.unknown(mode, "the mode", ["scalar", "vector"])),
-                    };
-                }
-                "ave" => {
-                    let how = args.next("one, running or window")?;
-                    ave = match how.as_str() {
-                        "one" => Ave::One,
-                        "running" => Ave::Running,
-                        "window" => Ave::Window(args.count("the number of means", 1)? as usize),
-                        _ => {
-                            return Err(args.unknown(
-                                how,
-                                "the mean",
-                                ["one", "running", "window"],
-                            ));
-                        }
-                    };
-                }
-                "start" => start = args.count("a step", 0)?.min(MOST_STEPS),
-                "off" => {
-                    let k = args.count("the number of a value", 1)? as usize;
-                    match plain.get_mut(k - 1) {
-                        Some(slot) => *slot = true,
-                        None => {
-                            return Err(Problem::at(
-                                word.span,
-                                format!("there are {} values, not {k}", words.len()),
-                            ));
-                        }
-                    }
-                }
-                "file" => file = Some(args.next("a file name")?),
-                "format" => format = number_format(args.next("a format")?)?,
-                "title1" => titles[0] = Some(args.next("a title")?.as_str().to_string()),
-                "title2" => titles[1] = Some(args.next("a title")?.as_str().to_string()),
-                "title3" => titles[2] = Some(args.next("a title")?.as_str().to_string()),
-                _ => {
-                    let known = [
-                        "mode", "ave", "start", "off", "file", "format", "title1", "title2",
-                        "title3",
-                    ];
-                    return Err(args.unknown(word, "the option", known));
-                }
-            }
-        }
+        let options = Options::read(args, words.len())?;
+        let vector = options.vector;
         let mut inputs = Vec::new();
-        for (word, plain) in words.iter().zip(plain) {
+        for (word, plain) in words.iter().zip(&options.plain) {
             let column = Column::parse(word)?;
             if vector {
                 self.column_vector(&column).map(drop).or_else(later)?;
             } else {
                 self.check_column(&column)?;
             }
-            inputs.push(Source { column, plain });
+            inputs.push(Source {
+                column,
+                plain: *plain,
+            });
         }
-        let file = match file {
+        let file = match options.file {
             None => None,
             Some(name) => {
                 let opened = self.folder.open(name.as_str(), false);
                 let mut sink = opened.map_err(|p| p.or_at(name.span))?;
-                let [first, second, third] = titles;
+                let [first, second, third] = options.titles;
                 let all = words.join(" ");
                 sink.line(&first.unwrap_or_else(|| format!("# Time-averaged data for fix {id}")))?;
                 let default = if vector {
@@ -174,17 +124,95 @@ impl Session<'_> {
             every,
             repeat,
             frequency,
-            ave,
-            next: Average::first(every, repeat, frequency, self.progress.step, start),
+            ave: options.ave,
+            next: Average::first(every, repeat, frequency, self.progress.step, options.start),
             taken: 0,
             sum: Vec::new(),
             total: Vec::new(),
             outputs: 0,
             window: VecDeque::new(),
             result: Vec::new(),
-            format,
+            format: options.format,
             file,
         })
+    }
+}
+
+/// What may be said after the values of `fix ave/time`.
+struct Options<'a> {
+    vector: bool,
+    ave: Ave,
+    start: u64,
+    file: Option<&'a Word>,
+    titles: [Option<String>; 3],
+    format: Format,
+    /// Of each value: is it taken as it is, without a mean?
+    plain: Vec<bool>,
+}
+
+impl<'a> Options<'a> {
+    fn read(args: &mut Args<'a>, values: usize) -> Result<Options<'a>> {
+        let mut all = Options {
+            vector: false,
+            ave: Ave::One,
+            start: 0,
+            file: None,
+            titles: [None, None, None],
+            format: Format::parse(" %g").map_err(Problem::new)?,
+            plain: vec![false; values],
+        };
+        while let Some(word) = args.optional() {
+            match word.as_str() {
+                "mode" => all.vector = is_vector(args)?,
+                "ave" => all.ave = ave(args)?,
+                "start" => all.start = args.count("a step", 0)?.min(MOST_STEPS),
+                "off" => {
+                    let k = args.count("the number of a value", 1)? as usize;
+                    match all.plain.get_mut(k - 1) {
+                        Some(slot) => *slot = true,
+                        None => {
+                            return Err(Problem::at(
+                                word.span,
+                                format!("there are {} values, not {k}", values),
+                            ));
+                        }
+                    }
+                }
+                "file" => all.file = Some(args.next("a file name")?),
+                "format" => all.format = number_format(args.next("a format")?)?,
+                "title1" => all.titles[0] = Some(args.next("a title")?.as_str().to_string()),
+                "title2" => all.titles[1] = Some(args.next("a title")?.as_str().to_string()),
+                "title3" => all.titles[2] = Some(args.next("a title")?.as_str().to_string()),
+                _ => {
+                    let known = [
+                        "mode", "ave", "start", "off", "file", "format", "title1", "title2",
+                        "title3",
+                    ];
+                    return Err(args.unknown(word, "the option", known));
+                }
+            }
+        }
+        Ok(all)
+    }
+}
+
+fn is_vector(args: &mut Args) -> Result<bool> {
+    let mode = args.next("scalar or vector")?;
+    match mode.as_str() {
+        "scalar" => Ok(false),
+        "vector" => Ok(true),
+        _ => Err(args.unknown(mode, "the mode", ["scalar", "vector"])),
+    }
+}
+
+/// Which mean.
+fn ave(args: &mut Args) -> Result<Ave> {
+    let how = args.next("one, running or window")?;
+    match how.as_str() {
+        "one" => Ok(Ave::One),
+        "running" => Ok(Ave::Running),
+        "window" => Ok(Ave::Window(args.count("the number of means", 1)? as usize)),
+        _ => Err(args.unknown(how, "the mean", ["one", "running", "window"])),
     }
 }
 

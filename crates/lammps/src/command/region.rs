@@ -7,6 +7,7 @@ use crate::error::{Problem, Result, suggestion};
 use crate::fix::Input;
 use crate::region::{Definition, INF, Kind, Region};
 use crate::session::Session;
+use crate::text::Word;
 
 const REGIONS: [&str; 9] = [
     "block",
@@ -31,6 +32,16 @@ enum Value {
     Place(f64),
 }
 
+const CENTER: &str = "the centre";
+
+/// As many lengths as words say what they are.
+fn lengths(args: &mut Args, what: &[&str], raw: &mut Vec<Value>) -> Result<()> {
+    for what in what {
+        raw.push(Value::Length(args.input(what)?));
+    }
+    Ok(())
+}
+
 impl Session<'_> {
     pub(super) fn add_region(&mut self, args: &mut Args) -> Result<()> {
         let id = args.next("a region ID")?.as_str().to_string();
@@ -45,71 +56,7 @@ impl Session<'_> {
         }
         let mut raw: Vec<Value> = Vec::new();
         let mut parts = Vec::new();
-        let lengths = |args: &mut Args, what: &[&str], raw: &mut Vec<Value>| -> Result<()> {
-            for what in what {
-                raw.push(Value::Length(args.input(what)?));
-            }
-            Ok(())
-        };
-        const CENTER: &str = "the centre";
-        let kind = match style.as_str() {
-            "block" | "prism" => {
-                for k in 0..6 {
-                    raw.push(self.limit(args, "xlo xhi ylo yhi zlo zhi", k / 2, k % 2)?);
-                }
-                if style.as_str() == "prism" {
-                    lengths(args, &["xy xz yz"; 3], &mut raw)?;
-                    Kind::Prism
-                } else {
-                    Kind::Block
-                }
-            }
-            "cylinder" | "cone" => {
-                let axis = args.axis()?;
-                let kind = if style.as_str() == "cone" {
-                    lengths(
-                        args,
-                        &[CENTER, CENTER, "the radius", "the radius"],
-                        &mut raw,
-                    )?;
-                    Kind::Cone(axis)
-                } else {
-                    lengths(args, &[CENTER, CENTER, "the radius"], &mut raw)?;
-                    Kind::Cylinder(axis)
-                };
-                for side in 0..2 {
-                    raw.push(self.limit(args, "its ends along the axis", axis, side)?);
-                }
-                kind
-            }
-            "sphere" => {
-                lengths(args, &[CENTER, CENTER, CENTER, "the radius"], &mut raw)?;
-                Kind::Sphere
-            }
-            "ellipsoid" => {
-                lengths(args, &[CENTER, CENTER, CENTER], &mut raw)?;
-                lengths(args, &["the semi-axes a b c"; 3], &mut raw)?;
-                Kind::Ellipsoid
-            }
-            "plane" => {
-                lengths(args, &["a point of the plane"; 3], &mut raw)?;
-                lengths(args, &["the normal"; 3], &mut raw)?;
-                Kind::Plane
-            }
-            "union" | "intersect" => {
-                for _ in 0..args.count("the number of regions", 2)? {
-                    let word = args.next("a region ID")?;
-                    let known = self.definition(word.as_str());
-                    parts.push(known.map_err(|p| p.or_at(word.span))?);
-                }
-                if style.as_str() == "union" {
-                    Kind::Union
-                } else {
-                    Kind::Intersect
-                }
-            }
-            _ => return Err(args.unknown(style, "the region style", REGIONS)),
-        };
+        let kind = self.kind(args, style, &mut raw, &mut parts)?;
         let (mut lattice_units, mut outside) = (true, false);
         while let Some(word) = args.optional() {
             match word.as_str() {
@@ -159,6 +106,70 @@ impl Session<'_> {
         self.resolve(&id, &definition)?;
         self.space.regions.push((id, Rc::new(definition)));
         Ok(())
+    }
+
+    /// The kind of a region; its numbers go to `raw`, the regions that it is made of to `parts`.
+    fn kind(
+        &self,
+        args: &mut Args,
+        style: &Word,
+        raw: &mut Vec<Value>,
+        parts: &mut Vec<Rc<Definition>>,
+    ) -> Result<Kind> {
+        Ok(match style.as_str() {
+            "block" | "prism" => {
+                for k in 0..6 {
+                    raw.push(self.limit(args, "xlo xhi ylo yhi zlo zhi", k / 2, k % 2)?);
+                }
+                if style.as_str() == "prism" {
+                    lengths(args, &["xy xz yz"; 3], raw)?;
+                    Kind::Prism
+                } else {
+                    Kind::Block
+                }
+            }
+            "cylinder" | "cone" => {
+                let axis = args.axis()?;
+                let kind = if style.as_str() == "cone" {
+                    lengths(args, &[CENTER, CENTER, "the radius", "the radius"], raw)?;
+                    Kind::Cone(axis)
+                } else {
+                    lengths(args, &[CENTER, CENTER, "the radius"], raw)?;
+                    Kind::Cylinder(axis)
+                };
+                for side in 0..2 {
+                    raw.push(self.limit(args, "its ends along the axis", axis, side)?);
+                }
+                kind
+            }
+            "sphere" => {
+                lengths(args, &[CENTER, CENTER, CENTER, "the radius"], raw)?;
+                Kind::Sphere
+            }
+            "ellipsoid" => {
+                lengths(args, &[CENTER, CENTER, CENTER], raw)?;
+                lengths(args, &["the semi-axes a b c"; 3], raw)?;
+                Kind::Ellipsoid
+            }
+            "plane" => {
+                lengths(args, &["a point of the plane"; 3], raw)?;
+                lengths(args, &["the normal"; 3], raw)?;
+                Kind::Plane
+            }
+            "union" | "intersect" => {
+                for _ in 0..args.count("the number of regions", 2)? {
+                    let word = args.next("a region ID")?;
+                    let known = self.definition(word.as_str());
+                    parts.push(known.map_err(|p| p.or_at(word.span))?);
+                }
+                if style.as_str() == "union" {
+                    Kind::Union
+                } else {
+                    Kind::Intersect
+                }
+            }
+            _ => return Err(args.unknown(style, "the region style", REGIONS)),
+        })
     }
 
     /// A number, a variable, `INF` or `EDGE`.

@@ -15,7 +15,31 @@ impl Session<'_> {
         self.space.domain()?;
         let style = args.next("`group`, `atom`, `type` or `region`")?;
         let word = args.next("an ID or range")?;
-        let members = match style.as_str() {
+        let members = self.chosen(args, style, word)?;
+        if args.left() == 0 {
+            args.next("a property")?;
+        }
+        self.console.print("Setting atom values ...");
+        while let Some(word) = args.optional() {
+            let name = word.as_str();
+            if name.starts_with("type/") {
+                self.set_some_types(args, word, &members)?;
+                continue;
+            }
+            let quantity = quantity(args, word)?;
+            let value = args.input(name)?;
+            self.set_values(word, quantity, &value, &members)?;
+            self.console.print(&format!(
+                "  {} settings made for {name}",
+                members.count(self.population.count())
+            ));
+        }
+        Ok(())
+    }
+
+    /// The atoms that `STYLE WORD` means.
+    fn chosen(&mut self, args: &Args, style: &Word, word: &Word) -> Result<Members> {
+        Ok(match style.as_str() {
             "group" => self
                 .population
                 .group(word.as_str())
@@ -46,120 +70,61 @@ impl Session<'_> {
                 self.with_type(|t| range.contains(&t))?
             }
             _ => return Err(args.unknown(style, "the style", ["group", "atom", "type", "region"])),
+        })
+    }
+
+    /// Gives these atoms a number each: one for all, or that of a formula.
+    fn set_values(
+        &mut self,
+        word: &Word,
+        quantity: Quantity,
+        value: &Input,
+        members: &Members,
+    ) -> Result<()> {
+        let types = self.population.types as f64;
+        let (allowed, what) = allowed(quantity, types);
+        let wrong = |x: f64, who: String| {
+            Problem::at(
+                word.span,
+                format!("{} must {what}, found {x}{who}", word.as_str()),
+            )
         };
-        if args.left() == 0 {
-            args.next("a property")?;
-        }
-        self.console.print("Setting atom values ...");
-        while let Some(word) = args.optional() {
-            let name = word.as_str();
-            if name.starts_with("type/") {
-                self.set_some_types(args, word, &members)?;
-                continue;
+        let tree = match value {
+            Input::Number(x) => Tree::Number(*x),
+            Input::Variable(v) => self.variable_tree(v)?,
+        };
+        if let (Tree::Number(x), Members::All) = (&tree, members) {
+            if !allowed(*x) {
+                return Err(wrong(*x, String::new()));
             }
-            let quantity = match name {
-                "density" | "mass" => Quantity::Density,
-                "volume" => Quantity::Volume,
-                "type" => Quantity::Type,
-                "x" => Quantity::Position(0),
-                "y" => Quantity::Position(1),
-                "z" => Quantity::Position(2),
-                "vx" => Quantity::Velocity(0),
-                "vy" => Quantity::Velocity(1),
-                "vz" => Quantity::Velocity(2),
-                _ => {
-                    let known = [
-                        "density",
-                        "volume",
-                        "type",
-                        "type/fraction",
-                        "x",
-                        "y",
-                        "z",
-                        "vx",
-                        "vy",
-                        "vz",
-                    ];
-                    return Err(args.unknown(word, "the property", known));
-                }
-            };
-            let value = args.input(name)?;
-            let types = self.population.types as f64;
-            let allowed = |x: f64| match quantity {
-                Quantity::Density | Quantity::Volume => x > 0.0 && x.is_finite(),
-                Quantity::Type => x >= 1.0 && x <= types && x.fract() == 0.0,
-                Quantity::Position(_)
-                | Quantity::Reference(_)
-                | Quantity::Velocity(_)
-                | Quantity::Force(_)
-                | Quantity::Damage
-                | Quantity::Dilatation
-                | Quantity::CriticalStretch
-                | Quantity::Energy
-                | Quantity::Virial(_) => x.is_finite(),
-            };
-            let wrong = |x: f64, who: String| {
-                let what = match quantity {
-                    Quantity::Type => format!("be a whole number from 1 to {types}"),
-                    Quantity::Density | Quantity::Volume => "be positive".to_string(),
-                    Quantity::Position(_)
-                    | Quantity::Reference(_)
-                    | Quantity::Velocity(_)
-                    | Quantity::Force(_)
-                    | Quantity::Damage
-                    | Quantity::Dilatation
-                    | Quantity::CriticalStretch
-                    | Quantity::Energy
-                    | Quantity::Virial(_) => "be finite".to_string(),
-                };
-                Problem::at(word.span, format!("{name} must {what}, found {x}{who}"))
-            };
-            let tree = match &value {
-                Input::Number(x) => Tree::Number(*x),
-                Input::Variable(v) => self.variable_tree(v)?,
-            };
-            if let (Tree::Number(x), Members::All) = (&tree, &members) {
-                if !allowed(*x) {
-                    return Err(wrong(*x, String::new()));
-                }
-                self.population.store.particles_mut().fill(quantity, *x)?;
-            } else {
-                let n = self.population.count();
-                let mut old = vec![0.0; BLOCK];
-                let mut new = vec![0.0; BLOCK];
-                // all values first: a formula may use what is being set
-                let mut all = vec![0.0; n];
-                for first in (0..n).step_by(BLOCK) {
-                    let m = BLOCK.min(n - first);
-                    self.population
-                        .store
-                        .particles()
-                        .read(quantity, first, &mut old[..m])?;
-                    tree.fill(&self.view()?, &self.progress.clock(), first, &mut new[..m])?;
-                    for k in 0..m {
-                        let mine = members.contains(first + k);
-                        if mine && !allowed(new[k]) {
-                            return Err(wrong(
-                                new[k],
-                                format!(
-                                    " for the atom with id {}",
-                                    self.population.ids.get(first + k)
-                                ),
-                            ));
-                        }
-                        all[first + k] = if mine { new[k] } else { old[k] };
-                    }
-                }
-                self.population
-                    .store
-                    .particles_mut()
-                    .write(quantity, 0, &all)?;
-            }
-            self.console.print(&format!(
-                "  {} settings made for {name}",
-                members.count(self.population.count())
-            ));
+            self.population.store.particles_mut().fill(quantity, *x)?;
+            return Ok(());
         }
+        let n = self.population.count();
+        let mut old = vec![0.0; BLOCK];
+        let mut new = vec![0.0; BLOCK];
+        // all values first: a formula may use what is being set
+        let mut all = vec![0.0; n];
+        for first in (0..n).step_by(BLOCK) {
+            let m = BLOCK.min(n - first);
+            self.population
+                .store
+                .particles()
+                .read(quantity, first, &mut old[..m])?;
+            tree.fill(&self.view()?, &self.progress.clock(), first, &mut new[..m])?;
+            for k in 0..m {
+                let mine = members.contains(first + k);
+                if mine && !allowed(new[k]) {
+                    let id = self.population.ids.get(first + k);
+                    return Err(wrong(new[k], format!(" for the atom with id {id}")));
+                }
+                all[first + k] = if mine { new[k] } else { old[k] };
+            }
+        }
+        self.population
+            .store
+            .particles_mut()
+            .write(quantity, 0, &all)?;
         Ok(())
     }
 
@@ -206,4 +171,65 @@ impl Session<'_> {
             .print(&format!("  {made} settings made for type/fraction"));
         Ok(())
     }
+}
+
+/// Words of what `set` sets.
+const SETTABLE: [(&str, Quantity); 10] = [
+    ("density", Quantity::Density),
+    ("mass", Quantity::Density),
+    ("volume", Quantity::Volume),
+    ("type", Quantity::Type),
+    ("x", Quantity::Position(0)),
+    ("y", Quantity::Position(1)),
+    ("z", Quantity::Position(2)),
+    ("vx", Quantity::Velocity(0)),
+    ("vy", Quantity::Velocity(1)),
+    ("vz", Quantity::Velocity(2)),
+];
+
+fn quantity(args: &Args, word: &Word) -> Result<Quantity> {
+    if let Some((_, quantity)) = SETTABLE.iter().find(|(name, _)| *name == word.as_str()) {
+        return Ok(*quantity);
+    }
+    let known = [
+        "density",
+        "volume",
+        "type",
+        "type/fraction",
+        "x",
+        "y",
+        "z",
+        "vx",
+        "vy",
+        "vz",
+    ];
+    Err(args.unknown(word, "the property", known))
+}
+
+/// Which numbers a quantity may have, and what others are told to be.
+fn allowed(quantity: Quantity, types: f64) -> (impl Fn(f64) -> bool, String) {
+    enum Kind {
+        Positive,
+        Type,
+        Finite,
+    }
+    let (kind, what) = match quantity {
+        Quantity::Density | Quantity::Volume => (Kind::Positive, "be positive".to_string()),
+        Quantity::Type => (Kind::Type, format!("be a whole number from 1 to {types}")),
+        Quantity::Position(_)
+        | Quantity::Reference(_)
+        | Quantity::Velocity(_)
+        | Quantity::Force(_)
+        | Quantity::Damage
+        | Quantity::Dilatation
+        | Quantity::CriticalStretch
+        | Quantity::Energy
+        | Quantity::Virial(_) => (Kind::Finite, "be finite".to_string()),
+    };
+    let allowed = move |x: f64| match kind {
+        Kind::Positive => x > 0.0 && x.is_finite(),
+        Kind::Type => x >= 1.0 && x <= types && x.fract() == 0.0,
+        Kind::Finite => x.is_finite(),
+    };
+    (allowed, what)
 }

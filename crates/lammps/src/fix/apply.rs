@@ -1,6 +1,8 @@
 //! Fixes of a session: their inputs and their order.
 
-use super::{Fix, FixKind, Input};
+use super::input::Input;
+
+use super::{Fix, FixKind};
 use crate::atoms::Members;
 use crate::error::{Problem, Result, suggestion};
 use crate::host::{Reaction, Wall};

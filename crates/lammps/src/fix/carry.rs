@@ -1,7 +1,8 @@
 //! `fix move`: atoms that go where they are told.
 
+use super::FixKind;
+use super::input::Input;
 use super::path::{Path, Start};
-use super::{FixKind, Input};
 use crate::error::Result;
 use crate::host::{Carry, Motion, Quantity};
 use crate::session::Session;

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{Fix, FixKind, Input};
+use super::input::Input;
+
+use super::{Fix, FixKind};
 use crate::atoms::Members;
 use crate::error::{Problem, Result};
 use crate::host::{Condition, Form, Quantity};

@@ -8,34 +8,19 @@ mod apply;
 pub mod average;
 mod carry;
 mod forces;
+mod input;
 mod path;
+mod samples;
 
-use std::cell::RefCell;
-use std::rc::Rc;
-use std::sync::Arc;
-
-use self::average::Average;
 pub use self::path::{Path, Start};
 use super::atoms::Members;
 use super::files::Sink;
 use super::host::{Form, Push};
-
-/// A number, or a variable evaluated at every step.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Input {
-    Number(f64),
-    Variable(String),
-}
-
-impl Input {
-    /// LAMMPS scales numbers of `units lattice` only, not what variables give.
-    pub fn scaled(self, unit: f64) -> Input {
-        match self {
-            Input::Number(x) => Input::Number(unit * x),
-            Input::Variable(name) => Input::Variable(name),
-        }
-    }
-}
+use average::Average;
+pub use input::Input;
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
 
 #[derive(Debug, Clone)]
 pub struct Fix {

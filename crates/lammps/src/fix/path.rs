@@ -1,6 +1,6 @@
 //! Where `fix move` takes its atoms.
 
-use super::Input;
+use super::input::Input;
 
 /// A motion from where the atoms were when the fix was made; numbers are in box units, `None` on an axis: forces move it.
 #[derive(Debug, Clone, PartialEq)]

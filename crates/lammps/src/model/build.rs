@@ -8,8 +8,9 @@ use peridyne::run::{Options, Simulation, build};
 use peridyne::spec::Spec;
 use peridyne_io::deck::{UnitSystem, describe, sources};
 
+use super::engine::{ModelEngine, in_plane};
+use super::spec;
 use super::types::Types;
-use super::{ModelEngine, in_plane, spec};
 use crate::atoms::{Atoms, Column};
 use crate::host::{BLOCK, Engine, Host, HostError, Particles, Quantity, Setup, Style};
 

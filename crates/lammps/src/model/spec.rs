@@ -8,7 +8,7 @@ use peridyne::spec::{
     Stepper, TimeStep,
 };
 
-use super::in_plane;
+use super::engine::in_plane;
 use super::types::Types;
 use crate::atoms::{Atoms, Column, Reference};
 use crate::host::{HostError, Pair, Setup};

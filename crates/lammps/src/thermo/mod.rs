@@ -6,10 +6,11 @@ mod lines;
 mod pressure;
 mod values;
 
-pub use self::pressure::BUILT_IN;
-
 use self::columns::Column;
 use super::printf::Format;
+
+/// Computes that exist without being defined.
+pub const BUILT_IN: [&str; 3] = ["thermo_temp", "thermo_press", "thermo_pe"];
 
 /// What to do about atoms that leave through a fixed face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

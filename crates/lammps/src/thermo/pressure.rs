@@ -1,6 +1,7 @@
 //! Temperature and pressure as LAMMPS's `peri` styles give them: masses are densities there, but the virial is an
 //! energy, so both say little.
 
+use super::BUILT_IN;
 use super::columns::Column;
 use crate::atoms::Members;
 use crate::error::{Problem, Result};
@@ -14,9 +15,6 @@ const WANTED: [&str; 8] = [
 ];
 /// Components in LAMMPS's order.
 const COMPONENTS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
-
-/// Computes that exist without being defined.
-pub const BUILT_IN: [&str; 3] = ["thermo_temp", "thermo_press", "thermo_pe"];
 
 impl Session<'_> {
     /// Will the coming output ask for a pressure?

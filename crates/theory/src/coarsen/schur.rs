@@ -15,30 +15,8 @@ pub const SCHUR_LIMIT: usize = 60_000_000;
 
 pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, CoarsenError> {
     let (body, retained) = (task.body, task.retained);
-    let (n, m) = (D * (body.points() - retained.len()), D * retained.len());
-    if m * m > SCHUR_LIMIT {
-        return Err(CoarsenError::TooLarge {
-            removed: n,
-            retained: m,
-            limit: SCHUR_LIMIT,
-        });
-    }
-    let loaded = |e: &usize| task.loaded[*e] && !task.marked[*e];
-    let loads = D * (0..body.points()).filter(loaded).count();
-    if loads * m > SCHUR_LIMIT {
-        return Err(CoarsenError::LoadsTooLarge {
-            loads,
-            retained: m,
-            limit: SCHUR_LIMIT,
-        });
-    }
-    if task.shaped && n * m > SCHUR_LIMIT {
-        return Err(CoarsenError::ShapesTooLarge {
-            removed: n,
-            retained: m,
-            limit: SCHUR_LIMIT,
-        });
-    }
+    let (n, m) = sizes(task);
+    fits(task)?;
     let support = Support {
         free: task.marked.iter().map(|held| [!held; D]).collect(),
     };
@@ -110,7 +88,7 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, Coa
     if let Some(factors) = &factors {
         let passed: Vec<Vec<(u32, Block<D>)>> = (0..body.points())
             .into_par_iter()
-            .map(|e| match loaded(&e) {
+            .map(|e| match loaded(task, e) {
                 true => reaching(task, factors, e),
                 false => vec![],
             })
@@ -134,6 +112,47 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, Coa
         pass,
         shapes: task.shaped.then_some(Shapes { rows: shapes }),
     })
+}
+
+/// Unknowns of the removed points and of the retained ones.
+fn sizes<const D: usize>(task: &Task<D>) -> (usize, usize) {
+    let retained = task.retained.len();
+    (D * (task.body.points() - retained), D * retained)
+}
+
+/// Does a load act on point `e`, which is removed?
+fn loaded<const D: usize>(task: &Task<D>, e: usize) -> bool {
+    task.loaded[e] && !task.marked[e]
+}
+
+/// Is what will be full small enough to be held?
+fn fits<const D: usize>(task: &Task<D>) -> Result<(), CoarsenError> {
+    let (n, m) = sizes(task);
+    if m * m > SCHUR_LIMIT {
+        return Err(CoarsenError::TooLarge {
+            removed: n,
+            retained: m,
+            limit: SCHUR_LIMIT,
+        });
+    }
+    let loads = D * { 0..task.body.points() }
+        .filter(|e| loaded(task, *e))
+        .count();
+    if loads * m > SCHUR_LIMIT {
+        return Err(CoarsenError::LoadsTooLarge {
+            loads,
+            retained: m,
+            limit: SCHUR_LIMIT,
+        });
+    }
+    if task.shaped && n * m > SCHUR_LIMIT {
+        return Err(CoarsenError::ShapesTooLarge {
+            removed: n,
+            retained: m,
+            limit: SCHUR_LIMIT,
+        });
+    }
+    Ok(())
 }
 
 /// Forces on retained points, which are held, when forces of 1 act on point e.

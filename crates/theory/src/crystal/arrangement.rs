@@ -1,7 +1,7 @@
 //! How the materials of a lattice body repeat: the smallest cell of atoms of several kinds.
 
-use super::CrystalError;
 use super::cells::{determinant, primitive, reciprocal};
+use super::error::CrystalError;
 use peridyne::run::materials_of;
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::{BodySpec, Spec};

@@ -1,6 +1,8 @@
 //! Atoms of a cell, and those that are near to them.
 
-use super::{CrystalError, cells, positive};
+use super::error::{CrystalError, positive};
+
+use super::cells;
 
 /// An atom of the cell.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,6 @@
 //! Primitive cells of the lattices and their bonds.
 
-use super::{CrystalError, same_dimension};
+use super::error::{CrystalError, same_dimension};
 use peridyne::family::stencil::Stencil;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::Horizon;

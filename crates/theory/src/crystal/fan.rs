@@ -2,7 +2,9 @@
 
 use super::atoms::{Atom, Near, neighbours};
 use super::cells::determinant;
-use super::{Bond, Coupling, Crystal, CrystalError, Span};
+use super::error::CrystalError;
+use super::lattice::{Bond, Crystal};
+use super::{Coupling, Span};
 use peridyne::law::blocks::place;
 use peridyne::law::fan::sites::FanSites;
 use peridyne::law::fan::{Fan, second_derivatives};

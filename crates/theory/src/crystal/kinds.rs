@@ -1,7 +1,9 @@
 //! Crystals of all potentials of a body, by their names: sums of mixtures and fans.
 
+use super::Atom;
 use super::atoms::Cell;
-use super::{Atom, Crystal, CrystalError};
+use super::error::CrystalError;
+use super::lattice::Crystal;
 use peridyne::law::descriptor::Wrong;
 use peridyne::law::fan::{self, Fan};
 use peridyne::law::potential::mixture::{Given, Mixture, mixture};

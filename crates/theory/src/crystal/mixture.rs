@@ -1,7 +1,8 @@
 //! Crystals of several kinds of atoms: any cell with any basis, in a potential of their kinds.
 
 use super::atoms::{Atom, Cell, Near, neighbours};
-use super::{Bond, Crystal, CrystalError};
+use super::error::CrystalError;
+use super::lattice::{Bond, Crystal};
 use peridyne::law::jet;
 use peridyne::law::potential::Potential;
 use peridyne::law::potential::mixture::Mixture;

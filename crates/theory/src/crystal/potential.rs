@@ -1,7 +1,8 @@
 //! Crystals of an interatomic potential: second derivatives by Taylor arithmetic.
 
 use super::cells::{Link, links, primitive};
-use super::{Bond, Crystal, CrystalError, positive};
+use super::error::{CrystalError, positive};
+use super::lattice::{Bond, Crystal};
 use peridyne::law::jet;
 use peridyne::law::potential::Potential;
 use peridyne::space::lattice::LatticeKind;

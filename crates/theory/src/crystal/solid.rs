@@ -3,7 +3,8 @@
 //! Forces per point are force densities times the volume; masses are ρV.
 
 use super::cells::{links, primitive};
-use super::{Bond, Crystal, CrystalError, positive};
+use super::error::{CrystalError, positive};
+use super::lattice::{Bond, Crystal};
 use peridyne::family::volume_fraction;
 use peridyne::law::influence::mean_influence;
 use peridyne::law::micromodulus::{Moments, micromodulus};

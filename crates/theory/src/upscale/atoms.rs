@@ -1,6 +1,8 @@
 //! Atoms of several kinds, and atoms with terms of more than two: their crystals.
 
-use super::{UpscaleError, current, lattice};
+use super::reference::{current, lattice};
+
+use super::error::UpscaleError;
 use crate::crystal::arrangement::arrangement;
 use crate::crystal::atoms::{Cell, Near, neighbours};
 use crate::crystal::cells::determinant;

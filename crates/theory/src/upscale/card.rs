@@ -1,9 +1,12 @@
 //! The error card of an upscaling: what both models say of the same crystal, side by side.
 
 use super::atoms::{Atoms, has_basis_or_fans};
+use super::crystal::crystal;
+use super::error::UpscaleError;
 use super::kernels::Kernel;
+use super::reference::lattice;
+use super::scale::Rule;
 use super::verdict::{EQUAL, directions, linear_differences, shortest};
-use super::{Rule, UpscaleError, crystal, lattice};
 use crate::crystal::Crystal;
 use crate::exact::polynomial::Monomial;
 use crate::gradient::comparison::{Verdict, compare};
@@ -192,7 +195,7 @@ fn card_in<const D: usize>(
     if a.basis.len() > 1 {
         notes.push(optical(&a, factor));
     }
-    let current = has_basis_or_fans(fine) && super::current(fine);
+    let current = has_basis_or_fans(fine) && super::reference::current(fine);
     if current {
         notes.push("The coarse atoms feel those that are near now, as the fine ones do: the coarse crystal is the fine one, larger and heavier; defects, surfaces and thermal motion of it are not those of the fine one.".into());
     }
@@ -420,7 +423,7 @@ fn block(spec: &Spec) -> Option<Spec> {
     let d = kind.dimension();
     let horizon = match (spec.potential(), spec.family) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours) => {
-            Horizon::Length(super::REACH * p.cut_off())
+            Horizon::Length(super::reference::REACH * p.cut_off())
         }
         _ => spec.horizon,
     };

@@ -1,7 +1,7 @@
 //! Where a crystal rests: the lattice spacing without pressure.
 
 use super::atoms::{Atoms, has_basis_or_fans};
-use super::{lattice, reach};
+use super::reference::{lattice, reach};
 use crate::crystal::potential::rest;
 use crate::crystal::{Crystal, Reach};
 use peridyne::law::potential::{Potential, Visitor};

@@ -1,8 +1,9 @@
 //! Is one kernel better than another (seleson2009 section 3)? Influence functions and horizons of the coarse model, each fitted to the same moduli,
 //! by how far their waves are those of the fine model.
 
+use super::crystal::crystal;
+use super::error::UpscaleError;
 use super::verdict::{EQUAL, directions, linear_differences, shortest};
-use super::{UpscaleError, crystal};
 use crate::crystal::Crystal;
 use crate::dispersion::agreement::shortest_wavelength;
 use crate::gradient::comparison::Verdict;
@@ -65,7 +66,7 @@ pub fn kernels(fine: &Spec, coarse: &Spec) -> Result<Vec<Kernel>, UpscaleError> 
 
 fn kernels_in<const D: usize>(fine: &Spec, coarse: &Spec) -> Result<Vec<Kernel>, UpscaleError> {
     let (reference, _) = crystal::<D>(fine)?;
-    let (lattice, spacing) = super::lattice(coarse)?;
+    let (lattice, spacing) = super::reference::lattice(coarse)?;
     let family = |horizon| Stencil::new(lattice, spacing, horizon);
     let end = shortest(coarse)?;
     let kept = coarse.horizon.length(spacing);

@@ -1,6 +1,8 @@
 //! What is compared to say whether two models are upscalings of each other: gradient equations along symmetry directions.
 
-use super::{UpscaleError, lattice};
+use super::reference::lattice;
+
+use super::error::UpscaleError;
 use crate::crystal::Crystal;
 use crate::gradient::comparison::differences;
 use crate::lattice_dynamics::TERMS;

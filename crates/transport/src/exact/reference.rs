@@ -1,6 +1,8 @@
 //! The solution of the local law, to which the nonlocal one tends, where it is known: for runs that compare themselves with it.
 
-use super::{ColeHopf, Primitive, characteristics, riemann, shock_time};
+use super::characteristics::{characteristics, shock_time};
+
+use super::{ColeHopf, Primitive, riemann};
 use crate::flux::Flux;
 use crate::grid::{Boundary, Grid, Values};
 use crate::kernel::Function;

@@ -1,6 +1,6 @@
 //! Continuum fields.
 
-use super::row;
+use super::row::row;
 use crate::check::Findings;
 use crate::check::continuum::{Found, Seen};
 use crate::numbers::{duration, memory, whole};

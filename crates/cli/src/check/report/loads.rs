@@ -1,6 +1,6 @@
 //! What acts on sets, as a whole.
 
-use super::{AXES, row};
+use super::row::{AXES, row};
 use crate::check::Findings;
 use peridyne_io::deck::Dim;
 

@@ -1,7 +1,7 @@
 //! The three things to look at first.
 
-use super::advice;
 use super::waves::increments;
+use crate::check::advice::advice;
 use crate::check::directions::percent;
 use crate::check::{Findings, mean};
 use crate::numbers::{digits, duration};

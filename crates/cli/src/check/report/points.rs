@@ -1,6 +1,6 @@
 //! Points, bonds and families.
 
-use super::{AXES, row};
+use super::row::{AXES, row};
 use crate::check::Findings;
 use crate::numbers::whole;
 use peridyne_io::deck::Dim;

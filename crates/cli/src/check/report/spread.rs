@@ -1,6 +1,6 @@
 //! Heat and species: how fast, and in which steps.
 
-use super::row;
+use super::row::row;
 use crate::check::Findings;
 use crate::numbers::whole;
 use peridyne::spec::TransferMethod;

@@ -1,6 +1,6 @@
 //! Waves, steps and fracture.
 
-use super::row;
+use super::row::row;
 use crate::check::Findings;
 use crate::numbers::whole;
 use peridyne::spec::{Control, Criterion, Statics, Stepper};

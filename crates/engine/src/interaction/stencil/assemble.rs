@@ -2,7 +2,7 @@
 
 use super::StencilInteraction;
 use super::kernel::{BLOCK, Bond, MOST, Partner};
-use crate::body::{Body, Column, Layout, field};
+use crate::body::{Body, Column, Grid, Layout, field};
 use crate::execute::blocks::PerBlock;
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -100,35 +100,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             .filter(|t| grid.owned[*t] != 0)
             .map(|t| t as u32)
             .collect();
-        let mut alive = vec![0u8; tiles.len() * width];
-        let words = width.div_ceil(64);
-        let (mut reach, mut reaches) = (vec![0u32; tiles.len()], vec![]);
-        let mut known: HashMap<Vec<u64>, u32> = HashMap::new();
-        let mut family = vec![0u16; tiles.len() * TILE];
-        let mut directed = 0;
-        for (n, &t) in tiles.iter().enumerate() {
-            let first = grid.tile_slot(t as usize);
-            let sub = grid.tile_sublattice(t as usize);
-            let mut leads = vec![0u64; words];
-            for l in 0..TILE {
-                if !grid.is_owned(first + l) {
-                    continue;
-                }
-                for (k, b) in partners[sub].iter().enumerate() {
-                    if grid.neighbour(first + l, b.cell, b.to).is_some() {
-                        alive[n * width + k] |= 1 << l;
-                        leads[k / 64] |= 1 << (k % 64);
-                        family[n * TILE + l] += 1;
-                        directed += 1;
-                    }
-                }
-            }
-            let new = known.len() as u32;
-            reach[n] = *known.entry(leads).or_insert_with_key(|leads| {
-                reaches.extend_from_slice(leads);
-                new
-            });
-        }
+        let families = Families::of(grid, &tiles, &partners, width);
         let remembers = history::remembers(repulsion.as_ref(), &toughness);
         let critical = if remembers {
             Column::new(body.len, f64::INFINITY, field::line(3))
@@ -145,14 +117,14 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             bonds,
             partners,
             width,
-            alive,
+            alive: families.alive,
             state: vec![0; tiles.len()],
             tiles,
-            reach,
-            reaches,
+            reach: families.reach,
+            reaches: families.reaches,
             scale: Scale::default(),
-            family,
-            directed,
+            family: families.family,
+            directed: families.directed,
             fields: std::array::from_fn(|n| match n < W::FIELDS {
                 true => Column::new(body.len, 0.0, field::line(4 + n)),
                 false => Column::default(),
@@ -173,5 +145,61 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         };
         made.look(grid);
         made
+    }
+}
+
+/// Which bonds of the stencil the points of tiles have.
+struct Families {
+    /// `[tile, bond]`, a bit for each lane.
+    alive: Vec<u8>,
+    /// Of each tile, its bonds' number among `reaches`.
+    reach: Vec<u32>,
+    /// Bits of the bonds that any lane has, of all unlike tiles.
+    reaches: Vec<u64>,
+    /// Bonds of each lane.
+    family: Vec<u16>,
+    directed: u64,
+}
+
+impl Families {
+    fn of<const D: usize>(
+        grid: &Grid<D>,
+        tiles: &[u32],
+        partners: &[Vec<Partner<D>>],
+        width: usize,
+    ) -> Families {
+        let words = width.div_ceil(64);
+        let mut all = Families {
+            alive: vec![0; tiles.len() * width],
+            reach: vec![0; tiles.len()],
+            reaches: vec![],
+            family: vec![0; tiles.len() * TILE],
+            directed: 0,
+        };
+        let mut known: HashMap<Vec<u64>, u32> = HashMap::new();
+        for (n, &t) in tiles.iter().enumerate() {
+            let first = grid.tile_slot(t as usize);
+            let sub = grid.tile_sublattice(t as usize);
+            let mut leads = vec![0u64; words];
+            for l in 0..TILE {
+                if !grid.is_owned(first + l) {
+                    continue;
+                }
+                for (k, b) in partners[sub].iter().enumerate() {
+                    if grid.neighbour(first + l, b.cell, b.to).is_some() {
+                        all.alive[n * width + k] |= 1 << l;
+                        leads[k / 64] |= 1 << (k % 64);
+                        all.family[n * TILE + l] += 1;
+                        all.directed += 1;
+                    }
+                }
+            }
+            let new = known.len() as u32;
+            all.reach[n] = *known.entry(leads).or_insert_with_key(|leads| {
+                all.reaches.extend_from_slice(leads);
+                new
+            });
+        }
+        all
     }
 }

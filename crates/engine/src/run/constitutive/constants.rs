@@ -4,7 +4,7 @@ use super::shelf::{AnyPotentials, Shelf};
 use crate::error::BuildError;
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{AnyLinearBody, Influence, LawSpec, PmbStiffness, Spec};
+use crate::spec::{AnyLinearBody, Influence, LawSpec, MaterialSpec, PmbStiffness, Spec};
 use std::sync::Arc;
 
 /// Constants of all materials.
@@ -25,6 +25,16 @@ pub(super) struct Constants {
     pub contact: Vec<f64>,
 }
 
+/// What stiffnesses are calibrated to.
+struct Calibration {
+    /// Length.
+    horizon: f64,
+    /// Sums over a full family.
+    moments: Moments,
+    /// Those of the full ball of radius `horizon` whose bonds weigh alike.
+    alike: Moments,
+}
+
 /// `moments` are those that stiffnesses are calibrated to, `alike` those of the full ball of radius `horizon` whose bonds weigh alike.
 pub(super) fn constants<const D: usize>(
     spec: &Spec,
@@ -33,43 +43,116 @@ pub(super) fn constants<const D: usize>(
     alike: Moments,
     shelf: &Shelf,
 ) -> Result<Constants, BuildError> {
-    let at = |n: usize, key: &str| format!("materials[{n}].{key}");
-    let mut bond = vec![];
-    let mut solid = vec![];
-    let mut springs = vec![];
-    let mut atoms = vec![];
-    let mut given = vec![];
-    let mut repulsive = vec![];
+    let to = Calibration {
+        horizon,
+        moments,
+        alike,
+    };
+    let mut kinds = Kinds::default();
+    let mut contact = vec![];
     for (n, m) in spec.materials.iter().enumerate() {
-        solid.extend(Solid::of_law(D, spec.plane, m.law.linear()));
-        if !(m.density > 0.0 && m.density.is_finite()) {
-            return Err(BuildError::invalid(
-                at(n, "density"),
-                format!("density is {}, expected a positive number", m.density),
-            ));
-        }
+        kinds
+            .solid
+            .extend(Solid::of_law(D, spec.plane, m.law.linear()));
+        possible(spec, n, m)?;
+        let (value, hard) = kinds.take::<D>(spec, n, &m.law, &to)?;
+        sound(spec, n, &m.law, value, moments)?;
+        contact.push(15.0 * hard / horizon);
+    }
+    kinds.are_one()?;
+    let laws = kinds.laws(spec, shelf)?;
+    Ok(Constants { laws, contact })
+}
+
+/// Key of a material.
+fn at(n: usize, key: &str) -> String {
+    format!("materials[{n}].{key}")
+}
+
+/// May material `n` be what it says, beside contact and fracture?
+fn possible(spec: &Spec, n: usize, m: &MaterialSpec) -> Result<(), BuildError> {
+    if !(m.density > 0.0 && m.density.is_finite()) {
+        return Err(BuildError::invalid(
+            at(n, "density"),
+            format!("density is {}, expected a positive number", m.density),
+        ));
+    }
+    let linear = matches!(m.law, LawSpec::Springs(_) | LawSpec::Micromoduli(_));
+    if linear && (spec.contact.is_some() || super::breaks(spec)) {
+        return Err(BuildError::unsupported(
+            at(n, "law"),
+            "springs and micromoduli have no bonds that break and no contact of their own",
+        )
+        .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
+    }
+    if matches!(m.law, LawSpec::Atoms(_)) && spec.contact.is_some() {
+        return Err(BuildError::unsupported(
+            at(n, "law"),
+            "how atoms repel each other is what their potential says, and no stiffness of contact follows from it",
+        )
+        .help("remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps"));
+    }
+    Ok(())
+}
+
+/// Is the stiffness `value` that followed from the law of material `n` one?
+fn sound(
+    spec: &Spec,
+    n: usize,
+    law: &LawSpec,
+    value: f64,
+    moments: Moments,
+) -> Result<(), BuildError> {
+    if let Influence::Formula(formula) = spec.influence
+        && !(moments.first > 0.0 && moments.first.is_finite())
+        && matches!(law.linear(), LawSpec::Pmb(s) | LawSpec::Springs(s) if !matches!(s, PmbStiffness::Micromodulus(_)))
+    {
+        return Err(BuildError::invalid(
+            "influence",
+            format!(
+                "Σ ω |ξ| over the bonds of a point is {} with ω = {}: no micromodulus follows from a modulus",
+                moments.first,
+                formula.source()
+            ),
+        )
+        .help("a function whose integral over the ball is finite, or calibration = \"discrete\""));
+    }
+    if !(value > 0.0 && value.is_finite()) {
+        return Err(
+            BuildError::invalid(at(n, "law"), "stiffness must be positive and finite")
+                .help("check the moduli: K > 0, G > 0, −1 < ν < ½"),
+        );
+    }
+    Ok(())
+}
+
+/// Constants of the materials by the kind of their law.
+#[derive(Default)]
+struct Kinds<'a> {
+    bond: Vec<f64>,
+    solid: Vec<Solid>,
+    springs: Vec<f64>,
+    atoms: usize,
+    given: Vec<&'a Arc<AnyLinearBody>>,
+}
+
+impl<'a> Kinds<'a> {
+    /// One more material: what must be positive of its law, and its stiffness of contact as a micromodulus.
+    fn take<const D: usize>(
+        &mut self,
+        spec: &Spec,
+        n: usize,
+        law: &'a LawSpec,
+        to: &Calibration,
+    ) -> Result<(f64, f64), BuildError> {
+        let moments = to.moments;
         let c = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
-        let linear = matches!(m.law, LawSpec::Springs(_) | LawSpec::Micromoduli(_));
-        if linear && (spec.contact.is_some() || super::breaks(spec)) {
-            return Err(BuildError::unsupported(
-                at(n, "law"),
-                "springs and micromoduli have no bonds that break and no contact of their own",
-            )
-            .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
-        }
-        if matches!(m.law, LawSpec::Atoms(_)) && spec.contact.is_some() {
-            return Err(BuildError::unsupported(
-                at(n, "law"),
-                "how atoms repel each other is what their potential says, and no stiffness of contact follows from it",
-            )
-            .help("remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps"));
-        }
         // contact knows no influence function
-        let hard = |stiffness| micromodulus(D, spec.plane, stiffness, alike);
-        let (value, contact) = match m.law.linear() {
+        let hard = |stiffness| micromodulus(D, spec.plane, stiffness, to.alike);
+        Ok(match law.linear() {
             LawSpec::Pmb(stiffness) => {
                 let stiffness = *stiffness;
-                bond.push(c(stiffness));
+                self.bond.push(c(stiffness));
                 (c(stiffness), c(stiffness) * (moments.first / moments.bare))
             }
             LawSpec::Lps(moduli) => {
@@ -78,7 +161,7 @@ pub(super) fn constants<const D: usize>(
             }
             LawSpec::LpsAsTyped { bulk, shear } => (
                 shear.min(*bulk),
-                18.0 * bulk / (std::f64::consts::PI * horizon.powi(4)),
+                18.0 * bulk / (std::f64::consts::PI * to.horizon.powi(4)),
             ),
             LawSpec::EamLike { pair, volume } => (
                 *pair,
@@ -86,15 +169,15 @@ pub(super) fn constants<const D: usize>(
             ),
             LawSpec::Springs(stiffness) => {
                 let stiffness = *stiffness;
-                springs.push(c(stiffness));
+                self.springs.push(c(stiffness));
                 (c(stiffness), 0.0)
             }
             LawSpec::Atoms(_) => {
-                atoms.push(n);
+                self.atoms += 1;
                 (1.0, 0.0)
             }
             LawSpec::Micromoduli(body) => {
-                given.push(body);
+                self.given.push(body);
                 (1.0, 0.0)
             }
             LawSpec::Named(law) => {
@@ -104,74 +187,57 @@ pub(super) fn constants<const D: usize>(
                     format!("the law {} is on no shelf", law.name),
                 ));
             }
-        };
-        if let Influence::Formula(formula) = spec.influence
-            && !(moments.first > 0.0 && moments.first.is_finite())
-            && matches!(m.law.linear(), LawSpec::Pmb(s) | LawSpec::Springs(s) if !matches!(s, PmbStiffness::Micromodulus(_)))
-        {
-            return Err(BuildError::invalid(
-                "influence",
-                format!(
-                    "Σ ω |ξ| over the bonds of a point is {} with ω = {}: no micromodulus follows from a modulus",
-                    moments.first,
-                    formula.source()
-                ),
-            )
-            .help("a function whose integral over the ball is finite, or calibration = \"discrete\""));
-        }
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(
-                BuildError::invalid(at(n, "law"), "stiffness must be positive and finite")
-                    .help("check the moduli: K > 0, G > 0, −1 < ν < ½"),
-            );
-        }
-        repulsive.push(15.0 * contact / horizon);
+        })
     }
-    let kinds = [
-        &bond.is_empty(),
-        &solid.is_empty(),
-        &springs.is_empty(),
-        &atoms.is_empty(),
-        &given.is_empty(),
-    ];
-    match kinds.iter().filter(|none| !**none).count() {
-        0 => return Err(BuildError::missing("materials", "the body has no material")),
-        1 => {}
-        _ => {
+
+    /// Are all materials of one kind, and is what they share the same?
+    fn are_one(&self) -> Result<(), BuildError> {
+        let kinds = [
+            self.bond.len(),
+            self.solid.len(),
+            self.springs.len(),
+            self.atoms,
+            self.given.len(),
+        ];
+        match kinds.iter().filter(|many| **many > 0).count() {
+            0 => return Err(BuildError::missing("materials", "the body has no material")),
+            1 => {}
+            _ => {
+                return Err(BuildError::unsupported(
+                    "materials",
+                    "different kinds of law in one body, such as bond-based and state-based",
+                )
+                .help("give all materials the same kind of law: bonds across need one"));
+            }
+        }
+        if self.springs.iter().any(|c| *c != self.springs[0]) {
             return Err(BuildError::unsupported(
                 "materials",
-                "different kinds of law in one body, such as bond-based and state-based",
+                "springs of unlike stiffness in one body",
             )
-            .help("give all materials the same kind of law: bonds across need one"));
+            .help("give all materials the same springs"));
         }
+        if self.given.iter().any(|b| !Arc::ptr_eq(b, self.given[0])) {
+            return Err(BuildError::unsupported(
+                "materials",
+                "micromoduli of more than one linear body in one body",
+            )
+            .help("give all materials the micromoduli of the same body"));
+        }
+        Ok(())
     }
-    if springs.iter().any(|c| *c != springs[0]) {
-        return Err(BuildError::unsupported(
-            "materials",
-            "springs of unlike stiffness in one body",
-        )
-        .help("give all materials the same springs"));
+
+    fn laws(mut self, spec: &Spec, shelf: &Shelf) -> Result<Laws, BuildError> {
+        Ok(if let Some(potentials) = shelf.potentials(spec)? {
+            Laws::Atoms(potentials)
+        } else if let Some(body) = self.given.pop() {
+            Laws::Micromoduli(body.clone())
+        } else if let Some(c) = self.springs.pop() {
+            Laws::Springs(c)
+        } else if self.solid.is_empty() {
+            Laws::Bond(self.bond)
+        } else {
+            Laws::Solid(self.solid)
+        })
     }
-    if given.iter().any(|b| !Arc::ptr_eq(b, given[0])) {
-        return Err(BuildError::unsupported(
-            "materials",
-            "micromoduli of more than one linear body in one body",
-        )
-        .help("give all materials the micromoduli of the same body"));
-    }
-    let laws = if let Some(potentials) = shelf.potentials(spec)? {
-        Laws::Atoms(potentials)
-    } else if let Some(body) = given.pop() {
-        Laws::Micromoduli(body.clone())
-    } else if let Some(c) = springs.pop() {
-        Laws::Springs(c)
-    } else if solid.is_empty() {
-        Laws::Bond(bond)
-    } else {
-        Laws::Solid(solid)
-    };
-    Ok(Constants {
-        laws,
-        contact: repulsive,
-    })
 }

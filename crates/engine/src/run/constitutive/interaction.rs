@@ -1,6 +1,6 @@
 //! Law and family become an interaction on a body.
 
-use super::shelf::{Neighbours, Place};
+use super::shelf::{AnyPotentials, Neighbours, Place};
 use super::{ConstitutiveModel, Laws};
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
@@ -19,8 +19,16 @@ use crate::law::solid::dual_horizon::DualHorizon;
 use crate::law::solid::eam_like::{EamLike, Solid};
 use crate::message;
 use crate::quantity::{Dimension, rounded};
-use crate::spec::Influence;
+use crate::spec::{AnyLinearBody, Influence};
 use std::sync::Arc;
+
+/// Of all materials, or of the only one.
+fn picked<T: Copy>(all: &[T], only: Option<usize>) -> Vec<T> {
+    match only {
+        Some(n) => all.get(n).copied().into_iter().collect(),
+        None => all.to_vec(),
+    }
+}
 
 impl ConstitutiveModel {
     /// The interaction on `body`; `only` makes everything of one material.
@@ -79,14 +87,7 @@ impl ConstitutiveModel {
         body: &Body<D>,
         only: Option<usize>,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
-        let pick = |n: usize| only.is_none_or(|o| o == n);
-        let toughness: Vec<Toughness> = self
-            .toughness
-            .iter()
-            .enumerate()
-            .filter(|(n, _)| pick(*n))
-            .map(|(_, t)| *t)
-            .collect();
+        let toughness = picked(&self.toughness, only);
         if let (Some(pairs), None) = (&self.pairs, only) {
             return self.interaction_of_pairs(body, pairs, toughness);
         }
@@ -111,93 +112,102 @@ impl ConstitutiveModel {
             });
         }
         match &self.laws {
-            Laws::Springs(c) => {
-                let links = self.links(body)?;
-                let volume = body.volume.uniform().unwrap_or(1.0);
-                let modulus = |xi: [f64; D]| {
-                    let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
-                    let k = c * self.weight(&xi, r0) * volume / (r0 * r0 * r0);
-                    std::array::from_fn(|a| std::array::from_fn(|b| k * xi[a] * xi[b]))
-                };
-                Ok(Box::new(LinearInteraction::new(links, self.simd, modulus)))
-            }
-            Laws::Micromoduli(linear) => {
-                let Some(linear) = (**linear).clone().of::<D>() else {
-                    let found = linear.dimension();
-                    return Err(BuildError::conflict(
-                        "micromoduli",
-                        format!("the micromoduli are those of a {found}-D body, this one has {D}"),
-                    ));
-                };
-                if linear.points() != body.points() {
-                    return Err(BuildError::conflict(
-                        "micromoduli",
-                        format!(
-                            "there are micromoduli of {} points, the body has {}",
-                            linear.points(),
-                            body.points()
-                        ),
-                    ));
-                }
-                Ok(Box::new(MicromoduliInteraction::new(
-                    body, &linear, self.simd,
-                )))
-            }
-            Laws::Atoms(potential) => match (&body.layout, &self.stencil) {
-                (Layout::Grid(_), Some(_)) => {
-                    let links = Neighbours::Linked(self.links(body)?);
-                    potential.bind(body, links, self.simd)
-                }
-                _ if self.held => {
-                    let breaks = self.breaks.then(|| Breaks {
-                        toughness,
-                        measure: self.criteria.measure.clone(),
-                    });
-                    let horizon = self.reach();
-                    potential.bind(body, Neighbours::Reference { horizon, breaks }, self.simd)
-                }
-                _ => potential.bind(body, Neighbours::Current, self.simd),
-            },
-            Laws::Bond(c) => {
-                let c: Vec<f64> = c
-                    .iter()
-                    .enumerate()
-                    .filter(|(n, _)| pick(*n))
-                    .map(|(_, c)| *c)
-                    .collect();
-                if !body.horizon.is_empty() {
-                    return self.of_own_horizons(body, c[0], toughness, repulsion);
-                }
-                if c.iter().all(|x| *x == c[0]) {
-                    let law = BondBased { c: c[0] };
-                    self.bind(body, law, PointConstants::None, toughness, repulsion)
-                } else {
-                    self.bind(
-                        body,
-                        BondBasedMixed { rule: self.rule },
-                        PointConstants::PerMaterial(c),
-                        toughness,
-                        repulsion,
-                    )
-                }
-            }
+            Laws::Springs(c) => self.of_springs(body, *c),
+            Laws::Micromoduli(linear) => self.of_micromoduli(body, linear),
+            Laws::Atoms(potential) => self.of_atoms(body, potential, toughness),
+            Laws::Bond(c) => self.of_bonds(body, picked(c, only), toughness, repulsion),
             Laws::Solid(s) => {
-                let s: Vec<Solid> = s
-                    .iter()
-                    .enumerate()
-                    .filter(|(n, _)| pick(*n))
-                    .map(|(_, s)| *s)
-                    .collect();
-                self.bind(
-                    body,
-                    EamLike {
-                        ratio: s[0].ratio(),
-                    },
-                    PointConstants::Solid(s),
-                    toughness,
-                    repulsion,
-                )
+                let s = picked(s, only);
+                let law = EamLike {
+                    ratio: s[0].ratio(),
+                };
+                self.bind(body, law, PointConstants::Solid(s), toughness, repulsion)
             }
+        }
+    }
+
+    fn of_springs<const D: usize>(
+        &self,
+        body: &Body<D>,
+        c: f64,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let links = self.links(body)?;
+        let volume = body.volume.uniform().unwrap_or(1.0);
+        let modulus = |xi: [f64; D]| {
+            let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let k = c * self.weight(&xi, r0) * volume / (r0 * r0 * r0);
+            std::array::from_fn(|a| std::array::from_fn(|b| k * xi[a] * xi[b]))
+        };
+        Ok(Box::new(LinearInteraction::new(links, self.simd, modulus)))
+    }
+
+    fn of_micromoduli<const D: usize>(
+        &self,
+        body: &Body<D>,
+        linear: &AnyLinearBody,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let Some(linear) = linear.clone().of::<D>() else {
+            let found = linear.dimension();
+            return Err(BuildError::conflict(
+                "micromoduli",
+                format!("the micromoduli are those of a {found}-D body, this one has {D}"),
+            ));
+        };
+        if linear.points() != body.points() {
+            return Err(BuildError::conflict(
+                "micromoduli",
+                format!(
+                    "there are micromoduli of {} points, the body has {}",
+                    linear.points(),
+                    body.points()
+                ),
+            ));
+        }
+        Ok(Box::new(MicromoduliInteraction::new(
+            body, &linear, self.simd,
+        )))
+    }
+
+    fn of_atoms<const D: usize>(
+        &self,
+        body: &Body<D>,
+        potential: &AnyPotentials,
+        toughness: Vec<Toughness>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        match (&body.layout, &self.stencil) {
+            (Layout::Grid(_), Some(_)) => {
+                let links = Neighbours::Linked(self.links(body)?);
+                potential.bind(body, links, self.simd)
+            }
+            _ if self.held => {
+                let breaks = self.breaks.then(|| Breaks {
+                    toughness,
+                    measure: self.criteria.measure.clone(),
+                });
+                let horizon = self.reach();
+                potential.bind(body, Neighbours::Reference { horizon, breaks }, self.simd)
+            }
+            _ => potential.bind(body, Neighbours::Current, self.simd),
+        }
+    }
+
+    fn of_bonds<const D: usize>(
+        &self,
+        body: &Body<D>,
+        c: Vec<f64>,
+        toughness: Vec<Toughness>,
+        repulsion: Option<Repulsion>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        if !body.horizon.is_empty() {
+            return self.of_own_horizons(body, c[0], toughness, repulsion);
+        }
+        if c.iter().all(|x| *x == c[0]) {
+            let law = BondBased { c: c[0] };
+            self.bind(body, law, PointConstants::None, toughness, repulsion)
+        } else {
+            let law = BondBasedMixed { rule: self.rule };
+            let constants = PointConstants::PerMaterial(c);
+            self.bind(body, law, constants, toughness, repulsion)
         }
     }
 

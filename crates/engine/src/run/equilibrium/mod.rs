@@ -67,7 +67,12 @@ impl<const D: usize> System<D> {
                 SolveError::NothingFree.to_string(),
             ));
         }
-        if let Some(loose) = self.loose_parts(&support).first() {
+        // forces between points move no part as a whole, and nothing is solved for
+        let left_alone = options.method.minimizes()
+            && self.applied.loads.is_empty()
+            && self.applied.rigid.is_empty();
+        let loose = self.loose_parts(&support);
+        if let Some(loose) = loose.first().filter(|_| !left_alone) {
             let x = self.body.position(self.body.slots[loose.point] as usize);
             let x = &x[..D];
             return Err(BuildError::ill_posed(

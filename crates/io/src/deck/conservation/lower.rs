@@ -9,6 +9,7 @@ use crate::deck::lower::context::{Context, Result};
 use crate::deck::source::Source;
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Written};
+use peridyne::error::BuildError;
 use peridyne::execute::memory::afford;
 use peridyne::expression::Expression;
 use peridyne::quantity::rounded;
@@ -48,82 +49,43 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         Some(Or::Bare(FluxName::Burgers | FluxName::EnergyConserving)) => Dim::VELOCITY,
         Some(Or::Table(_)) | None => Dim::NUMBER,
     };
-    let both = &document.horizon;
-    let horizons = [
-        document
-            .advection
-            .as_ref()
-            .map(|a| (&a.value.horizon, &a.span)),
-        document
-            .diffusion
-            .as_ref()
-            .map(|d| (&d.value.horizon, &d.span)),
-    ];
-    let mut each = [None, None];
-    for (found, part) in each.iter_mut().zip(horizons) {
-        if let Some((own, span)) = part {
-            *found = Some(horizon(&context, own.as_ref().or(both.as_ref()), span)?);
-        }
-    }
-    let horizons = each;
+    let horizons = horizons(&context, document)?;
     let run = &document.run.value;
     let asked = run.evaluation.as_ref().map(|e| e.value);
     let output = &document.output;
     let frames = count(&context, &output.frames, "frames")?;
     let periodic = matches!(document.boundary.value, Or::Bare(BoundaryName::Periodic));
     let fourier = periodic && asked != Some(EvaluationName::Direct);
-    let law_bytes = memory::bytes(&grid, horizons, fourier);
-    let points = grid.points();
-    afford(
-        "points",
-        &format!("this law on {points} points"),
-        law_bytes,
-        "write fewer points, or a shorter horizon",
-    )
-    .map_err(explained)?;
-    let shown = output.pictures.unwrap_or(true) || output.report.unwrap_or(true);
-    let columns = 1 + usize::from(output.compare.is_some()) + usize::from(flux_asked(output));
-    let frame_bytes = bytes_of_frames(points as f64, frames as f64, columns as f64, shown);
-    afford(
-        "output.frames",
-        &format!("this law on {points} points with {frames} frames, kept until the end,"),
-        law_bytes + frame_bytes,
-        "write fewer frames",
+    fits(
+        &grid,
+        memory::bytes(&grid, horizons, fourier),
+        output,
+        frames,
     )
     .map_err(explained)?;
     let place = places(&grid);
     only_names(&context, &document.initial, place, "u at t = 0")?;
     let initial = context.expression(&document.initial, dimension)?;
     let initial: Values = Arc::new(move |x, t| initial.eval(x, t));
-    let u = grid.sample(|x| initial(x, 0.0));
-    if let Some(n) = u.iter().position(|u| !u.is_finite()) {
-        let place = &grid.place(n)[..grid.dimension];
-        return Err(context.error(
-            &document.initial.span,
-            format!("u is {} at {place:?}", u[n]),
-        ));
-    }
-    let [low, high] = measure::extremes(&u);
+    let u = sampled(&context, document, &grid, &initial)?;
+    let ends = measure::extremes(&u);
     let advection = document.advection.as_ref().map(|a| {
-        let flux = flux(&context, &a.value.flux, [low, high])?;
-        flux.evaluable(low, high, "advection.flux")
-            .map_err(explained)?;
-        let kernel = kernel(
+        advection(
             &context,
-            &a.value.kernel,
-            Parity::Odd,
+            &a.value,
+            place,
+            ends,
             horizons[0].unwrap_or_default(),
-            "advection.kernel",
-        )?;
-        Ok((flux, direction(&context, &a.value, place)?, kernel))
+        )
     });
     let advection = advection.transpose()?;
     let diffusion = document.diffusion.as_ref().map(|d| {
+        let horizon = horizons[1].unwrap_or_default();
         let kernel = kernel(
             &context,
             &d.value.kernel,
             Parity::Even,
-            horizons[1].unwrap_or_default(),
+            horizon,
             "diffusion.kernel",
         )?;
         Ok((context.finite(&d.value.viscosity, VISCOSITY)?, kernel))
@@ -183,6 +145,92 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         warnings: lower::unitless(&context),
         source: source.clone(),
     })
+}
+
+/// Horizons of advection and diffusion, where there are any: their own, or that of the deck.
+fn horizons(context: &Context, document: &LawDocument) -> Result<[Option<f64>; 2]> {
+    let both = &document.horizon;
+    let parts = [
+        document
+            .advection
+            .as_ref()
+            .map(|a| (&a.value.horizon, &a.span)),
+        document
+            .diffusion
+            .as_ref()
+            .map(|d| (&d.value.horizon, &d.span)),
+    ];
+    let mut each = [None, None];
+    for (found, part) in each.iter_mut().zip(parts) {
+        if let Some((own, span)) = part {
+            *found = Some(horizon(context, own.as_ref().or(both.as_ref()), span)?);
+        }
+    }
+    Ok(each)
+}
+
+/// Does memory hold a law of so many bytes, and its frames?
+fn fits(
+    grid: &Grid,
+    law_bytes: f64,
+    output: &LawOutput,
+    frames: u64,
+) -> std::result::Result<(), BuildError> {
+    let points = grid.points();
+    afford(
+        "points",
+        &format!("this law on {points} points"),
+        law_bytes,
+        "write fewer points, or a shorter horizon",
+    )?;
+    let shown = output.pictures.unwrap_or(true) || output.report.unwrap_or(true);
+    let columns = 1 + usize::from(output.compare.is_some()) + usize::from(flux_asked(output));
+    let frame_bytes = bytes_of_frames(points as f64, frames as f64, columns as f64, shown);
+    afford(
+        "output.frames",
+        &format!("this law on {points} points with {frames} frames, kept until the end,"),
+        law_bytes + frame_bytes,
+        "write fewer frames",
+    )
+}
+
+/// u at the start.
+fn sampled(
+    context: &Context,
+    document: &LawDocument,
+    grid: &Grid,
+    initial: &Values,
+) -> Result<Vec<f64>> {
+    let u = grid.sample(|x| initial(x, 0.0));
+    if let Some(n) = u.iter().position(|u| !u.is_finite()) {
+        let place = &grid.place(n)[..grid.dimension];
+        return Err(context.error(
+            &document.initial.span,
+            format!("u is {} at {place:?}", u[n]),
+        ));
+    }
+    Ok(u)
+}
+
+/// What carries u, which goes from `low` to `high` at the start.
+fn advection(
+    context: &Context,
+    written: &Transport,
+    place: &[&str],
+    [low, high]: [f64; 2],
+    horizon: f64,
+) -> Result<(Flux, Direction, Kernel)> {
+    let flux = flux(context, &written.flux, [low, high])?;
+    flux.evaluable(low, high, "advection.flux")
+        .map_err(|e| explain(context.source, &e))?;
+    let kernel = kernel(
+        context,
+        &written.kernel,
+        Parity::Odd,
+        horizon,
+        "advection.kernel",
+    )?;
+    Ok((flux, direction(context, written, place)?, kernel))
 }
 
 /// Frames are kept until the end and packed for their file; pictures and the report look at them once more.

@@ -125,17 +125,6 @@ names! {
         /// From its last equilibrium on.
         Motion,
     }
-    /// How a motion goes on in time.
-    IntegratorName {
-        /// Velocity Verlet: explicit, stable below a limit of the step.
-        Verlet,
-        /// Newmark's method: implicit, stable at any step.
-        Newmark,
-        /// The method of Hilber, Hughes and Taylor: implicit, and damps what is fast beside the step.
-        Hht,
-        /// Points stand where they are; heat and species go on.
-        Still,
-    }
     /// How what spreads goes on in time.
     TransferName {
         /// Forward Euler, in as many equal parts of a step as its own stable step asks for.

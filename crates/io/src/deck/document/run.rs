@@ -1,9 +1,9 @@
 //! How a body moves or comes to rest, and what is measured of it.
 
-use super::{ControlName, IntegratorName, MeasureName};
+use super::{ControlName, MeasureName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Vector, Written};
-use peridyne::spec::Method;
+use peridyne::spec::{Integrator, Method, Stepper};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -112,15 +112,43 @@ pub struct LoadCycles {
 #[derive(Debug, Clone, Copy)]
 pub struct MethodName(pub Method);
 
+/// An integrator of the engine's list.
+#[derive(Debug, Clone, Copy)]
+pub struct IntegratorName(pub Integrator);
+
+/// The one of a list that a deck names.
+fn named<'de, D: Deserializer<'de>, T: Copy>(
+    deserializer: D,
+    all: &[T],
+    name: impl Fn(&T) -> &'static str,
+) -> Result<T, D::Error> {
+    let word = String::deserialize(deserializer)?;
+    let found = all.iter().find(|x| name(x) == word);
+    found.copied().ok_or_else(|| {
+        let known: Vec<String> = all.iter().map(|x| format!("`{}`", name(x))).collect();
+        let known = known.join(", ");
+        D::Error::custom(format!("unknown variant `{word}`, expected one of {known}"))
+    })
+}
+
 impl<'de> Deserialize<'de> for MethodName {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        let found = Method::ALL.into_iter().find(|m| m.name() == name);
-        found.map(MethodName).ok_or_else(|| {
-            let known = Method::ALL.map(|m| format!("`{}`", m.name())).join(", ");
-            D::Error::custom(format!("unknown variant `{name}`, expected one of {known}"))
-        })
+        named(deserializer, &Method::ALL, |m| m.name()).map(MethodName)
     }
+}
+
+impl<'de> Deserialize<'de> for IntegratorName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        named(deserializer, &Stepper::integrators(), |i| i.name).map(IntegratorName)
+    }
+}
+
+/// The schema of a word: each with what it means.
+fn words(all: &[(&str, &str)]) -> Schema {
+    let each = all
+        .iter()
+        .map(|(name, doc)| json!({ "type": "string", "const": name, "description": doc }));
+    json_schema!({ "oneOf": each.collect::<Vec<_>>() })
 }
 
 impl JsonSchema for MethodName {
@@ -128,9 +156,16 @@ impl JsonSchema for MethodName {
         "MethodName".into()
     }
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let each = Method::ALL
-            .map(|m| json!({ "type": "string", "const": m.name(), "description": m.words() }));
-        json_schema!({ "oneOf": each })
+        words(&Method::ALL.map(|m| (m.name(), m.words())))
+    }
+}
+
+impl JsonSchema for IntegratorName {
+    fn schema_name() -> Cow<'static, str> {
+        "IntegratorName".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        words(&Stepper::integrators().map(|i| (i.name, i.doc)))
     }
 }
 

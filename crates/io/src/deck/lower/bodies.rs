@@ -2,9 +2,10 @@
 
 use super::body;
 use super::context::{Context, Result};
+use super::family::{horizon, influence};
 use super::pieces::within;
 use super::sets;
-use super::{Files, horizon, influence, points};
+use super::{Files, points};
 use crate::deck::document::{Body, Document, FamilyName};
 use crate::deck::error::nearest;
 use crate::deck::value::At;

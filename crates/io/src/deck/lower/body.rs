@@ -2,8 +2,9 @@
 
 use super::Files;
 use super::context::{Context, Result};
+use super::points;
 use super::region::region;
-use super::{points, section};
+use super::section::section;
 use crate::deck::document::{Body, Document, LatticeName, SurfaceName};
 use crate::deck::units::{Dim, UnitSystem};
 use crate::deck::value::{At, Or};
@@ -80,108 +81,143 @@ pub(super) fn body(
             let filling = Filling::of(document);
             lattice(context, body, LatticeKind::from(kind.value), &filling)
         }
-        (None, Some(mut cloud)) => {
-            if let Some(lost) = written
-                .origin
-                .as_ref()
-                .map(|o| &o.span)
-                .or(written.region.as_ref().map(|r| &r.span))
-            {
-                return Err(context.error(
-                    lost,
-                    "origin and region belong to a lattice; a file brings its points",
-                ));
-            }
-            if let Some(perturb) = &written.perturb {
-                return Err(
-                    context.error(&perturb.amplitude.span, "only a lattice can be perturbed")
-                );
-            }
-            if let Some(file) = &written.file {
-                points::lie_flat(context, &cloud, file)?;
-            }
-            if let Some(spacing) = &written.spacing {
-                cloud.spacing = Some(context.positive(spacing, Dim::LENGTH, "the spacing")?);
-            }
-            if context.micromoduli.is_some()
-                && let Some(unit) = &written.file_unit
-            {
-                return Err(context.error(
-                    &unit.span,
-                    "a linear body is in the units of its deck: file_unit cannot change its micromoduli",
-                ));
-            }
-            let density = match context.micromoduli {
-                Some(_) => 1.0,
-                None => context.units.plain_factor(Dim::DENSITY),
-            };
-            cloud.density.iter_mut().for_each(|d| *d *= density);
-            if let Some(unit) = &written.file_unit {
-                let unit = context.positive(unit, Dim::LENGTH, "the unit of the file")?;
-                // areas of a 2-D mesh, volumes otherwise
-                let power = if natural == Some(2) { 2 } else { 3 };
-                cloud.position.iter_mut().flatten().for_each(|c| *c *= unit);
-                let ends = context.ends.iter_mut().flatten().flatten();
-                ends.for_each(|c| *c *= unit);
-                cells.scale(unit);
-                cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
-                for (_, areas) in &mut cloud.faces {
-                    *areas = areas.iter().map(|a| a * unit.powi(power - 1)).collect();
-                }
-                if let Some(atoms) = &mut context.atoms {
-                    atoms.corner = atoms.corner.map(|c| c * unit);
-                    atoms.cell = atoms.cell.map(|c| c * unit);
-                }
-            }
-            // cells of a plane mesh have areas, and edges lengths: the thickness makes more of them
-            if natural == Some(2) && context.micromoduli.is_none() && context.atoms.is_none() {
-                let thickness = section(context, document)?;
-                cloud.volume.iter_mut().for_each(|v| *v *= thickness);
-                for (_, areas) in &mut cloud.faces {
-                    *areas = areas.iter().map(|a| a * thickness).collect();
-                }
-            }
-            let longest = extents(&cloud).into_iter().fold(0.0, f64::max);
-            if context.units == UnitSystem::Si
-                && written.file_unit.is_none()
-                && context.atoms.is_none()
-                && context.micromoduli.is_none()
-                && longest > LONG
-                && let Some(file) = &written.file
-            {
-                let text = format!(
-                    "lengths of {} are taken as metres, which makes a body of {}: file_unit = \"1 mm\" says otherwise",
-                    file.value,
-                    context.units.show(longest, Dim::LENGTH),
-                );
-                let remark = context.source.remark(&file.span, &text);
-                context.notes.push(remark);
-            }
-            if natural.is_none()
-                && context.atoms.is_none()
-                && let Some(file) = &written.file
-                && let Some(doubt) = points::odd_volumes(context, document, &cloud, file)?
-            {
-                context.doubts.push(doubt);
-            }
-            if let (Some(atoms), Some(file)) = (&context.atoms, &written.file) {
-                atoms_fit(context, atoms, file)?;
-            }
-            if let Some(atoms) = &mut context.atoms {
-                let mass = context.units.plain_factor(Dim::MASS);
-                for species in &mut atoms.species {
-                    species.mass = species.mass.map(|m| m * mass);
-                }
-                if atoms.from_momenta {
-                    let unit = context.units.ase_velocity();
-                    cloud.velocity.iter_mut().flatten().for_each(|v| *v *= unit);
-                }
-            }
-            context.cells.append(cells);
-            Ok(BodySpec::Cloud(cloud))
-        }
+        (None, Some(cloud)) => points_of_file(context, document, written, natural, cloud, cells),
         (None, None) => Err(context.error(&body.span, "the body needs one of lattice, file")),
     }
+}
+
+/// The points of a file as a body of the deck, in its units.
+fn points_of_file(
+    context: &mut Context,
+    document: &Document,
+    written: &Body,
+    natural: Option<usize>,
+    mut cloud: Cloud,
+    mut cells: Cells,
+) -> Result<BodySpec> {
+    refuse_keys_of_lattices(context, written)?;
+    if let Some(file) = &written.file {
+        points::lie_flat(context, &cloud, file)?;
+    }
+    if let Some(spacing) = &written.spacing {
+        cloud.spacing = Some(context.positive(spacing, Dim::LENGTH, "the spacing")?);
+    }
+    if context.micromoduli.is_some()
+        && let Some(unit) = &written.file_unit
+    {
+        return Err(context.error(
+            &unit.span,
+            "a linear body is in the units of its deck: file_unit cannot change its micromoduli",
+        ));
+    }
+    let density = match context.micromoduli {
+        Some(_) => 1.0,
+        None => context.units.plain_factor(Dim::DENSITY),
+    };
+    cloud.density.iter_mut().for_each(|d| *d *= density);
+    if let Some(unit) = &written.file_unit {
+        let unit = context.positive(unit, Dim::LENGTH, "the unit of the file")?;
+        scale(context, &mut cloud, &mut cells, unit, natural);
+    }
+    // cells of a plane mesh have areas, and edges lengths: the thickness makes more of them
+    if natural == Some(2) && context.micromoduli.is_none() && context.atoms.is_none() {
+        let thickness = section(context, document)?;
+        cloud.volume.iter_mut().for_each(|v| *v *= thickness);
+        for (_, areas) in &mut cloud.faces {
+            *areas = areas.iter().map(|a| a * thickness).collect();
+        }
+    }
+    context.notes.extend(in_metres(context, written, &cloud));
+    if natural.is_none()
+        && context.atoms.is_none()
+        && let Some(file) = &written.file
+        && let Some(doubt) = points::odd_volumes(context, document, &cloud, file)?
+    {
+        context.doubts.push(doubt);
+    }
+    if let (Some(atoms), Some(file)) = (&context.atoms, &written.file) {
+        atoms_fit(context, atoms, file)?;
+    }
+    if let Some(atoms) = &mut context.atoms {
+        in_units(context.units, atoms, &mut cloud);
+    }
+    context.cells.append(cells);
+    Ok(BodySpec::Cloud(cloud))
+}
+
+fn refuse_keys_of_lattices(context: &Context, written: &Body) -> Result<()> {
+    if let Some(lost) = written
+        .origin
+        .as_ref()
+        .map(|o| &o.span)
+        .or(written.region.as_ref().map(|r| &r.span))
+    {
+        return Err(context.error(
+            lost,
+            "origin and region belong to a lattice; a file brings its points",
+        ));
+    }
+    if let Some(perturb) = &written.perturb {
+        return Err(context.error(&perturb.amplitude.span, "only a lattice can be perturbed"));
+    }
+    Ok(())
+}
+
+/// Lengths of a file in `unit`.
+fn scale(
+    context: &mut Context,
+    cloud: &mut Cloud,
+    cells: &mut Cells,
+    unit: f64,
+    natural: Option<usize>,
+) {
+    // areas of a 2-D mesh, volumes otherwise
+    let power = if natural == Some(2) { 2 } else { 3 };
+    cloud.position.iter_mut().flatten().for_each(|c| *c *= unit);
+    let ends = context.ends.iter_mut().flatten().flatten();
+    ends.for_each(|c| *c *= unit);
+    cells.scale(unit);
+    cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
+    for (_, areas) in &mut cloud.faces {
+        *areas = areas.iter().map(|a| a * unit.powi(power - 1)).collect();
+    }
+    if let Some(atoms) = &mut context.atoms {
+        atoms.corner = atoms.corner.map(|c| c * unit);
+        atoms.cell = atoms.cell.map(|c| c * unit);
+    }
+}
+
+/// Masses and velocities of atoms in the units of the deck.
+fn in_units(units: UnitSystem, atoms: &mut AtomsFile, cloud: &mut Cloud) {
+    let mass = units.plain_factor(Dim::MASS);
+    for species in &mut atoms.species {
+        species.mass = species.mass.map(|m| m * mass);
+    }
+    if atoms.from_momenta {
+        let unit = units.ase_velocity();
+        cloud.velocity.iter_mut().flatten().for_each(|v| *v *= unit);
+    }
+}
+
+/// A remark where a body is so long that it is likely in millimetres.
+fn in_metres(context: &Context, written: &Body, cloud: &Cloud) -> Option<String> {
+    let longest = extents(cloud).into_iter().fold(0.0, f64::max);
+    if context.units == UnitSystem::Si
+        && written.file_unit.is_none()
+        && context.atoms.is_none()
+        && context.micromoduli.is_none()
+        && longest > LONG
+        && let Some(file) = &written.file
+    {
+        let text = format!(
+            "lengths of {} are taken as metres, which makes a body of {}: file_unit = \"1 mm\" says otherwise",
+            file.value,
+            context.units.show(longest, Dim::LENGTH),
+        );
+        let remark = context.source.remark(&file.span, &text);
+        return Some(remark);
+    }
+    None
 }
 
 /// How far points reach along each axis.

@@ -1,9 +1,9 @@
 //! `interface`: what bonds between unlike materials have. `[[interface]]`: bonds between two of several bodies.
 
 use super::context::{Context, Result};
+use super::family::{horizon, influence};
 use super::material::{fracture, law};
 use super::pieces::named;
-use super::{horizon, influence};
 use crate::deck::document::{Document, InterfaceName};
 use peridyne::spec::{BodySpec, InterfaceRule, InterfaceSpec, LawSpec, MaterialSpec};
 

@@ -52,25 +52,7 @@ pub(super) fn periods(
         }
         return Ok(out);
     };
-    let mut wanted: Vec<(usize, Range<usize>, Option<f64>)> = Vec::new();
-    match &written.value {
-        Or::Bare(axes) => wanted.extend(
-            axes.iter()
-                .map(|axis| (axis.value as usize, axis.span.clone(), None)),
-        ),
-        Or::Table(periods) => {
-            for (a, number) in [&periods.x, &periods.y, &periods.z].into_iter().enumerate() {
-                if let Some(number) = number {
-                    wanted.push((
-                        a,
-                        number.span.clone(),
-                        Some(context.positive(number, Dim::LENGTH, "the period")?),
-                    ));
-                }
-            }
-        }
-    }
-    for (a, span, period) in wanted {
+    for (a, span, period) in wanted(context, &written.value)? {
         let axis = ["x", "y", "z"][a];
         if a >= context.dimension {
             return Err(context.error(
@@ -96,44 +78,10 @@ pub(super) fn periods(
                 region,
                 ..
             } => {
-                let (low, high) = region.bounds();
                 let edge = *spacing * kind.edges()[a];
                 let own = cells.and_then(|c| c.value.get(a));
                 let own = own.map(|n| f64::from(n.value) * edge);
-                let length = period.or(own).unwrap_or(high[a] - low[a]);
-                let cells = length / edge;
-                if !length.is_finite() || !low[a].is_finite() {
-                    let help = "clip the region with a block along it";
-                    return Err(context.error_with(
-                        &span,
-                        format!("the body has no end along {axis} to be a period"),
-                        help,
-                    ));
-                }
-                if (cells - cells.round()).abs() > 1e-6 || cells.round() < 1.0 {
-                    let message =
-                        format!("the period along {axis} is {} lattice cells", short(cells));
-                    let help = format!(
-                        "make it a whole number of cells of {}",
-                        context.units.write(edge, Dim::LENGTH)
-                    );
-                    return Err(context.error_with(&span, message, help));
-                }
-                if own.is_some_and(|own| own == length) {
-                    out[a] = Some(length);
-                    continue;
-                }
-                let (mut from, mut to) = ([-INF; 3], [INF; 3]);
-                (from[a], to[a]) = (low[a], low[a] + length - edge * BELOW);
-                let whole = std::mem::replace(region, Region::Everything);
-                *region = Region::Intersection(vec![
-                    whole,
-                    Region::Block {
-                        low: from,
-                        high: to,
-                    },
-                ]);
-                length
+                cut(context, region, (a, &span), edge, [period, own])?
             }
             BodySpec::Several(_) => period.ok_or_else(|| {
                 context.error_with(
@@ -154,4 +102,74 @@ pub(super) fn periods(
         });
     }
     Ok(out)
+}
+
+/// Axis, place in the deck and length of each period that is written.
+type Wanted = Vec<(usize, Range<usize>, Option<f64>)>;
+
+fn wanted(context: &Context, written: &Periodic) -> Result<Wanted> {
+    let mut wanted: Wanted = Vec::new();
+    match written {
+        Or::Bare(axes) => wanted.extend(
+            axes.iter()
+                .map(|axis| (axis.value as usize, axis.span.clone(), None)),
+        ),
+        Or::Table(periods) => {
+            for (a, number) in [&periods.x, &periods.y, &periods.z].into_iter().enumerate() {
+                if let Some(number) = number {
+                    wanted.push((
+                        a,
+                        number.span.clone(),
+                        Some(context.positive(number, Dim::LENGTH, "the period")?),
+                    ));
+                }
+            }
+        }
+    }
+    Ok(wanted)
+}
+
+/// Cuts a region of a lattice to one period along axis `a`, which is written at `span`: to the `period` that is given, to that of
+/// its `own` cells, or to its own length.
+fn cut(
+    context: &Context,
+    region: &mut Region,
+    (a, span): (usize, &Range<usize>),
+    edge: f64,
+    [period, own]: [Option<f64>; 2],
+) -> Result<f64> {
+    let axis = ["x", "y", "z"][a];
+    let (low, high) = region.bounds();
+    let length = period.or(own).unwrap_or(high[a] - low[a]);
+    let cells = length / edge;
+    if !length.is_finite() || !low[a].is_finite() {
+        let help = "clip the region with a block along it";
+        return Err(context.error_with(
+            span,
+            format!("the body has no end along {axis} to be a period"),
+            help,
+        ));
+    }
+    if (cells - cells.round()).abs() > 1e-6 || cells.round() < 1.0 {
+        let message = format!("the period along {axis} is {} lattice cells", short(cells));
+        let help = format!(
+            "make it a whole number of cells of {}",
+            context.units.write(edge, Dim::LENGTH)
+        );
+        return Err(context.error_with(span, message, help));
+    }
+    if own.is_some_and(|own| own == length) {
+        return Ok(length);
+    }
+    let (mut from, mut to) = ([-INF; 3], [INF; 3]);
+    (from[a], to[a]) = (low[a], low[a] + length - edge * BELOW);
+    let whole = std::mem::replace(region, Region::Everything);
+    *region = Region::Intersection(vec![
+        whole,
+        Region::Block {
+            low: from,
+            high: to,
+        },
+    ]);
+    Ok(length)
 }

@@ -1,7 +1,7 @@
 //! Points of a file that are likely not what the deck means.
 
 use super::context::{Context, Result};
-use super::section;
+use super::section::section;
 use crate::deck::document::Document;
 use crate::deck::units::Dim;
 use crate::deck::value::At;

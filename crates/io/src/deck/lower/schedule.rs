@@ -2,8 +2,8 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::{
-    Checkpoint, ControlName, Document, IntegratorName, LoadCycles, MethodName, Output, Picture,
-    Run, Safety, SolverName, SpaceTimes, Statics,
+    Checkpoint, ControlName, Document, LoadCycles, MethodName, Output, Picture, Run, Safety,
+    SolverName, SpaceTimes, Statics,
 };
 use crate::deck::units::{Dim, clock_time, short};
 use crate::deck::value::{At, Number, Or, Written};
@@ -227,26 +227,31 @@ fn solver(written: Option<SolverName>) -> Solver {
 
 /// What moves the points; keys of the implicit methods belong to them alone.
 fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
-    use IntegratorName::{Hht, Newmark as Plain, Still, Verlet};
-    let name = run.integrator.as_ref().map_or(Verlet, |i| i.value);
-    let own: [(&str, Option<&Range<usize>>, &[IntegratorName]); 6] = [
-        ("beta", run.beta.as_ref().map(|n| &n.span), &[Plain]),
-        ("gamma", run.gamma.as_ref().map(|n| &n.span), &[Plain]),
-        ("alpha", run.alpha.as_ref().map(|n| &n.span), &[Hht]),
+    let integrator = match &run.integrator {
+        None => Stepper::integrators()[0],
+        Some(At { value, .. }) => value.0,
+    };
+    const HHT: &str = "hht";
+    const PLAIN: &str = "newmark";
+    let name = integrator.name;
+    let own: [(&str, Option<&Range<usize>>, &[&str]); 6] = [
+        ("beta", run.beta.as_ref().map(|n| &n.span), &[PLAIN]),
+        ("gamma", run.gamma.as_ref().map(|n| &n.span), &[PLAIN]),
+        ("alpha", run.alpha.as_ref().map(|n| &n.span), &[HHT]),
         (
             "solver",
             run.solver.as_ref().map(|n| &n.span),
-            &[Plain, Hht],
+            &[PLAIN, HHT],
         ),
         (
             "tolerance",
             run.tolerance.as_ref().map(|n| &n.span),
-            &[Plain, Hht],
+            &[PLAIN, HHT],
         ),
         (
             "iterations",
             run.iterations.as_ref().map(|n| &n.span),
-            &[Plain, Hht],
+            &[PLAIN, HHT],
         ),
     ];
     for (key, span, of) in own {
@@ -254,8 +259,8 @@ fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
             && !of.contains(&name)
         {
             let (whose, word) = match of {
-                [Hht] => ("the method of Hilber, Hughes and Taylor", "hht"),
-                [Plain] if name == Hht => ("Newmark's method; alpha says both here", "newmark"),
+                [HHT] => ("the method of Hilber, Hughes and Taylor", "hht"),
+                [PLAIN] if name == HHT => ("Newmark's method; alpha says both here", "newmark"),
                 _ => ("the implicit integrator", "newmark"),
             };
             return Err(context.error_with(
@@ -269,28 +274,23 @@ fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
         None => Ok(or),
         Some(written) => context.positive(written, Dim::NUMBER, what),
     };
-    let standard = match name {
-        Verlet => return Ok(Stepper::Verlet),
-        Still => return Ok(Stepper::Still),
-        Plain => Newmark::default(),
-        Hht => match &run.alpha {
-            None => Newmark::hht(-0.1),
-            Some(written) => {
-                let alpha = context.finite(written, Dim::NUMBER)?;
-                if !(-1.0 / 3.0..=0.0).contains(&alpha) {
-                    return Err(context.error_with(
-                        &written.span,
-                        format!(
-                            "alpha is {}, expected a number from -1/3 to 0",
-                            short(alpha)
-                        ),
-                        "write alpha = -0.1, or leave it out",
-                    ));
-                }
-                Newmark::hht(alpha)
-            }
-        },
+    let Stepper::Newmark(mut standard) = integrator.stepper else {
+        return Ok(integrator.stepper);
     };
+    if let Some(written) = &run.alpha {
+        let alpha = context.finite(written, Dim::NUMBER)?;
+        if !(-1.0 / 3.0..=0.0).contains(&alpha) {
+            return Err(context.error_with(
+                &written.span,
+                format!(
+                    "alpha is {}, expected a number from -1/3 to 0",
+                    short(alpha)
+                ),
+                "write alpha = -0.1, or leave it out",
+            ));
+        }
+        standard = Newmark::hht(alpha);
+    }
     Ok(Stepper::Newmark(Newmark {
         beta: number(&run.beta, standard.beta, "beta")?,
         gamma: number(&run.gamma, standard.gamma, "gamma")?,

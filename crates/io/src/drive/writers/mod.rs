@@ -150,18 +150,16 @@ impl<'a> Now<'a> {
 
     /// What the run was about.
     pub fn about(&self) -> About {
-        use peridyne::spec::Stepper::{Newmark, Statics, Still, Verlet};
-        match (
-            self.sim.broken() > self.known.broken,
-            &self.sim.info().stepper,
-        ) {
-            (true, _) => About::Fracture,
-            (false, Statics(_)) => About::Equilibrium,
-            (false, Verlet | Newmark(_)) => About::Motion,
-            (false, Still) => match self.sim.transfers().first() {
-                Some((quantity, _)) => About::Spread(quantity.column()),
-                None => About::Motion,
-            },
+        let stepper = self.sim.info().stepper;
+        if self.sim.broken() > self.known.broken {
+            return About::Fracture;
+        }
+        if stepper.statics().is_some() {
+            return About::Equilibrium;
+        }
+        match self.sim.transfers().first() {
+            Some((quantity, _)) if stepper.rests() => About::Spread(quantity.column()),
+            Some(_) | None => About::Motion,
         }
     }
 }

@@ -65,7 +65,7 @@ impl Writer for Rows {
         now.progress
             .row(step, now.sim.clock(), &ledger, now.sim.broken());
         let stepper = now.sim.info().stepper;
-        let statics = due.loads || matches!(stepper, Stepper::Statics(_));
+        let statics = due.loads || stepper.statics().is_some();
         if let Some(jump) = self.balance.row(step, &ledger, statics) {
             now.warn(now.plan.units.tell(&jump));
         }

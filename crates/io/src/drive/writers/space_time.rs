@@ -1,7 +1,6 @@
 //! Fields of a body on a line over place and time: recorded while it moves, drawn at the end.
 
 use peridyne::run::Simulation;
-use peridyne::spec::Stepper;
 use peridyne::state::{Archive, Owner};
 use std::time::Instant;
 
@@ -56,7 +55,7 @@ impl Owner for SpaceTimes {
 impl Writer for SpaceTimes {
     fn open(&mut self, now: &mut Now<'_>, _: bool) -> Result<(), DriveError> {
         let (sim, plan) = (&mut *now.sim, now.plan);
-        if plan.space_time.is_empty() || matches!(sim.info().stepper, Stepper::Statics(_)) {
+        if plan.space_time.is_empty() || sim.info().stepper.statics().is_some() {
             return Ok(());
         }
         let reference = sim.vectors("reference");

@@ -123,50 +123,13 @@ const BONDED: [&str; 8] = [
 /// File and line of the first mistake.
 pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
     let mut lines = Lines::new(reader, path);
-    let (mut count, mut types, mut bonded) = (None, None, false);
-    let mut bounds: [Option<[f64; 2]>; 3] = [None; 3];
-    lines.advance()?; // the first line is a title
-    let mut section = loop {
-        let Some(line) = lines.advance()? else {
-            return Err(
-                lines.fail("the file ends within its header; the section `Atoms` is missing")
-            );
-        };
-        let words: Vec<String> = line.split_whitespace().map(str::to_string).collect();
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        match words[..] {
-            [] => {}
-            [n, "atoms"] => count = Some(whole(&lines, n)?),
-            [n, "atom", "types"] => types = Some(whole(&lines, n)?),
-            [low, high, a @ ("xlo" | "ylo" | "zlo"), _] => {
-                let pair = [low, high].map(finite);
-                let [low, high] = pair.map(|x| x.map_err(|e| lines.fail(e)));
-                let (low, high) = (low?, high?);
-                if low >= high {
-                    return Err(lines.fail(format!("the box is empty: {low} is not below {high}")));
-                }
-                bounds[usize::from(a.as_bytes()[0] - b'x')] = Some([low, high]);
-            }
-            [n, "bonds" | "angles" | "dihedrals" | "impropers"] => bonded |= n != "0",
-            [_, "bond" | "angle" | "dihedral" | "improper", "types"] => {}
-            [_, "extra", ..] => {}
-            [name] if name.starts_with(|c: char| c.is_ascii_uppercase()) => break name.to_string(),
-            _ => {
-                return Err(lines
-                    .fail("this header line is not supported")
-                    .help("supported: N atoms; N atom types; LO HI xlo xhi (ylo yhi, zlo zhi); then the sections Atoms, Velocities"));
-            }
-        }
-    };
-    let count = count.ok_or_else(|| lines.fail("the header has no line `N atoms`"))?;
-    let types = types.ok_or_else(|| lines.fail("the header has no line `N atom types`"))?;
-    let mut corners = [[0.0; 2]; 3];
-    for (a, b) in bounds.into_iter().enumerate() {
-        let axis = ["x", "y", "z"][a];
-        corners[a] = b.ok_or_else(|| {
-            lines.fail(format!("the header has no line `LO HI {axis}lo {axis}hi`"))
-        })?;
-    }
+    let Header {
+        count,
+        types,
+        mut bonded,
+        corners,
+        mut section,
+    } = header(&mut lines)?;
     let mut atoms: Option<DataAtoms> = None;
     let mut style = None;
     let mut named = false;
@@ -250,6 +213,71 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
         atoms,
         had_images,
         bonded,
+    })
+}
+
+/// What stands before the sections.
+struct Header {
+    count: usize,
+    types: usize,
+    bonded: bool,
+    /// Lower and upper end along each axis.
+    corners: [[f64; 2]; 3],
+    /// Name of the first section.
+    section: String,
+}
+
+fn header<R: BufRead>(lines: &mut Lines<R>) -> Result<Header> {
+    let (mut count, mut types, mut bonded) = (None, None, false);
+    let mut bounds: [Option<[f64; 2]>; 3] = [None; 3];
+    lines.advance()?; // the first line is a title
+    let section = loop {
+        let Some(line) = lines.advance()? else {
+            return Err(
+                lines.fail("the file ends within its header; the section `Atoms` is missing")
+            );
+        };
+        let words: Vec<String> = line.split_whitespace().map(str::to_string).collect();
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        match words[..] {
+            [] => {}
+            [n, "atoms"] => count = Some(whole(lines, n)?),
+            [n, "atom", "types"] => types = Some(whole(lines, n)?),
+            [low, high, a @ ("xlo" | "ylo" | "zlo"), _] => {
+                let pair = [low, high].map(finite);
+                let [low, high] = pair.map(|x| x.map_err(|e| lines.fail(e)));
+                let (low, high) = (low?, high?);
+                if low >= high {
+                    return Err(lines.fail(format!("the box is empty: {low} is not below {high}")));
+                }
+                bounds[usize::from(a.as_bytes()[0] - b'x')] = Some([low, high]);
+            }
+            [n, "bonds" | "angles" | "dihedrals" | "impropers"] => bonded |= n != "0",
+            [_, "bond" | "angle" | "dihedral" | "improper", "types"] => {}
+            [_, "extra", ..] => {}
+            [name] if name.starts_with(|c: char| c.is_ascii_uppercase()) => break name.to_string(),
+            _ => {
+                return Err(lines
+                    .fail("this header line is not supported")
+                    .help("supported: N atoms; N atom types; LO HI xlo xhi (ylo yhi, zlo zhi); then the sections Atoms, Velocities"));
+            }
+        }
+    };
+    let count = count.ok_or_else(|| lines.fail("the header has no line `N atoms`"))?;
+    let types = types.ok_or_else(|| lines.fail("the header has no line `N atom types`"))?;
+    let mut corners = [[0.0; 2]; 3];
+    for (a, b) in bounds.into_iter().enumerate() {
+        let axis = ["x", "y", "z"][a];
+        corners[a] = b.ok_or_else(|| {
+            lines.fail(format!("the header has no line `LO HI {axis}lo {axis}hi`"))
+        })?;
+    }
+    Ok(Header {
+        count,
+        types,
+        bonded,
+        corners,
+        section,
     })
 }
 

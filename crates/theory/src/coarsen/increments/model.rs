@@ -1,6 +1,6 @@
 //! A model of the engine as increments see it, and linear bodies.
 
-use super::{Load, Nonlinear};
+use super::nonlinear::{Load, Nonlinear};
 use peridyne::expression::Expression;
 use peridyne::run::Simulation;
 use peridyne::space::Point;

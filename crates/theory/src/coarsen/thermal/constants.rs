@@ -6,6 +6,9 @@ use super::super::block::{Block, add, inverse, largest, product, scaled, transpo
 use super::alike::{Alike, Vectors};
 use std::collections::BTreeMap;
 
+/// Most constants of a fit: their equations are a full matrix.
+pub const CONSTANTS_LIMIT: usize = 3000;
+
 /// Blocks of all kinds of bonds as a sum of fields, each with a constant.
 pub(super) struct Constants<const D: usize> {
     pub count: usize,

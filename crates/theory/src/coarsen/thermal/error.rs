@@ -1,6 +1,6 @@
 //! Why frames give no linear body, and what to do about it.
 
-use super::CONSTANTS_LIMIT;
+use super::constants::CONSTANTS_LIMIT;
 use peridyne::message;
 use peridyne::quantity::{Dimension, Message, Quantity};
 

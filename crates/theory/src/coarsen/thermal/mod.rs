@@ -27,12 +27,11 @@ use super::check::affine;
 use crate::elastic_constants::Cubic;
 use crate::voigt::{Stiffness, axes, components};
 use alike::Alike;
+pub use constants::CONSTANTS_LIMIT;
 use constants::Constants;
 use fit::{Centred, fit};
 use peridyne::spec::LinearBody;
 
-/// Most constants of a fit: their equations are a full matrix.
-pub const CONSTANTS_LIMIT: usize = 3000;
 /// Equations for each constant at least.
 const EQUATIONS: usize = 2;
 /// Blocks of frames that errors are taken from, and fewest frames of one.

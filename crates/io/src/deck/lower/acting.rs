@@ -1,0 +1,88 @@
+//! What acts on a body, each entry in its stage.
+
+use super::context::{Context, Result};
+use super::stage::{Staged, Stages, moves, of_time};
+use super::transfer::Said;
+use super::{Files, indenter, motion, transfer};
+use crate::deck::document::{Document, StageName};
+use peridyne::expression::Expression;
+use peridyne::spec::{
+    ConditionSpec, IndenterSpec, InitialSpec, PrecrackSpec, SetSpec, TransferCondition,
+};
+
+/// Initial values of points, and those of what spreads.
+pub(super) fn initial(
+    context: &Context,
+    document: &Document,
+    sets: &mut Vec<SetSpec>,
+) -> Result<(Vec<InitialSpec>, Vec<Said<(String, Expression)>>)> {
+    let (mut initial, mut starts) = (Vec::new(), Vec::new());
+    for (index, at) in document.initial.iter().enumerate() {
+        let made = motion::initial(context, index, at, sets)?;
+        transfer::initial(context, &at.value, &made.set, &mut starts)?;
+        initial.push(made);
+    }
+    Ok((initial, starts))
+}
+
+/// Conditions on points, and those of what spreads.
+pub(super) fn conditions(
+    context: &mut Context,
+    document: &Document,
+    stages: &Stages,
+    sets: &mut Vec<SetSpec>,
+) -> Result<(Staged<ConditionSpec>, Vec<Said<TransferCondition>>)> {
+    let mut conditions = Staged::default();
+    let mut exchanged = Vec::new();
+    for (index, at) in document.condition.iter().enumerate() {
+        let stage = stages.named(context, &at.value.stage)?;
+        context.set_time(stages.time(stage));
+        let made = motion::condition(context, index, at, sets, &mut exchanged)?;
+        if stages.both && stage.is_none() && made.iter().any(of_time) {
+            return Err(stages.whose(context, &at.span));
+        }
+        conditions.put(stage, stages.both, index, made);
+    }
+    Ok((conditions, exchanged))
+}
+
+pub(super) fn indenters(
+    context: &mut Context,
+    document: &Document,
+    stages: &Stages,
+    section: f64,
+    files: &Files,
+) -> Result<Staged<IndenterSpec>> {
+    let mut indenters = Staged::default();
+    for (index, at) in document.indenter.iter().enumerate() {
+        let stage = stages.named(context, &at.value.stage)?;
+        context.set_time(stages.time(stage));
+        let made = indenter::indenter(context, at, section, files)?;
+        if stages.both && stage.is_none() && moves(&made) {
+            return Err(stages.whose(context, &at.span));
+        }
+        indenters.put(stage, stages.both, index, vec![made]);
+    }
+    Ok(indenters)
+}
+
+/// Cracks of the body, and those that are cut when motion begins.
+pub(super) fn precracks(
+    context: &Context,
+    document: &Document,
+    stages: &Stages,
+    files: &Files,
+) -> Result<Staged<PrecrackSpec>> {
+    let mut precracks = Staged::default();
+    for (index, at) in document.precrack.iter().enumerate() {
+        let late = stages.named(context, &at.value.stage)? == Some(StageName::Motion);
+        let made = motion::precrack(context, at, late, files)?;
+        let when = if late {
+            StageName::Motion
+        } else {
+            StageName::Statics
+        };
+        precracks.put(Some(when), true, index, vec![made]);
+    }
+    Ok(precracks)
+}

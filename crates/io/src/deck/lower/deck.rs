@@ -1,0 +1,172 @@
+//! All of a deck.
+
+use super::context::{Context, Result};
+use super::section::{plane, section};
+use super::stage::{Entries, Stages};
+use super::units::{measured_constants, units};
+use super::{
+    Files, acting, atoms, bodies, contact, family, fields, indenter, interface, material, motion,
+    names, periods, probes, schedule, sets, transfer, warnings,
+};
+use crate::continuum::plan::FieldsSpec;
+use crate::deck::OutputSpec;
+use crate::deck::document::Document;
+use crate::deck::error::DeckError;
+use crate::deck::source::Source;
+use crate::deck::units::Dim;
+use crate::read::Cells;
+use peridyne::spec::{PreloadSpec, Spec};
+
+pub(in crate::deck) struct Lowered {
+    pub spec: Spec,
+    /// Names of the atoms of each material, where a file says it.
+    pub species: Vec<Option<String>>,
+    /// Lower corner of the periods.
+    pub corner: [f64; 3],
+    pub output: OutputSpec,
+    pub fields: Vec<FieldsSpec>,
+    pub threads: Option<usize>,
+    pub duration: Option<f64>,
+    pub modes: usize,
+    pub warnings: Vec<String>,
+    pub notes: Vec<String>,
+    pub cells: Cells,
+    pub entries: Entries,
+}
+
+pub(in crate::deck) fn lower(
+    source: &Source,
+    document: &Document,
+    files: &Files,
+) -> std::result::Result<Lowered, DeckError> {
+    let units = units(document);
+    let stages = Stages::of(document);
+    let mut context = Context::new(source, units, stages.time(None), &document.constants)?;
+    measured_constants(&context, document)?;
+    let mut body = bodies::bodies(&mut context, document, files)?;
+    bodies::check(&context, document)?;
+    let periodic = periods::periods(
+        &context,
+        document.periodic.as_ref(),
+        document.body.value.cells.as_ref(),
+        &mut body,
+    )?;
+    let mut sets = bodies::sets(&context, document, &body)?;
+    sets.extend(sets::sets(&context, &document.sets, &body)?);
+    let mut potentials = atoms::potentials(&context, &document.material, &body, files)?;
+    if !potentials.is_empty() {
+        atoms::units_are_said(&context, document)?;
+    }
+    atoms::of_file(&context, document, &mut potentials)?;
+    material::what_is_left(document, &potentials, &mut sets);
+    let materials = material::materials(&context, document, &sets, &mut body, &potentials)?;
+    let (current, chosen) = family::of_atoms(document, !potentials.is_empty());
+    family::goes_with(&context, document, current)?;
+    let (initial, starts) = acting::initial(&context, document, &mut sets)?;
+    let (conditions, exchanged) = acting::conditions(&mut context, document, &stages, &mut sets)?;
+    let section = section(&context, document)?;
+    let indenters = acting::indenters(&mut context, document, &stages, section, files)?;
+    context.set_time(stages.time(None));
+    let precracks = acting::precracks(&context, document, &stages, files)?;
+    let transfers = transfer::transfers(&context, document, &materials, starts, exchanged)?;
+    let probes = all(&document.probe, |at| probes::probe(&context, at, &sets))?;
+    let first = bodies::own(&context, document, &mut body, &materials, &sets)?;
+    let run = schedule::schedule(&context, document)?;
+    let mut spec = Spec {
+        title: document.title.clone().unwrap_or_default(),
+        dimension: context.dimension,
+        plane: plane(document),
+        section,
+        horizon: match first {
+            Some(first) => first,
+            None => family::horizon_of(&context, document, &body, current)?,
+        },
+        own_horizon: optional(&document.own_horizon, |e| {
+            context.expression(e, Dim::LENGTH)
+        })?,
+        bonded: atoms::molecules(&context, document, files)?,
+        thermal: optional(&document.thermal, |t| atoms::thermal(&context, t))?,
+        interface: interface::rule(&context, document, &materials)?,
+        interfaces: interface::interfaces(&context, document, &body)?,
+        pairs: vec![],
+        potentials: atoms::pairs(&context, document, &body, &potentials, files)?,
+        mixing: atoms::mixing(&context, document, &potentials)?,
+        release: material::release(&context, &document.material)?,
+        volume_scaling: document.volume_scaling.unwrap_or(true),
+        calibration: family::calibration(document),
+        influence: family::influence(&context, document.influence.as_ref(), &materials)?,
+        periodic,
+        surface: None,
+        bonds: all(&document.bond_factor, |b| motion::bond_factor(&context, b))?,
+        toughness: all(&document.toughness, |t| {
+            motion::toughness(&context, t, &sets)
+        })?,
+        healing: optional(&document.healing, |h| motion::healing(&context, h, &sets))?,
+        precracks: precracks.before,
+        contact: contact::contact(&context, document, &materials)?,
+        initial,
+        preload: run.preload.map(|p| PreloadSpec {
+            statics: p.statics,
+            increments: p.increments,
+            duration: p.duration,
+            conditions: conditions.before,
+            indenters: indenters.before,
+            cuts: precracks.then,
+        }),
+        conditions: conditions.then,
+        transfers,
+        indenters: indenters.then,
+        family: family::choice(document),
+        smooth: optional(&document.smooth, |s| fields::smooth(&context, s))?,
+        schedule: run.schedule,
+        fields: written_fields(document),
+        probes,
+        boltzmann: atoms::boltzmann(units),
+        body,
+        sets,
+        materials,
+    };
+    if let Some(surface) = &document.surface {
+        spec.surface = family::surface_factors(&context, surface, &spec)?;
+    }
+    indenter::of_material(&mut context, document, &mut spec)?;
+    let species = potentials.into_values().map(|p| p.element);
+    names::folders(&context, &document.output, &document.fields)?;
+    let moves = spec.schedule.statics().is_none();
+    let kinds = [spec.potential().is_some(), moves];
+    let output = schedule::output(&context, &document.output, kinds)?;
+    Ok(Lowered {
+        corner: periods::corner(&context, &document.body.value, &spec.body),
+        species: species.collect(),
+        fields: fields::fields(&context, &document.fields, chosen)?,
+        spec,
+        output,
+        threads: run.threads,
+        duration: run.duration,
+        modes: run.modes,
+        warnings: warnings::warnings(&context, document),
+        notes: context.notes,
+        cells: context.cells,
+        entries: Entries {
+            conditions: conditions.entries,
+            indenters: indenters.entries,
+            precracks: precracks.entries,
+        },
+    })
+}
+
+fn all<T, U>(written: &[T], made: impl Fn(&T) -> Result<U>) -> Result<Vec<U>> {
+    written.iter().map(made).collect()
+}
+
+fn optional<T, U>(written: &Option<T>, made: impl Fn(&T) -> Result<U>) -> Result<Option<U>> {
+    written.as_ref().map(made).transpose()
+}
+
+/// Columns that the deck asks for.
+fn written_fields(document: &Document) -> Option<Vec<String>> {
+    let written = document.output.fields.as_ref()?;
+    // numbers of points are always written
+    let named = written.iter().filter(|f| f.value != "id");
+    Some(named.map(|f| f.value.clone()).collect())
+}
