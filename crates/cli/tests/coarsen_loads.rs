@@ -179,7 +179,7 @@ fn solvers_that_need_symmetry_refuse_rows_without() {
         ),
         (
             "[statics]\nmethod = \"relaxation\"",
-            "relaxation seeks the least energy",
+            "this method seeks the least energy",
         ),
     ] {
         let case = Case::new(&plate(PMB, schedule));

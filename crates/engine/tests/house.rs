@@ -525,6 +525,25 @@ fn a_field_of_points_is_a_file_and_a_line() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+#[test]
+fn a_stepper_is_a_file_and_a_line() {
+    let sources = sources();
+    let folder = "engine/src/run/stepper/";
+    let list = format!("{folder}mod.rs");
+    let lines = sources[&list].lines();
+    let steppers = lines.filter_map(|l| l.strip_prefix("use self::")?.strip_suffix(';'));
+    let steppers: Vec<_> = steppers.filter_map(|l| l.split_once("::")).collect();
+    assert!(steppers.len() >= 4, "{steppers:?}");
+    let mut wrong = vec![];
+    for (file, name) in steppers {
+        let own = format!("{folder}{file}.rs");
+        let engine = sources.iter().filter(|(p, _)| p.starts_with("engine/"));
+        let others = engine.filter(|(p, text)| **p != own && **p != list && knows(text, name));
+        wrong.extend(others.map(|(path, _)| format!("{name} is known to {path}")));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
 /// What the middle of the house is made of, and where it stands: fields, inherent methods and the files that these are in, as many as there
 /// are, which may only become fewer. None but `System` has more than 16 fields.
 const MIDDLE: &[(&str, &str, [usize; 3])] = &[
@@ -532,7 +551,7 @@ const MIDDLE: &[(&str, &str, [usize; 3])] = &[
     (
         "system/mod.rs",
         "impl<const D: usize> System<D> {",
-        [21, 110, 26],
+        [21, 104, 25],
     ),
     ("names.rs", "impl<const D: usize> Names<D> {", [5, 3, 2]),
     ("stages.rs", "impl<const D: usize> Stages<D> {", [3, 4, 1]),
@@ -543,7 +562,7 @@ const MIDDLE: &[(&str, &str, [usize; 3])] = &[
     ),
 ];
 /// Methods of `Simulation`, `Steered` and `Examined`. Where they are to end: 20, 12 and 10.
-const ASKED: [usize; 3] = [24, 20, 10];
+const ASKED: [usize; 3] = [22, 17, 10];
 /// Lines of a function.
 const LONG: usize = 120;
 /// Functions that are longer, with their lines: none may be added, and none may grow.

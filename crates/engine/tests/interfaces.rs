@@ -505,3 +505,40 @@ fn glue_breaks_in_turn_at_its_own_stretch() {
         assert_eq!(sim.broken() > 0, breaks, "{part}: {}", sim.broken());
     }
 }
+
+/// Bonds of an interface heal like all others: cut and healed at once, it was never cut.
+#[test]
+fn an_interface_heals() {
+    for d in 2..=3 {
+        let [_, glued] = bars(d, &PMB);
+        let run = |cut: bool| {
+            let mut spec = glued.clone();
+            spec.initial = vec![InitialSpec {
+                set: "all".into(),
+                displacement: [None, None, None],
+                velocity: [text("0.02*sin(x)"), text("0.01*cos(x + y)"), None],
+            }];
+            if cut {
+                spec.precracks = vec![PrecrackSpec {
+                    shape: CrackShape::Segment {
+                        from: [2.75, -1.0, 0.0],
+                        to: [2.75, 3.0, 0.0],
+                    },
+                    kind: CrackKind::Broken,
+                }];
+                spec.healing = Some(HealingSpec {
+                    set: "all".into(),
+                    below: Expression::parse("0.1", &[]).unwrap(),
+                });
+            }
+            let mut sim = build(&spec, Options::default()).unwrap();
+            sim.start(true);
+            let cut = sim.info().cut;
+            (0..40).for_each(|_| sim.step().unwrap());
+            (cut, sim.fragments(), sim.displacements())
+        };
+        let ((cut, one, healed), (none, _, whole)) = (run(true), run(false));
+        assert!(cut > 0 && none == 0 && one == 1, "{cut} {none} {one}");
+        assert_eq!(healed, whole);
+    }
+}

@@ -667,3 +667,91 @@ fn a_driven_indenter_pushes_from_where_it_is_told() {
     assert!((ledger.work_indenter / ledger.strain - 1.0).abs() < 1e-6);
     assert!(ledger.residual().abs() < 1e-6 * ledger.strain);
 }
+
+/// Bonds of pairs of materials are springs in series: each is stretched by the force over its own stiffness.
+#[test]
+fn pairs_of_materials_are_springs_in_series() {
+    let springs = |c: f64| LawSpec::Pmb(PmbStiffness::Micromodulus(c));
+    let mut spec = block([20.0, 0.0, 0.0], 1, springs(1.0));
+    spec.horizon = Horizon::Length(1.5);
+    spec.family = FamilyChoice::List;
+    let parts = [("left", "x < 10.5"), ("right", "x > 10.5")];
+    for (name, of) in parts {
+        spec.sets.push(SetSpec {
+            name: name.into(),
+            members: Members::Where(Expression::parse(of, &[]).unwrap()),
+        });
+    }
+    spec.materials = parts
+        .map(|(name, _)| MaterialSpec {
+            name: name.into(),
+            set: name.into(),
+            ..spec.materials[0].clone()
+        })
+        .to_vec();
+    spec.pairs = [1.0, 3.0, 3.0, 2.0]
+        .map(|c| PairSpec {
+            horizon: 1.5,
+            law: springs(c),
+            critical_stretch: f64::INFINITY,
+            alpha: 0.0,
+        })
+        .to_vec();
+    hold(&mut spec, "low", [number(0.0), None, None]);
+    hold(&mut spec, "high", [text("0.01*t"), None, None]);
+    // 10 bonds of the left, one between both, 9 of the right
+    let force = 0.01 / (10.0 + 1.0 / 3.0 + 4.5);
+    let exact = |x: f64| match x > 10.5 {
+        true => 0.01 - force * (20.0 - x) / 2.0,
+        false => force * x,
+    };
+    let ways = [Method::Linear, Method::Newton, Method::Relaxation];
+    for spec in ways.map(|method| with(&spec, method, Solver::Auto, 1e-12)) {
+        let mut sim = solved(&spec);
+        let snapshot = sim.snapshot(&[], false);
+        for (x, u) in snapshot.reference.iter().zip(snapshot.displacement()) {
+            assert!((u[0] - exact(x[0])).abs() < 1e-9, "{x:?}: {u:?}");
+        }
+        let l = sim.ledger().unwrap();
+        assert!((l.strain / (0.005 * force) - 1.0).abs() < 1e-7, "{l:?}");
+    }
+    // unlike both ways round there is no energy, and no equilibrium of one
+    spec.pairs[1].law = springs(4.0);
+    let error = build(&spec, Options::default()).err().unwrap();
+    assert_eq!(error.path, "pairs");
+    assert!(error.message.contains("action is not reaction"), "{error}");
+    spec.conditions.clear();
+    spec.schedule.time_step = TimeStep::Fraction(0.5);
+    spec.schedule.stepper = Stepper::Verlet;
+    assert!(build(&spec, Options::default()).is_ok());
+}
+
+/// Implicit steps move a body of pairs of materials that are all alike as one of its material.
+#[test]
+fn alike_pairs_move_implicitly_as_one_material() {
+    let law = LawSpec::Pmb(PmbStiffness::Micromodulus(2.0));
+    let mut one = block([12.0, 5.0, 0.0], 2, law.clone());
+    one.horizon = Horizon::Length(2.3);
+    one.family = FamilyChoice::List;
+    one.schedule.stepper = Stepper::Newmark(Newmark::default());
+    one.schedule.time_step = TimeStep::Fixed(0.3);
+    one.schedule.steps = 20;
+    one.initial = vec![InitialSpec {
+        set: "all".into(),
+        displacement: [None, None, None],
+        velocity: [text("0.02*sin(0.5*x)"), text("0.01*cos(0.4*x + y)"), None],
+    }];
+    let mut pairs = one.clone();
+    pairs.pairs = vec![PairSpec {
+        horizon: 2.3,
+        law,
+        critical_stretch: f64::INFINITY,
+        alpha: 0.0,
+    }];
+    let [a, b] = [one, pairs].map(|spec| solved(&spec).displacements());
+    let most = a.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+    assert!(most > 1e-3);
+    for (a, b) in a.iter().flatten().zip(b.iter().flatten()) {
+        assert!((a - b).abs() < 1e-7 * most, "{a} {b}");
+    }
+}

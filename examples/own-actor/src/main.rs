@@ -74,7 +74,7 @@ impl Described for Foundation {
 const BARS: f64 = 40.0;
 
 /// A bar on the foundation, pulled at its end by what grows from 0 to 1 and falls to 0 again in `end`.
-fn pulled(stepper: Stepper, steps: u64, end: f64) -> Box<dyn Simulation> {
+pub fn pulled(stepper: Stepper, steps: u64, end: f64) -> Box<dyn Simulation> {
     let bar = Region::Block {
         low: [0.0; 3],
         high: [BARS - 1.0, 0.0, 0.0],

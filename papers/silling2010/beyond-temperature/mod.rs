@@ -1,6 +1,6 @@
 //! Atoms at a temperature (section 7): force states from the frames of a run, against stress and strain of runs.
 
-use peridyne::run::{Options as Build, Simulation, build};
+use peridyne::run::{Options as Build, Simulation, Watched, build};
 use peridyne::space::Point;
 use peridyne::spec::{BodySpec, Cloud, LinearBody, Spec, TimeStep};
 use peridyne_io::deck::Deck;
@@ -140,7 +140,7 @@ fn canonical(
         }
         let seen = step >= BEFORE && (step + 1) % every == 0;
         if seen {
-            sim.watch_virial_next();
+            sim.watch(Watched::Virial);
         }
         sim.step().map_err(failed)?;
         if seen {

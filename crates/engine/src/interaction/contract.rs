@@ -173,6 +173,9 @@ pub trait Interaction<const D: usize>: Send + Sync {
         });
     }
 
+    /// Of bonds between bodies those that are broken.
+    fn each_broken_between(&self, _visit: &mut dyn FnMut(usize, usize, [f64; D])) {}
+
     /// Broken bonds become whole again, as they were in the reference, where `heals` of their ends and their `e` (see [`history`](super::history)) at `u`,
     /// images of which are fresh; it must say the same of both directions. How many directed ones; `None`: those of the law do not.
     fn mend(

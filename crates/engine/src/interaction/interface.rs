@@ -224,6 +224,14 @@ impl<const D: usize> Interface<D> {
         });
     }
 
+    /// [`mend`](Interaction::mend), of slots of the body of all.
+    pub fn mend(&mut self, u: &Field<D>, heals: &dyn Fn(usize, usize, f64) -> bool) -> Option<u64> {
+        let points = &self.points;
+        points.take(u, &mut self.u);
+        let heals = |i: usize, j: usize, e: f64| heals(points.whole(i), points.whole(j), e);
+        self.bonds.mend(&points.cloud, &self.u, &heals)
+    }
+
     pub fn cut(
         &mut self,
         kind: CrackKind,

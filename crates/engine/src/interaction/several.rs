@@ -201,6 +201,30 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         any
     }
 
+    /// Bonds of interfaces know no strain.
+    fn expand(&mut self, body: &Body<D>, strain: &[f64]) -> bool {
+        self.check(body, &[]);
+        let mut all = self.interfaces.is_empty();
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                all &= bonds.expand(&p.body, &strain[p.range()]);
+            }
+        }
+        all
+    }
+
+    fn add_stress_across(&mut self, body: &Body<D>, u: &Field<D>, trace: &mut [f64]) -> bool {
+        self.check(body, &[u]);
+        let mut all = true;
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                take(u, p, &mut own.u);
+                all &= bonds.add_stress_across(&p.body, &own.u, &mut trace[p.range()]);
+            }
+        }
+        all
+    }
+
     fn read_warmth(&self, body: &Body<D>, above: &mut [f64]) {
         self.check(body, &[]);
         for (p, bonds) in self.each(body) {
@@ -378,12 +402,25 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 sum += bonds.mend(&p.body, &own.u, &heals)?;
             }
         }
+        for interface in &mut self.interfaces {
+            sum += interface.mend(u, heals)?;
+        }
         Some(sum)
     }
 
     fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         for (p, bonds) in self.each(body) {
             bonds.each_broken(&p.body, &mut |i, j, xi| visit(i + p.first, j + p.first, xi));
+        }
+    }
+
+    fn each_broken_between(&self, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        for interface in &self.interfaces {
+            interface.each_bond(&mut |i, j, xi, state| {
+                if state == BondState::Broken {
+                    visit(i, j, xi);
+                }
+            });
         }
     }
 

@@ -6,7 +6,7 @@ use super::constitutive::Laws;
 use super::system::System;
 use crate::condition::driven::Driven;
 use crate::error::RunError;
-use crate::interaction::{BondState, Fault, PointEnergies};
+use crate::interaction::{BondState, Fault};
 use crate::observe::Ledger;
 
 impl<const D: usize> System<D> {
@@ -115,56 +115,6 @@ impl<const D: usize> System<D> {
             energy += 0.5 * rho * volume * f64::max(now - before, 0.0);
         }
         energy
-    }
-
-    /// Which point the pass refused, and why: one that is nowhere, else the one that went furthest.
-    pub(super) fn refused(&self, limit: f64) -> RunError {
-        let step = self.clock.step() + 1;
-        let path = |i: usize| {
-            let square = (0..D).map(|a| (self.clock.dt() * self.v[a][i]).powi(2));
-            square.sum::<f64>().sqrt()
-        };
-        // what is not a number is furthest
-        let far = |i: usize| {
-            if path(i).is_nan() {
-                f64::INFINITY
-            } else {
-                path(i)
-            }
-        };
-        let nowhere = |i: usize| (0..D).any(|a| !self.u[a][i].is_finite());
-        let slots = || self.body.slots.iter().map(|s| *s as usize).enumerate();
-        let found = slots()
-            .find(|(_, i)| nowhere(*i))
-            .or_else(|| slots().max_by(|a, b| far(a.1).total_cmp(&far(b.1))));
-        let (id, i) = found.expect("a body has points");
-        let x = self.body.position(i);
-        let position = std::array::from_fn(|a| if a < D { x[a] + self.u[a][i] } else { 0.0 });
-        let (id, path) = (id as u64 + 1, path(i));
-        if nowhere(i) || !path.is_finite() {
-            return RunError::NotFinite { step, id, position };
-        }
-        RunError::TooFast {
-            step,
-            id,
-            position,
-            path,
-            spacing: limit,
-            contact: self.is_pushed(i).then_some(self.info.contact_step),
-        }
-    }
-
-    /// Does a slot's repulsion hold more energy than its bonds?
-    fn is_pushed(&self, slot: usize) -> bool {
-        let mut seen = PointEnergies::default();
-        self.interaction.observe(&self.body, &self.u, &mut seen);
-        if let Some(contact) = &self.contact {
-            let repulsion = &mut seen.repulsion;
-            contact
-                .central
-                .add_energy_density(&self.body, &self.u, repulsion);
-        }
-        seen.repulsion[slot] > seen.strain[slot]
     }
 
     /// A fault of the last forces, with point ids.

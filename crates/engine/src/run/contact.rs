@@ -110,11 +110,6 @@ pub(super) fn repulsion<const D: usize>(
             return Err(BuildError::conflict("contact.cohesion", message)
                 .help("write each as a [[body]] of its own"));
         }
-        if !spec.interfaces.is_empty() {
-            let message = "points that an interface bonds would attract each other as well";
-            return Err(BuildError::conflict("contact.cohesion", message)
-                .help("leave out cohesion or the interface"));
-        }
         for a in 0..kinds.len() {
             for b in 0..kinds.len() {
                 let faces = faces(&kinds, &range, spec.section, a, b);

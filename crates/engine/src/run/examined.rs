@@ -3,7 +3,7 @@
 use super::equilibrium::problem::Problem;
 use super::model::Model;
 use super::system::System;
-use super::{AtomBond, Examined, Families, ModeShape};
+use super::{AtomBond, Examined, Families, ModeShape, record};
 use crate::body::zeros;
 use crate::condition::load::Load;
 use crate::error::{RunError, SolveError};
@@ -16,15 +16,15 @@ use crate::statics::modes::{self, Mode};
 
 impl<const D: usize> Examined for Model<D> {
     fn families(&self) -> Families {
-        self.system.count_families()
+        record::count_families(&self.system)
     }
 
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
-        self.system.strained(strain)
+        record::strained(&self.system, strain)
     }
 
     fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
-        self.system.bonds_of_atoms(visit)
+        record::bonds_of_atoms(&mut self.system, visit)
     }
 
     fn forces_under(&mut self, displacement: &[Point]) -> Vec<Point> {

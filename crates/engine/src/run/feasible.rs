@@ -1,7 +1,7 @@
 //! Can a spec be built at all? What is looked at before anything is made.
 
-use super::constitutive::criteria;
-use super::preload;
+use super::constitutive::{Shelf, criteria};
+use super::{preload, traits};
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::memory;
@@ -10,16 +10,10 @@ use crate::family::stencil::Stencil;
 use crate::message;
 use crate::quantity::{Dimension, rounded};
 use crate::space::ball_volume;
-use crate::spec::{LawSpec, Spec, Stepper};
+use crate::spec::{LawSpec, Spec};
 
 /// Steppers and instruction sets that there are not.
 pub(super) fn possible(spec: &Spec, simd: Option<Simd>) -> Result<(), BuildError> {
-    if !spec.pairs.is_empty() && spec.schedule.stepper != Stepper::Verlet {
-        return Err(BuildError::unsupported(
-            "pairs",
-            "pairs of materials with constants of their own have no tangents: velocity Verlet moves them, there is no statics and no implicit step",
-        ));
-    }
     if let Some(preload) = &spec.preload {
         preload::possible(spec, preload)?;
     }
@@ -85,8 +79,9 @@ pub(super) fn enough_memory<const D: usize>(
     memory::afford(path, &what, slots * 24.0 * D as f64 + bonds * each, help)
 }
 
-/// Do lists that the spec gives belong to each other?
-pub(super) fn consistent(spec: &Spec) -> Result<(), BuildError> {
+/// Do its parts go together, and lists that it gives belong to each other?
+pub(super) fn consistent(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
+    traits::agree(spec, shelf)?;
     criteria::consistent(spec)?;
     for (n, m) in spec.materials.iter().enumerate() {
         let fits = match &m.law {

@@ -1,4 +1,4 @@
-//! Healing: broken bonds that become whole again, in explicit motion.
+//! Healing: broken bonds that become whole again, in motion.
 //!
 //! A bond heals with the length that it had in the reference, where both its ends may heal and the size of its stretch is below the limit of the time. What it
 //! holds then comes from what healing is driven by, not from the body: it is taken from the energy released.
@@ -9,7 +9,7 @@ use super::system::System;
 use crate::error::BuildError;
 use crate::interaction::history;
 use crate::message;
-use crate::spec::{CrackKind, HealingSpec, Spec, Stepper};
+use crate::spec::{HealingSpec, Spec};
 use state::Healing;
 
 /// What does not heal.
@@ -20,30 +20,6 @@ fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {
         return unsupported(
             "nothing of this body breaks",
             "give a material a fracture, or leave healing out",
-        );
-    }
-    if !spec.toughness.is_empty() {
-        return unsupported(
-            "bonds with a [[toughness]] of places and times do not heal",
-            "leave healing or toughness out",
-        );
-    }
-    if !matches!(spec.schedule.stepper, Stepper::Verlet) || spec.preload.is_some() {
-        return unsupported(
-            "bonds heal in explicit motion, not in statics and implicit steps",
-            "leave healing out, or take [run] with integrator = \"verlet\"",
-        );
-    }
-    if spec.precracks.iter().any(|p| p.kind == CrackKind::Absent) {
-        return unsupported(
-            "a bond that is absent from the start cannot be told from one that was never there",
-            "write kind = \"broken\" in [[precrack]]",
-        );
-    }
-    if !spec.interfaces.is_empty() || spec.own_horizon.is_some() {
-        return unsupported(
-            "bonds between bodies and bonds of points with a horizon of their own do not heal",
-            "leave healing out",
         );
     }
     if healing.below.depends_on_position() {
@@ -102,26 +78,32 @@ impl<const D: usize> System<D> {
         }))
     }
 
-    /// Bonds heal at the displacements of now, before the forces there.
-    pub(super) fn heal(&mut self, t: f64) {
-        let Some(healing) = &self.healing else { return };
+    /// Bonds heal at the displacements of now, before the forces there. Did any?
+    pub(super) fn heal(&mut self, t: f64) -> bool {
+        let Some(healing) = &self.healing else {
+            return false;
+        };
         let below = healing.below.eval(&[0.0; 3], t);
         if !(below > 0.0) {
-            return;
+            return false;
         }
         self.refresh_images();
-        let Some(healing) = &self.healing else { return };
+        let Some(healing) = &self.healing else {
+            return false;
+        };
         let heals = |i: usize, j: usize, e: f64| {
             history::stretch(e).abs() < below && healing.may[i] && healing.may[j]
         };
         let (body, u) = (&self.body, &self.u);
         let mut any = false;
-        self.interaction.each_broken(body, &mut |i, j, xi| {
+        let mut look = |i: usize, j: usize, xi: [f64; D]| {
             let eta = std::array::from_fn(|a| u[a][j] - u[a][i]);
             any = any || heals(i, j, history::relative(&xi, eta));
-        });
+        };
+        self.interaction.each_broken(body, &mut look);
+        self.interaction.each_broken_between(&mut look);
         if !any {
-            return;
+            return false;
         }
         let [before, _] = self.interaction.energy(body, u);
         self.interaction.mend(body, u, &heals);
@@ -129,5 +111,6 @@ impl<const D: usize> System<D> {
         self.accounts.released.lost -= after - before;
         // they conduct again
         self.break_transfers();
+        true
     }
 }

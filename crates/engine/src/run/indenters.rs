@@ -20,13 +20,6 @@ pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), B
         .enumerate()
     {
         let path = format!("preload.indenters[{n}]");
-        if matches!(indenter.motion, IndenterMotion::Free(_)) {
-            return Err(BuildError::unsupported(
-                path,
-                "in statics rigid bodies go where they are told",
-            )
-            .help("leave mass and density out, or write stage = \"motion\""));
-        }
         one::<D>(indenter, &path)?;
         recurs(indenter, body, &path)?;
         if let Some(cohesion) = &indenter.cohesion {

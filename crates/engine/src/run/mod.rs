@@ -46,6 +46,7 @@ mod system;
 mod time_step;
 mod torn;
 mod toughness;
+mod traits;
 mod transfers;
 mod virial;
 
@@ -190,6 +191,25 @@ pub struct ModeShape {
     pub shape: Vec<Point>,
 }
 
+/// How points go whose motion is prescribed from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Prescription {
+    /// No step moves them; they keep their velocity.
+    Still,
+    /// Where [`Steered::carry`] says before every step.
+    Carried,
+}
+
+/// What is kept of an evaluation of forces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Watched {
+    /// Energies and dilatations.
+    Energies,
+    Virial,
+    /// The virial of each point.
+    Virials,
+}
+
 /// A wall that points bounce off without loss.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
@@ -240,8 +260,6 @@ pub trait Simulation: Steered + Examined + Owner + Send {
     fn broken(&self) -> u64;
     /// Number of fragments (connected by whole bonds) now.
     fn fragments(&self) -> u64;
-    fn set_displacements(&mut self, u: &[Point]);
-    fn set_velocities(&mut self, v: &[Point]);
     /// Ids of the points of a named set; `"all"` always exists.
     fn members(&self, set: &str) -> Option<Vec<u32>>;
     /// Centres of the indenters of the specification, as they are now.
@@ -272,8 +290,8 @@ pub trait Steered {
     /// Mirrors points (`None`: all) that are behind the wall, with their velocity across it; between
     /// [`Steered::depart`] and [`Steered::arrive`].
     fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>);
-    /// Points that go where [`Steered::carry`] says before every step. Replaces those of the last call.
-    fn set_carried(&mut self, ids: &[u32]);
+    /// Points that no force moves. Replaces those of the last call for the same way.
+    fn prescribe(&mut self, way: Prescription, ids: &[u32]);
     /// Where the carried points are at the end of the next step, in their order.
     fn carry(&mut self, next: &[Motion]);
     /// Takes points away for ever: their bonds break without a force, all ids above theirs move down. Driven values must
@@ -294,15 +312,11 @@ pub trait Steered {
         sets: &[(String, Vec<u32>)],
         indenters: &[crate::spec::IndenterSpec],
     ) -> Result<(), BuildError>;
-    /// Keep energies and dilatations of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its
-    /// forces see them: with the bonds that break in it. LAMMPS prints these.
-    fn watch_next(&mut self);
-    /// What the last force evaluation saw, if it was watched.
+    /// Keep something of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its forces see it: with the bonds that
+    /// break in it. LAMMPS prints these.
+    fn watch(&mut self, what: Watched);
+    /// Energies and dilatations that the last force evaluation saw, if it was watched.
     fn watched(&self) -> Option<Observed>;
-    /// Keep the virial of the next force evaluation, with the bonds that break in it.
-    fn watch_virial_next(&mut self);
-    /// Keep the virials of points of the next force evaluation, with the bonds that break in it.
-    fn watch_virials_next(&mut self);
     /// Half of the virial of its pairs for each point, xx yy zz xy xz yz (energy), as [`Examined::virial`]; their sum
     /// is that.
     fn virials(&mut self) -> Vec<[f64; 6]>;
@@ -314,8 +328,6 @@ pub trait Steered {
     fn drive(&mut self, index: usize, value: &Drive) -> bool;
     /// What driven condition `index` had at the last force evaluation; 0 if it is no indenter.
     fn reaction(&self, index: usize) -> Reaction;
-    /// Points that no step moves; they keep their velocity. Replaces those of the last call.
-    fn set_still(&mut self, ids: &[u32]);
 }
 
 /// What somebody asks who examines a model: its families, its answers to strains and displacements, equilibria and vibrations.
@@ -375,5 +387,22 @@ impl dyn Simulation + '_ {
 
     pub fn velocities(&mut self) -> Vec<Point> {
         self.vectors("velocity")
+    }
+
+    /// In order of point id.
+    pub fn set_displacements(&mut self, u: &[Point]) {
+        self.set_vectors("displacement", u);
+    }
+
+    /// In order of point id.
+    pub fn set_velocities(&mut self, v: &[Point]) {
+        self.set_vectors("velocity", v);
+    }
+
+    fn set_vectors(&mut self, name: &str, values: &[Point]) {
+        for a in 0..3 {
+            let component: Vec<f64> = values.iter().map(|x| x[a]).collect();
+            self.write(name, a, 0, &component);
+        }
     }
 }

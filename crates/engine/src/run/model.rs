@@ -120,16 +120,6 @@ impl<const D: usize> Simulation for Model<D> {
         Fragments::of(&self.system.body, self.system.interaction.as_ref()).count() as u64
     }
 
-    fn set_displacements(&mut self, u: &[Point]) {
-        self.finish();
-        self.system.set_displacements(u);
-    }
-
-    fn set_velocities(&mut self, v: &[Point]) {
-        self.finish();
-        self.system.body.scatter(&mut self.system.v, v);
-    }
-
     fn members(&self, set: &str) -> Option<Vec<u32>> {
         self.members_of(set)
     }

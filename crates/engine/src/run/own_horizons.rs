@@ -25,6 +25,29 @@ pub(super) fn resolve(spec: &mut Spec) -> bool {
     changed
 }
 
+/// Is the critical stretch that of a fracture energy?
+fn of_energy(fracture: FractureSpec) -> bool {
+    matches!(fracture.criterion, Criterion::Energy(_))
+}
+
+/// Does what bonds bear follow the horizon of each point?
+pub(super) fn strengthen(spec: &Spec) -> bool {
+    spec.own_horizon.is_some()
+        && spec
+            .materials
+            .iter()
+            .any(|m| m.fracture.is_some_and(of_energy))
+}
+
+/// By what the critical stretch of a material at this horizon differs where points have their own: `G ∝ E s² δ` of a body without another length.
+pub(super) fn strength(spec: &Spec, material: usize, horizon: f64, own: Option<f64>) -> f64 {
+    let fracture = spec.materials.get(material).and_then(|m| m.fracture);
+    match own {
+        Some(own) if fracture.is_some_and(of_energy) => (horizon / own).sqrt(),
+        Some(_) | None => 1.0,
+    }
+}
+
 fn possible(spec: &Spec) -> Result<(), BuildError> {
     let refused = |path: &str, message: &str, help: &str| {
         Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
@@ -69,31 +92,17 @@ fn possible(spec: &Spec) -> Result<(), BuildError> {
             "write calibration = \"continuum\"",
         );
     }
-    let energy = |f: FractureSpec| matches!(f.criterion, Criterion::Energy(_));
+    let scales = !matches!(spec.influence, Influence::Formula(_));
     let mut materials = spec.materials.iter();
-    if let Some(n) = materials.position(|m| m.fracture.is_some_and(energy)) {
+    if let (Some(n), false) = (
+        materials.position(|m| m.fracture.is_some_and(of_energy)),
+        scales,
+    ) {
         return refused(
             &format!("materials[{n}].fracture"),
-            "the stretch that a fracture energy stands for depends on the horizon, of which every point has another",
-            "give critical_stretch",
+            "the stretch that a fracture energy stands for falls with the root of the horizon where nothing else is a length, and this influence function has one",
+            "give critical_stretch, or leave influence out",
         );
-    }
-    if !spec.transfers.is_empty() {
-        return refused(
-            "own_horizon",
-            "what spreads through bonds knows one horizon",
-            "leave own_horizon out",
-        );
-    }
-    if spec.surface.is_some() || !spec.bonds.is_empty() || !spec.pairs.is_empty() {
-        return refused(
-            "own_horizon",
-            "factors of bonds belong to a body of one horizon",
-            "leave them or own_horizon out",
-        );
-    }
-    if spec.schedule.stepper.rests() {
-        return refused("own_horizon", "points stand still", "leave own_horizon out");
     }
     Ok(())
 }

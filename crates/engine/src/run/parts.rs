@@ -64,7 +64,7 @@ pub(super) fn parts<'a, const D: usize>(
             return Ok((vec![part], body));
         }
     };
-    several_can(spec, pieces)?;
+    several_can(pieces)?;
     let without = Spec {
         body: BodySpec::Several(vec![]),
         ..spec.clone()
@@ -89,11 +89,8 @@ pub(super) fn parts<'a, const D: usize>(
     Ok((all, Body::several(bodies)))
 }
 
-/// What several bodies cannot have yet.
-fn several_can(spec: &Spec, pieces: &[PieceSpec]) -> Result<(), BuildError> {
-    let refused = |path: &str, message: &str, help: &str| {
-        Err(BuildError::unsupported(path, message.to_string()).help(help))
-    };
+/// Are there bodies, and has each a name of its own?
+fn several_can(pieces: &[PieceSpec]) -> Result<(), BuildError> {
     if pieces.is_empty() {
         return Err(BuildError::missing("body", "there are no bodies").help("give one"));
     }
@@ -104,28 +101,6 @@ fn several_can(spec: &Spec, pieces: &[PieceSpec]) -> Result<(), BuildError> {
                 format!("two bodies are called `{}`", piece.name),
             ));
         }
-    }
-    let alone = |m: &MaterialSpec| matches!(m.law, LawSpec::Atoms(_) | LawSpec::Micromoduli(_));
-    if let Some(n) = spec.materials.iter().position(alone) {
-        return refused(
-            &format!("materials[{n}].law"),
-            "atoms, and given micromoduli, are a body of their own and not one of several",
-            "take pmb, lps or springs",
-        );
-    }
-    if !spec.pairs.is_empty() {
-        return refused(
-            "pairs",
-            "pairs of materials with constants of their own are for a single body",
-            "leave pairs out",
-        );
-    }
-    if spec.surface.is_some() {
-        return refused(
-            "surface",
-            "factors of bonds near the surface are for a single body",
-            "leave surface out",
-        );
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! A model that a script leads step by step.
 
 use super::model::Model;
-use super::{Steered, Wall};
+use super::{Prescription, Steered, Wall, Watched};
 use crate::condition::carried::{Carried, Motion};
 use crate::condition::driven::{Drive, Driven};
 use crate::condition::reaction::Reaction;
@@ -42,10 +42,14 @@ impl<const D: usize> Steered for Model<D> {
         self.system.bounce(wall, ids);
     }
 
-    fn set_carried(&mut self, ids: &[u32]) {
+    fn prescribe(&mut self, way: Prescription, ids: &[u32]) {
         self.finish();
         let slots = ids.iter().map(|id| self.system.body.slots[*id as usize]);
-        self.system.prescribed.carried = Carried::new(slots.collect());
+        let (slots, prescribed) = (slots.collect(), &mut self.system.prescribed);
+        match way {
+            Prescription::Still => prescribed.still = Still::new(slots),
+            Prescription::Carried => prescribed.carried = Carried::new(slots),
+        }
     }
 
     fn carry(&mut self, next: &[Motion]) {
@@ -137,21 +141,13 @@ impl<const D: usize> Steered for Model<D> {
         true
     }
 
-    fn watch_next(&mut self) {
-        self.system.watch.energies_next();
+    fn watch(&mut self, what: Watched) {
+        self.system.watch.ask(what);
     }
 
     fn watched(&self) -> Option<Observed> {
         let seen = self.system.watch.energies.as_ref();
         seen.map(|seen| self.system.observed_of(seen))
-    }
-
-    fn watch_virial_next(&mut self) {
-        self.system.watch.virial_next();
-    }
-
-    fn watch_virials_next(&mut self) {
-        self.system.watch.virials_next();
     }
 
     fn virials(&mut self) -> Vec<[f64; 6]> {
@@ -197,11 +193,5 @@ impl<const D: usize> Steered for Model<D> {
             .driven
             .get(index)
             .map_or_else(Reaction::default, Driven::reaction)
-    }
-
-    fn set_still(&mut self, ids: &[u32]) {
-        self.finish();
-        let slots = ids.iter().map(|id| self.system.body.slots[*id as usize]);
-        self.system.prescribed.still = Still::new(slots.collect());
     }
 }

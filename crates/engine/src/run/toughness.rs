@@ -1,42 +1,20 @@
 //! Toughness of places and times: before every test each point is told what it bears.
 
-use super::constitutive::Shelf;
+use super::own_horizons;
 use super::system::System;
 use crate::condition::toughness::{Bears, ToughnessField};
 use crate::error::{BuildError, RunError};
 use crate::message;
 use crate::quantity::place;
-use crate::spec::{
-    Criterion, LawSpec, MaterialSpec, Quantity, Spec, ToughnessFactor, ToughnessSpec,
-};
+use crate::spec::{Criterion, MaterialSpec, Quantity, Spec, ToughnessFactor};
 
 /// What has no toughness of places.
-fn refused(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
+fn refused(spec: &Spec) -> Result<(), BuildError> {
     let unsupported = |path: &str, message: &str| Err(BuildError::unsupported(path, message));
     if spec.materials.iter().all(|m| m.fracture.is_none()) {
         let message = "no material of this body breaks";
         return Err(BuildError::unsupported("toughness[0]", message)
             .help("give a material a fracture, or leave toughness out"));
-    }
-    if !spec.pairs.is_empty() {
-        let message = "critical stretches of pairs of materials have no factors of points";
-        return unsupported("toughness[0]", message);
-    }
-    let factor = |t: &ToughnessSpec| !matches!(t.factor, ToughnessFactor::NoFailure);
-    if let Some(n) = spec.toughness.iter().position(factor)
-        && spec.materials.iter().any(|m| {
-            m.fracture.is_some_and(|f| {
-                matches!(
-                    f.criterion,
-                    Criterion::VonMises(_) | Criterion::PlasticStrain(_)
-                )
-            })
-        })
-    {
-        return unsupported(
-            &format!("toughness[{n}]"),
-            "a limit of stress or of plastic strain has no factors: only no_failure goes with it",
-        );
     }
     let works = |m: &MaterialSpec| {
         m.fracture
@@ -68,51 +46,24 @@ fn refused(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
             }
         }
     }
-    for (n, m) in spec.materials.iter().enumerate() {
-        if m.fracture.is_some_and(|f| f.alpha != 0.0) {
-            return unsupported(
-                &format!("materials[{n}].fracture"),
-                "strengthening under compression (alpha) and a toughness of places do not go together",
-            );
-        }
-        if let LawSpec::Named(law) = &m.law
-            && shelf.ends(&law.name)
-        {
-            let message = format!(
-                "the law {} has its critical stretch among its constants: it cannot depend on the place",
-                law.name
-            );
-            return unsupported("toughness[0]", &message);
-        }
-        if let LawSpec::Named(law) = &m.law
-            && shelf.kinds(&law.name)
-            && let Some(n) = spec.toughness.iter().position(factor)
-        {
-            let message = format!(
-                "bonds of the law {} break at stretches of two kinds: a factor is of one; only no_failure goes with it",
-                law.name
-            );
-            return unsupported(&format!("toughness[{n}]"), &message);
-        }
-    }
     Ok(())
 }
 
 impl<const D: usize> System<D> {
-    /// Of a spec; `None`: it is that of the materials, always.
+    /// Of a spec, and of horizons of points; `None`: it is that of the materials, always.
     ///
     /// # Errors
     /// What has no such toughness, and factors that are not positive at the start.
     pub(super) fn toughness_of(
         &self,
         spec: &Spec,
-        shelf: &Shelf,
         sets: &[(String, Vec<u32>)],
     ) -> Result<Option<ToughnessField>, BuildError> {
-        if spec.toughness.is_empty() {
-            return Ok(None);
+        match spec.toughness.is_empty() {
+            true if !own_horizons::strengthen(spec) => return Ok(None),
+            true => {}
+            false => refused(spec)?,
         }
-        refused(spec, shelf)?;
         let mut base = vec![f64::INFINITY; self.body.len];
         let works = self.constitutive.critical_works(spec.materials.len());
         let (bears, of) = match works.is_empty() {
@@ -120,8 +71,10 @@ impl<const D: usize> System<D> {
             false => (Bears::Work, works.iter().map(|w| w.sqrt()).collect()),
         };
         for &s in &self.body.slots {
-            let of = of.get(self.body.material_of(s as usize));
-            base[s as usize] = of.copied().unwrap_or(f64::INFINITY);
+            let material = self.body.material_of(s as usize);
+            let own = self.body.horizon.get(s as usize).copied();
+            let by = own_horizons::strength(spec, material, self.info.horizon, own);
+            base[s as usize] = of.get(material).map_or(f64::INFINITY, |of| by * of);
         }
         let mut factors = vec![];
         for (n, t) in spec.toughness.iter().enumerate() {

@@ -40,7 +40,7 @@ pub struct TransferSpec {
     /// Do bonds that break in the run go on conducting? Those that a pre-crack cut never do.
     pub across_broken: bool,
     /// Is heat made and taken by deformation, `−T α tr σ̇` per volume at a temperature held (Thomson 1857)? T from absolute zero, capacities
-    /// at constant strain; of velocity Verlet.
+    /// at constant strain; not where points stand still.
     pub deformation: bool,
     /// In the order of the materials of the spec.
     pub materials: Vec<TransferMaterial>,

@@ -3,7 +3,7 @@
 use crate::sample::*;
 use peridyne::execute::simd::Simd;
 use peridyne::expression::Expression;
-use peridyne::run::{Options, Simulation, build};
+use peridyne::run::{Options, Simulation, Watched, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 
@@ -210,7 +210,7 @@ fn watched_energies_are_the_observed_ones() {
             let mut sim = build(&spec, Options::default()).unwrap();
             let u = shaken(sim.as_mut(), 0.06);
             let fresh = sim.scalars("energy_density");
-            sim.watch_next();
+            sim.watch(Watched::Energies);
             sim.start(true);
             let seen = sim.watched().unwrap().strain;
             assert_eq!(seen, sim.scalars("energy_density"), "{name}, {family:?}");

@@ -506,3 +506,105 @@ fn contact_is_as_stiff_as_the_bonds_of_each_point() {
         }
     }
 }
+
+/// A fracture energy is that of the horizon of each point: bonds bear `√(δ/δ_i)` of what they do at the longest one.
+#[test]
+fn a_fracture_energy_is_one_of_every_horizon() {
+    let pmb = LawSpec::Pmb(PmbStiffness::Young(1.0));
+    let lps = LawSpec::Lps(Moduli {
+        young: 1.0,
+        poisson: 0.3,
+    });
+    let energy = |energy: f64| Some(FractureSpec::new(Criterion::Energy(energy)));
+    for (size, law) in [
+        (&[24.0][..], &pmb),
+        (&[24.0, 6.0], &pmb),
+        (&[24.0, 6.0], &lps),
+    ] {
+        let of = |horizon: f64, own: Option<&str>, g: f64| {
+            let mut spec = solid(size, horizon, own);
+            spec.materials[0].law = law.clone();
+            spec.materials[0].fracture = energy(g);
+            spec
+        };
+        let critical = |horizon: f64, g: f64| {
+            let sim = build(&of(horizon, None, g), Options::default()).unwrap();
+            sim.info().critical_stretch[0]
+        };
+        // the longest horizon bears 2 %
+        let g = (0.02 / critical(4.6, 1.0)).powi(2);
+        let [first, second] = [4.6, 2.3].map(|horizon| critical(horizon, g));
+        assert!((first - 0.02).abs() < 1e-9, "{first}");
+        assert!((second / first - 2f64.sqrt()).abs() < 1e-6, "{second}");
+        let mut spec = of(4.6, Some("x < 12 ? 2.3 : 4.6"), g);
+        let rate = 1e-3;
+        let across = text("0").filter(|_| size.len() > 1);
+        spec.conditions = vec![ConditionSpec {
+            set: "all".into(),
+            kind: ConditionKind::Displacement([text("1e-3*t*x"), across, None]),
+        }];
+        spec.schedule.time_step = TimeStep::Fixed(0.1);
+        spec.schedule.force_unstable = true;
+        let mut sim = started(&spec);
+        let x = sim.vectors("reference");
+        let [short, long] = [0.1, 23.9].map(|at| {
+            let near = |x: &[f64; 3]| (x[0] - at).abs() < 0.2;
+            x.iter().position(near).unwrap()
+        });
+        let mut when = [None; 2];
+        while sim.time() * rate < 1.2 * second {
+            sim.step().unwrap();
+            let damage = sim.scalars("damage");
+            for (when, n) in when.iter_mut().zip([long, short]) {
+                if damage[n] > 0.0 {
+                    when.get_or_insert(sim.time());
+                }
+            }
+        }
+        for (when, exact) in when.into_iter().zip([first, second]) {
+            let late = when.unwrap() * rate - exact;
+            assert!((-1e-9..1.5e-4).contains(&late), "{law:?}: {late:e}");
+        }
+    }
+}
+
+/// Whatever bonds break by that knows no horizon, they break as in a body of the one horizon that all points have.
+#[test]
+fn stress_flow_and_rates_break_alike_at_every_horizon() {
+    let lps = LawSpec::Lps(Moduli {
+        young: 1.0,
+        poisson: 0.3,
+    });
+    let numbers = [("young", 1.0), ("poisson", 0.3), ("yield_stress", 0.003)];
+    let plastic = LawSpec::named("elastic_plastic", Parameters::numbers(&numbers));
+    let fast = FractureSpec {
+        rate: Some(RateSpec {
+            coefficient: 0.05,
+            reference: 1e-4,
+        }),
+        ..FractureSpec::new(Criterion::Stretch(0.01))
+    };
+    for (law, fracture) in [
+        (&lps, FractureSpec::new(Criterion::VonMises(0.012))),
+        (&plastic, FractureSpec::new(Criterion::PlasticStrain(0.005))),
+        (&lps, fast),
+    ] {
+        let broken = |longest: f64, own: Option<&str>| {
+            let mut spec = told(law, longest, own);
+            spec.calibration = Calibration::Continuum;
+            spec.materials[0].fracture = Some(fracture);
+            let mut sim = started(&spec);
+            let each = (0..15).map(|_| {
+                sim.step().unwrap();
+                sim.broken()
+            });
+            each.collect::<Vec<_>>()
+        };
+        let one = broken(2.3, Some("2.3"));
+        assert!(
+            one[0] == 0 && one[14] > 100,
+            "{law:?} {fracture:?}: {one:?}"
+        );
+        assert_eq!(one, broken(4.6, Some("2.3")), "{law:?} {fracture:?}");
+    }
+}

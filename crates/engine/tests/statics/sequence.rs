@@ -139,3 +139,49 @@ fn what_has_no_factor_is_refused() {
     });
     assert_eq!(constant.path, "conditions");
 }
+
+/// A strip that repeats across, with notches wherever they are: bonds through its faces break in turn like all others.
+#[test]
+fn bonds_through_periodic_faces_break_in_turn() {
+    let strip = |notches: &[[f64; 3]]| {
+        let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+        spec.horizon = Horizon::Ratio(2);
+        spec.periodic[1] = Some(8.0);
+        for [x, low, high] in notches {
+            spec.precracks.push(PrecrackSpec {
+                shape: CrackShape::Segment {
+                    from: [*x, *low, 0.0],
+                    to: [*x, *high, 0.0],
+                },
+                kind: CrackKind::Broken,
+            });
+        }
+        hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+        hold(&mut spec, "high", [text("t"), number(0.0), None]);
+        breaking(&mut spec, 0.01, 6);
+        spec.schedule.stepper = Stepper::Statics(Statics {
+            control: Control::Breaking,
+            solver: Solver::Direct,
+            ..Statics::default()
+        });
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        let factors: Vec<(f64, u64)> = (0..6)
+            .map(|_| {
+                sim.step().unwrap();
+                (sim.time(), sim.broken())
+            })
+            .collect();
+        assert!(factors[5].1 > 0);
+        let l = sim.ledger().unwrap();
+        assert!(l.residual().abs() < 1e-8 * l.strain, "{l:?}");
+        factors
+    };
+    let within = strip(&[[20.5, 2.6, 5.4], [12.5, 4.6, 5.4]]);
+    // by half a period: the long one lies across the face
+    let across = strip(&[[20.5, 6.6, 8.6], [20.5, -1.4, 1.4], [12.5, 0.6, 1.4]]);
+    for ((a, broken), (b, also)) in within.iter().zip(&across) {
+        assert!((a / b - 1.0).abs() < 1e-8, "{within:?} {across:?}");
+        assert_eq!(broken, also);
+    }
+}

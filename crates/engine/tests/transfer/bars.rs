@@ -253,3 +253,44 @@ fn implicit_steps_have_their_order() {
         }
     }
 }
+
+/// A bar of points with horizons of their own.
+fn of_horizons(longest: f64, own: Option<&str>, heat: TransferSpec, dt: f64) -> Spec {
+    let mut spec = still(1, cells(1, 1.0, [0.0; 3], [30.0; 3]), 1, dt, heat);
+    spec.horizon = Horizon::Length(longest);
+    spec.family = FamilyChoice::List;
+    spec.calibration = Calibration::Continuum;
+    spec.volume_scaling = true;
+    spec.own_horizon = own.map(text);
+    spec
+}
+
+/// Points conduct within their own horizons: as a body of that one where all have it; and where horizons are graded, a steady bar has the
+/// profile of Fourier, up to the square of how fast they grow.
+#[test]
+fn points_conduct_within_their_own_horizons() {
+    let mut warm = heat(EXPLICIT);
+    warm.initial = vec![("all".into(), text("sin(0.3*x) + 0.1*x"))];
+    let after = |longest: f64, own: Option<&str>| {
+        let mut sim = built(&of_horizons(longest, own, warm.clone(), 0.2));
+        run(&mut *sim, 30);
+        temperature(&mut *sim)
+    };
+    let one = after(2.3, None);
+    for longest in [2.3, 4.4] {
+        for (a, b) in one.iter().zip(after(longest, Some("2.3"))) {
+            assert!((a - b).abs() < 1e-12, "{longest}: {a} {b}");
+        }
+    }
+    let mut held = heat(STEADY);
+    held.conditions = ["cold", "hot"]
+        .map(|set| on(set, TransferKind::Value(text("x/30"))))
+        .to_vec();
+    let graded = "2.3 + clamp((x - 8)/14, 0, 1)";
+    let mut spec = of_horizons(3.3, Some(graded), held, 1.0);
+    spec.sets = vec![beyond("cold", 4.0, -1.0), beyond("hot", 26.0, 1.0)];
+    let mut sim = built(&spec);
+    run(&mut *sim, 1);
+    let off = off(&mut *sim, [0.0, 30.0], |x| x / 30.0);
+    assert!(off < 0.01, "{off:e}");
+}

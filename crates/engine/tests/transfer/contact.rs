@@ -505,3 +505,47 @@ fn faces_of_a_crack_exchange_nothing() {
         assert_eq!(crossed(&*sim), 0.0, "{family:?} {kind:?}");
     }
 }
+
+/// Points that stand conduct as points that are held in implicit steps, and in increments of a load.
+#[test]
+fn implicit_steps_and_increments_conduct_alike() {
+    let mut two = Two::blocks(1);
+    (two.conductance, two.dt, two.conductivity) = (1e-3, 1.0, [1.0; 2]);
+    let stands = two.spec();
+    let hold = |spec: &mut Spec, set: &str| {
+        spec.conditions = vec![ConditionSpec {
+            set: set.into(),
+            kind: ConditionKind::Displacement([Some(text("0")), None, None]),
+        }];
+    };
+    let mut steps = stands.clone();
+    hold(&mut steps, "all");
+    steps.schedule.steps = 50;
+    steps.schedule.stepper = Stepper::Newmark(Newmark::default());
+    // the point in the middle of the lower bar is free, and pulled at by nobody
+    let mut increments = stands.clone();
+    increments.sets.push(SetSpec {
+        name: "held".into(),
+        members: Members::Where(text("abs(x - 0.25) > 0.01")),
+    });
+    hold(&mut increments, "held");
+    increments.schedule.steps = 50;
+    increments.schedule.stepper = Stepper::Statics(Statics {
+        method: Method::Relaxation,
+        ..Statics::default()
+    });
+    let after = |spec: &Spec| {
+        let mut sim = built(spec);
+        run(&mut *sim, 50);
+        (crossed(&*sim), temperature(&mut *sim))
+    };
+    let (exact, of_points) = after(&stands);
+    assert!(exact > 1e-3, "{exact}");
+    for spec in [steps, increments] {
+        let (found, of_these) = after(&spec);
+        assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+        for (a, b) in of_these.iter().zip(&of_points) {
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
+    }
+}

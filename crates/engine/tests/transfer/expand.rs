@@ -456,6 +456,86 @@ fn what_is_stretched_cools() {
     assert!(((middle(4) - exact) / cooled).abs() < 2e-3);
 }
 
+/// The same in implicit steps, and in increments of a load whose ends alone are told.
+#[test]
+fn implicit_steps_and_increments_cool_what_is_stretched() {
+    let (alpha, young, stretch) = (1e-4, 40.0, 1e-3);
+    let exact = 300.0 * f64::exp(-alpha * young * stretch);
+    let newton = Stepper::Statics(Statics {
+        method: Method::Newton,
+        tolerance: 1e-12,
+        ..Statics::default()
+    });
+    for (stepper, told) in [
+        (Stepper::Newmark(Newmark::default()), "all"),
+        (newton, "ends"),
+    ] {
+        let mut heat = heat(EXPLICIT);
+        heat.reference = 300.0;
+        heat.deformation = true;
+        heat.materials[0].expansion = alpha;
+        heat.materials[0].conductivity = 1e-9;
+        let body = cells(1, 1.0, [0.0; 3], [40.0; 3]);
+        let mut spec = still(1, body, 3, 0.1, heat);
+        spec.schedule.stepper = stepper;
+        spec.schedule.steps = 10;
+        spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(young));
+        spec.sets = vec![SetSpec {
+            name: "ends".into(),
+            members: Members::Where(text("abs(x - 20) > 17")),
+        }];
+        let pulled = format!("{stretch} * x * min(1, t)");
+        spec.conditions = vec![ConditionSpec {
+            set: told.into(),
+            kind: ConditionKind::Displacement([Some(text(&pulled)), None, None]),
+        }];
+        let mut sim = built(&spec);
+        run(&mut *sim, 10);
+        let account = sim.transfers()[0].1;
+        assert!(account.made < 0.0 && account.residual().abs() < 1e-12 * account.initial);
+        let (found, cooled) = (temperature(&mut *sim)[20], 300.0 - exact);
+        assert!(
+            cooled > 1e-3 && ((found - exact) / cooled).abs() < 2e-3,
+            "{told}: {found} {exact}"
+        );
+    }
+}
+
+/// Bodies that do not touch expand side by side without stress.
+#[test]
+fn bodies_expand_each_for_itself() {
+    for law in laws() {
+        let mut spec = block(2, law.clone(), false, told(1e-3, "20 + 60"));
+        let far = cells(2, 1.0, [20.0, 0.0, 0.0], [25.0, 4.0, 0.0]);
+        spec.body = BodySpec::Several(vec![
+            PieceSpec::new("near", spec.body.clone()),
+            PieceSpec::new("far", far),
+        ]);
+        let mut sim = built(&spec);
+        let grown: f64 = 60.0 * 1e-3;
+        let x = sim.snapshot(&[], false).reference;
+        assert_eq!(x.len(), 50);
+        // the second body shrinks back by a third of what it grew
+        let by = |x: &[f64; 3]| {
+            if x[0] > 10.0 {
+                grown * 2.0 / 3.0
+            } else {
+                grown
+            }
+        };
+        let moved: Vec<_> = x.iter().map(|x| x.map(|c| by(x) * c)).collect();
+        sim.set_displacements(&moved);
+        sim.start(true);
+        let energy = scalars(&mut *sim, "strain_energy_density");
+        for (x, energy) in x.iter().zip(&energy) {
+            match x[0] > 10.0 {
+                true => assert!(*energy > 1e-6, "{law:?} at {x:?}: {energy:e}"),
+                false => assert!(energy.abs() < 1e-26, "{law:?} at {x:?}: {energy:e}"),
+            }
+        }
+    }
+}
+
 /// Two points that are held while they cool: their bond breaks when what is left of its length at rest has been stretched by s00.
 #[test]
 fn cold_bonds_break() {

@@ -116,7 +116,7 @@ pub struct Document {
     /// Factors of the toughness of sets, by place and time, and sets that never fail; all that concern a point are multiplied.
     #[serde(default)]
     pub toughness: Vec<At<Toughness>>,
-    /// Broken bonds that become whole again, in explicit motion; none when left out.
+    /// Broken bonds that become whole again, in motion; none when left out.
     pub healing: Option<At<Healing>>,
     /// Bonds that never were, or are broken, where they cross a shape.
     #[serde(default)]

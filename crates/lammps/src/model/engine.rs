@@ -12,7 +12,7 @@ use peridyne::error::RunError;
 use peridyne::observe::Observed;
 use peridyne::observe::Snapshot;
 use peridyne::quantity::rounded;
-use peridyne::run::Simulation;
+use peridyne::run::{Prescription, Simulation, Watched};
 use std::any::Any;
 use std::cell::RefCell;
 
@@ -291,8 +291,8 @@ impl Engine for ModelEngine {
         let still: Vec<u32> = (0..n as u32)
             .filter(|i| !run.moving.as_ref().is_some_and(|m| m.contains(*i as usize)))
             .collect();
-        sim.set_still(&still);
-        sim.set_carried(&run.carried);
+        sim.prescribe(Prescription::Still, &still);
+        sim.prescribe(Prescription::Carried, &run.carried);
         let mut driven: Vec<(Drive, Option<Vec<u32>>)> = Vec::new();
         self.driven.clear();
         for condition in conditions {
@@ -311,7 +311,7 @@ impl Engine for ModelEngine {
                 self.notes.push(format!("atoms move or are strained when the bonds of `{}` are first asked: LAMMPS has no critical stretches yet then and may break every bond that is stretched; here none breaks in that step (let LAMMPS make `run 1` at rest before anything moves, for equal results)", self.style.name()));
             }
         }
-        sim.watch_next();
+        sim.watch(Watched::Energies);
         sim.start(self.bonded);
         self.bonded = true;
         self.keep_watched();
@@ -353,7 +353,7 @@ impl Engine for ModelEngine {
     }
 
     fn expect_output(&mut self) {
-        self.sim.get_mut().watch_next();
+        self.sim.get_mut().watch(Watched::Energies);
     }
 
     fn energies(&mut self) -> Result<Energies, HostError> {
@@ -368,11 +368,11 @@ impl Engine for ModelEngine {
     }
 
     fn expect_virial(&mut self) {
-        self.sim.get_mut().watch_virial_next();
+        self.sim.get_mut().watch(Watched::Virial);
     }
 
     fn expect_virials(&mut self) {
-        self.sim.get_mut().watch_virials_next();
+        self.sim.get_mut().watch(Watched::Virials);
     }
 
     fn virial(&mut self) -> Result<[f64; 6], HostError> {

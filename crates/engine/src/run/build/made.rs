@@ -152,7 +152,7 @@ impl<const D: usize> Made<D> {
         let acting = names.acting(&system.body, conditions, &spec.indenters, sets)?;
         let (forces, constraints) = acting;
         system.set_acting(forces, constraints);
-        system.toughness = system.toughness_of(spec, &names.shelf, sets)?;
+        system.toughness = system.toughness_of(spec, sets)?;
         system.healing = system.healing_of(spec, sets)?;
         // how long a run of a given duration is, its caller knows
         let steps = match spec.schedule.steps {

@@ -64,7 +64,7 @@ pub fn build_in<const D: usize>(
     if criteria::remembering(&mut resolved)? || expanding || own || directed {
         shelf.resolve(&mut resolved)?;
     }
-    consistent(&resolved)?;
+    consistent(&resolved, shelf)?;
     let potentials = shelf.potentials(&resolved)?;
     atoms::check_smooth(&resolved, potentials.is_some())?;
     atoms::resolve_family(&mut resolved, potentials.as_ref())?;
@@ -88,7 +88,7 @@ pub fn build_in<const D: usize>(
         limits,
         dt,
     } = made;
-    let stepper = stepper(spec, shelf, simd, &mut system, (&limits, dt))?;
+    let stepper = stepper(spec, simd, &mut system, (&limits, dt))?;
     let stages = match &spec.preload {
         Some(preload) => system.prepare_preload(preload, &names, stepper)?,
         None => {

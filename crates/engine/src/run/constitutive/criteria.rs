@@ -8,9 +8,7 @@ use crate::law::descriptor::Memory;
 use crate::law::fracture_energy;
 use crate::law::micromodulus::Moments;
 use crate::quantity::Message;
-use crate::spec::{
-    BodySpec, Control, Criterion, FractureSpec, LawSpec, MaterialSpec, Method, Plane, Spec,
-};
+use crate::spec::{Criterion, FractureSpec, LawSpec, MaterialSpec, Plane, Spec};
 
 fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
     BuildError::unsupported(format!("materials[{n}].{key}"), message)
@@ -23,15 +21,8 @@ fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
 /// Laws whose bonds cannot remember.
 pub(in crate::run) fn remembering(spec: &mut Spec) -> Result<bool, BuildError> {
     let remembers = |m: &MaterialSpec| m.fracture.is_some_and(|f| f.remembers());
-    let Some(first) = spec.materials.iter().position(remembers) else {
+    if !spec.materials.iter().any(remembers) {
         return Ok(false);
-    };
-    if !spec.pairs.is_empty() {
-        return Err(unsupported(
-            first,
-            "fracture",
-            "pairs of materials with constants of their own break by critical stretches alone",
-        ));
     }
     for (n, m) in spec.materials.iter_mut().enumerate() {
         match &m.law {
@@ -194,27 +185,6 @@ pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
         all.position(|m| m.fracture.as_ref().is_some_and(has))
     };
     let statics = spec.schedule.statics();
-    if let Some(n) = find(&FractureSpec::remembers) {
-        let else_where = if statics.is_some_and(|s| s.control != Control::Load) {
-            Some(("loads that follow what bonds bear", "leave control out"))
-        } else if spec.own_horizon.is_some() {
-            Some(("horizons of points", "leave own_horizon out"))
-        } else {
-            None
-        };
-        if let Some((what, instead)) = else_where {
-            return Err(unsupported(
-                n,
-                "fracture",
-                format!(
-                    "{what} know no bonds that break by more than the stretch that they have now"
-                ),
-            )
-            .help(format!(
-                "give critical_stretch or energy without criterion, rate and fatigue; or {instead}"
-            )));
-        }
-    }
     if spec
         .preload
         .as_ref()
@@ -225,14 +195,6 @@ pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
             "cycles of load are statics alone, no motion follows",
         )
         .help("leave [run] or cycles out"));
-    }
-    if let (Some(n), Some(_)) = (find(&|f| f.rate.is_some()), statics) {
-        return Err(unsupported(
-            n,
-            "fracture.rate",
-            "in equilibrium nothing is stretched at any rate",
-        )
-        .help("write [run], or leave rate out"));
     }
     let cycles = statics.and_then(|s| s.cycles);
     match (find(&|f| f.fatigue.is_some()), cycles) {
@@ -253,26 +215,6 @@ pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
             .help("give a material fracture.fatigue"));
         }
         (Some(_), Some(_)) => {}
-    }
-    if statics.is_some_and(|s| s.method == Method::Linear) {
-        return Err(BuildError::unsupported(
-            "statics.method",
-            "cycles of load wear bonds out, and linear statics is of the whole body",
-        )
-        .help("write method = \"newton\""));
-    }
-    if matches!(spec.body, BodySpec::Several(_)) || !spec.indenters.is_empty() {
-        return Err(BuildError::unsupported(
-            "statics.cycles",
-            "cycles of load are of a single body without indenters",
-        ));
-    }
-    if let Some(n) = (spec.conditions.iter()).position(|c| c.kind.depends_on_time()) {
-        return Err(BuildError::unsupported(
-            format!("conditions[{n}]"),
-            "this condition depends on t: in cycles of load conditions are the greatest of each cycle, and stay as they are",
-        )
-        .help("leave t out of it; increments count cycles, whose number is in history.csv"));
     }
     Ok(())
 }

@@ -240,12 +240,17 @@ impl ConstitutiveModel {
 
     /// `ω ν` of a bond ξ of length r0, the mean of both ends.
     pub fn weight(&self, xi: &[f64], r0: f64) -> f64 {
+        self.weight_within(self.horizon, xi, r0)
+    }
+
+    /// The same of points with another horizon (length): 0 beyond it.
+    pub fn weight_within(&self, horizon: f64, xi: &[f64], r0: f64) -> f64 {
         let nu = if self.scaling {
-            volume_fraction(r0, self.horizon, self.spacing)
+            volume_fraction(r0, horizon, self.spacing).max(0.0)
         } else {
             1.0
         };
         let full: [f64; 3] = std::array::from_fn(|a| xi.get(a).copied().unwrap_or(0.0));
-        nu * mean_influence(self.influence, &full, r0, self.horizon)
+        nu * mean_influence(self.influence, &full, r0, horizon)
     }
 }

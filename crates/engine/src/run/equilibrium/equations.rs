@@ -16,19 +16,18 @@ use crate::statics::{
 impl<const D: usize> Problem<'_, D> {
     /// The linear body about the displacements of now, points that touch too.
     pub(super) fn tangent_now(&mut self) -> LinearBody<D> {
-        self.system.refresh_images();
-        let (bonds, contact) = (
-            self.system.interaction.as_mut(),
-            self.system.contact.as_ref(),
-        );
-        statics::linear_body_touching(&self.system.body, bonds, contact, &self.system.u)
+        let system = &mut *self.system;
+        system.refresh_images();
+        let (bonds, contact) = (system.interaction.as_mut(), system.contact.as_ref());
+        statics::linear_body_touching(&system.body, bonds, contact, &system.u)
     }
 
     /// What indenters and forces on points resist with at points.
     fn pushed(&self) -> Vec<Block<D>> {
-        let mut sum = vec![[[0.0; D]; D]; self.system.body.len];
-        for indenter in &self.system.applied.rigid {
-            indenter.each_tangent(&self.system.body, &self.system.u, |slot, _, block| {
+        let system = &*self.system;
+        let mut sum = vec![[[0.0; D]; D]; system.body.len];
+        for indenter in &system.applied.rigid {
+            indenter.each_tangent(&system.body, &system.u, |slot, _, block| {
                 for a in 0..D {
                     for b in 0..D {
                         sum[slot][a][b] += block[a][b];
@@ -36,7 +35,6 @@ impl<const D: usize> Problem<'_, D> {
                 }
             });
         }
-        let system = &self.system;
         system.applied.each_stiffness(|slot, block| {
             for a in 0..D {
                 for b in 0..D {
@@ -44,7 +42,7 @@ impl<const D: usize> Problem<'_, D> {
                 }
             }
         });
-        self.system.body.by_id(|i| sum[i])
+        system.body.by_id(|i| sum[i])
     }
 
     /// The equations of a step of Newton's method.
@@ -133,6 +131,7 @@ impl<const D: usize> Problem<'_, D> {
         rest: &[Wrench],
         goal: Goal,
     ) -> Result<(Onward<D>, usize), SolveError> {
+        let system = &mut *self.system;
         let (mut x, mut iterations) = (vec![[0.0; D]; r.len()], 0);
         let support = match &equations.resisted {
             Some(resisted) => {
@@ -160,8 +159,7 @@ impl<const D: usize> Problem<'_, D> {
                 }
                 (Some(body), None) => solve_assembled(body, added, support, b, x, goal)?,
                 (None, _) => {
-                    let operator =
-                        &mut Swept::new(&self.system.body, self.system.interaction.as_mut());
+                    let operator = &mut Swept::new(&system.body, system.interaction.as_mut());
                     let mut operator = Shifted { operator, added };
                     cg::solve(&mut operator, support, b, x, goal)?
                 }

@@ -18,15 +18,14 @@ use self::problem::Problem;
 use self::state::StaticState;
 use super::system::System;
 use crate::body::{Field, zeros};
-use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::interaction::Sweep;
-use crate::law::descriptor::Memory;
 use crate::quantity::rounded;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
+use crate::run::traits;
 use crate::space::Point;
-use crate::spec::{LinearBody, Method, Solver, Statics};
+use crate::spec::{LinearBody, Method, Statics};
 use crate::statics::{self, Solved, Support};
 
 /// Rounds of breaking and new equilibrium within one increment.
@@ -49,17 +48,7 @@ pub(super) struct Way {
 impl<const D: usize> System<D> {
     /// Can this be brought into equilibrium at all?
     pub(super) fn check_statics(&self, options: Statics) -> Result<(), BuildError> {
-        self.knows_its_time("statics", options.timed)?;
-        let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
-        for (memory, name) in named.map(|n| n.memory()) {
-            if memory != Memory::Nothing && options.method == Method::Linear {
-                return Err(BuildError::unsupported(
-                    "statics.method",
-                    format!("the law {name} is linear about the reference only, and remembers"),
-                )
-                .help("write method = \"newton\" or \"relaxation\""));
-            }
-        }
+        traits::of_statics(self, options)?;
         let support = self.held();
         if support.unknowns() == 0 {
             return Err(BuildError::ill_posed(
@@ -84,111 +73,11 @@ impl<const D: usize> System<D> {
             )
             .help("prescribe displacements that hold every connected part: D translations and its rotations"));
         }
-        let mut constraints = self.prescribed.constraints.iter();
-        let moving = constraints.any(|c| c.is_velocity());
-        let replaced = self
-            .applied
-            .loads
-            .iter()
-            .any(|l| matches!(l.kind, LoadKind::Replace(_)));
-        let unknown =
-            |l: &Load<D>| matches!(l.kind, LoadKind::Named(_)) && l.without_tangent().is_some();
-        if self.applied.loads.iter().any(unknown) {
-            return Err(BuildError::unsupported(
-                "conditions",
-                "a force of the program has no tangent, which equilibrium needs",
-            )
-            .help("take velocity Verlet, or write the force as expressions of x, y, z and t"));
-        }
-        if options.method != Method::Newton && self.applied.loads.iter().any(Load::has_stiffness) {
-            return Err(BuildError::unsupported(
-                "statics.method",
-                "a force that changes with displacements is no load, and Newton's method alone has its stiffness",
-            )
-            .help("write method = \"newton\""));
-        }
-        let wrong = match (moving, replaced) {
-            (true, _) => Some("a prescribed velocity has no meaning in statics"),
-            (_, true) => {
-                Some("a force that replaces all others keeps its points out of equilibrium")
-            }
-            _ => None,
-        };
-        if self.applied.free().next().is_some() {
-            return Err(BuildError::unsupported(
-                "indenter",
-                "an indenter with a mass moves in time, and statics has none",
-            )
-            .help("leave mass and velocity out, and write center as a function of t from 0 to 1"));
-        }
-        if let Some(wrong) = wrong {
-            return Err(BuildError::unsupported("conditions", wrong)
-                .help("prescribe a displacement, as a function of t from 0 to 1"));
-        }
         let atoms = |r: &ConstitutiveModel| matches!(r.laws, Laws::Atoms(_));
         if !options.method.minimizes()
             && (self.factored(options, &support) || self.constitutive.all().any(atoms))
         {
             self.enough_memory_for_rows()?;
-        }
-        if !options.method.minimizes() && (self.contact.is_some() || !self.applied.rigid.is_empty())
-        {
-            return Err(BuildError::unsupported(
-                "statics.method",
-                "contact and indenters have no tangent here",
-            )
-            .help("write method = \"relaxation\", or contact = false"));
-        }
-        let asymmetry = self.interaction.asymmetry();
-        if asymmetry > statics::SYMMETRIC {
-            let wrong = match (options.solver, options.method) {
-                (Solver::ConjugateGradients, _) => Some((
-                    "statics.solver",
-                    "conjugate gradients need a symmetric body",
-                    "write solver = \"direct\"",
-                )),
-                (_, Method::Relaxation | Method::Fire) => Some((
-                    "statics.method",
-                    "this method seeks the least energy",
-                    "write method = \"linear\"",
-                )),
-                (Solver::Auto | Solver::Direct, Method::Linear | Method::Newton) => None,
-            };
-            if let Some((path, wrong, help)) = wrong {
-                return Err(BuildError::unsupported(
-                    path,
-                    format!(
-                        "{wrong}, and action is not reaction in this one (asymmetry {})",
-                        rounded(asymmetry, 2)
-                    ),
-                )
-                .help(help));
-            }
-        }
-        Ok(())
-    }
-
-    /// Is what laws ask of the time of an increment or an implicit step there?
-    pub(super) fn knows_its_time(&self, path: &str, timed: bool) -> Result<(), BuildError> {
-        let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
-        for (memory, name) in named.map(|n| n.memory()) {
-            match memory {
-                Memory::Time if !timed => {
-                    return Err(BuildError::unsupported(
-                        path,
-                        format!("the law {name} answers to how fast it is deformed, and t of these increments is the factor of the load, no time"),
-                    )
-                    .help("write duration, the time in which the load is applied; its increments are steps in time then"));
-                }
-                Memory::Shock => {
-                    return Err(BuildError::unsupported(
-                        path,
-                        format!("the law {name} answers to how fast it is deformed and bears no shear at rest: it moves in time, by explicit steps"),
-                    )
-                    .help("write [run] with a duration, without integrator"));
-                }
-                Memory::Nothing | Memory::Path | Memory::Time => {}
-            }
         }
         Ok(())
     }
@@ -258,10 +147,11 @@ impl<const D: usize> System<D> {
 impl<const D: usize> Problem<'_, D> {
     /// The linear body about the reference.
     fn reference_body(&mut self) -> LinearBody<D> {
+        let system = &mut *self.system;
         statics::linear_body(
-            &self.system.body,
-            self.system.interaction.as_mut(),
-            &self.system.body.at_rest(),
+            &system.body,
+            system.interaction.as_mut(),
+            &system.body.at_rest(),
         )
     }
 
@@ -330,32 +220,28 @@ impl<const D: usize> Problem<'_, D> {
 
     /// Forces of now, of which no bond lets go; of the linear body or of the law.
     fn hold(&mut self, linear: bool) {
-        self.system.refresh_images();
+        let system = &mut *self.system;
+        system.refresh_images();
         match linear {
-            true => self.system.linear_forces(),
+            true => system.linear_forces(),
             false => {
-                self.system.interaction.forces(
-                    &self.system.body,
-                    &self.system.u,
-                    &mut self.system.f,
+                system.interaction.forces(
+                    &system.body,
+                    &system.u,
+                    &mut system.f,
                     Sweep::Hold,
                     None,
                 );
             }
         }
-        self.system.other_forces(self.system.clock.trial());
+        system.other_forces(system.clock.trial());
     }
 
     /// Linear increments solve once, and look once which bonds break.
     fn warn_of_one_look(&mut self) {
-        if !self
-            .system
-            .info
-            .warnings
-            .iter()
-            .any(|w| w.contains(ONE_LOOK))
-        {
-            self.system.info.warnings.push(ONE_LOOK.to_string());
+        let system = &mut *self.system;
+        if !system.info.warnings.iter().any(|w| w.contains(ONE_LOOK)) {
+            system.info.warnings.push(ONE_LOOK.to_string());
         }
     }
 
@@ -383,12 +269,13 @@ impl<const D: usize> Problem<'_, D> {
         released: bool,
         way: &mut Way,
     ) {
-        let now = self.system.external();
-        for (n, &s) in self.system.body.slots.iter().enumerate() {
+        let system = &mut *self.system;
+        let now = system.external();
+        for (n, &s) in system.body.slots.iter().enumerate() {
             let i = s as usize;
             for a in 0..D {
-                let moved = 0.5 * self.system.body.volume.at(i) * (self.system.u[a][i] - u[a][i]);
-                let all = f[a][i] + self.system.f[a][i];
+                let moved = 0.5 * system.body.volume.at(i) * (system.u[a][i] - u[a][i]);
+                let all = f[a][i] + system.f[a][i];
                 let loads = external[a][i] + now[a][i];
                 if support.free[n][a] {
                     way.work += loads * moved;

@@ -20,9 +20,8 @@ use super::state::{Followed, StaticState};
 use crate::body::Field;
 use crate::error::{BuildError, SolveError};
 use crate::interaction::BondState;
-use crate::run::Shelf;
 use crate::run::system::System;
-use crate::spec::{Control, LawSpec, Method, Solver, Spec, Statics};
+use crate::spec::Control;
 use crate::statics::{Assembled, Direct, Solved, Support, dot, norm};
 
 /// Newton's iterations in a trial of an increment.
@@ -62,54 +61,8 @@ fn further<const D: usize>(x: &[[f64; D]], y: &[[f64; D]], by: f64) -> Vec<[f64;
 
 impl<const D: usize> System<D> {
     /// Is there a path, and can it be followed?
-    pub(in crate::run) fn check_path(
-        &mut self,
-        options: Statics,
-        spec: &Spec,
-        shelf: &Shelf,
-    ) -> Result<(), BuildError> {
-        let refused = |path: &str, message: &str, help: &str| {
-            Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
-        };
-        if options.method != Method::Newton {
-            return refused(
-                "statics.method",
-                "the path of a body is followed by Newton's method",
-                "write method = \"newton\", or leave it out",
-            );
-        }
-        if options.solver == Solver::ConjugateGradients {
-            return refused(
-                "statics.solver",
-                "where the load falls tangents have any sign, which conjugate gradients do not solve",
-                "leave solver out",
-            );
-        }
-        if options.cycles.is_some() {
-            return refused(
-                "statics.cycles",
-                "cycles say the greatest load, which is sought here",
-                "leave cycles or control out",
-            );
-        }
-        self.check_factor(spec)?;
-        // a bond that lets go at once leaves a state that is on no path
-        let fades = |law: &LawSpec| matches!(law, LawSpec::Named(law) if shelf.fades(&law.name));
-        let mut materials = spec.materials.iter();
-        if let Some(n) = materials.position(|m| m.fracture.is_some() && !fades(&m.law)) {
-            return Err(BuildError::unsupported(
-                format!("materials[{n}].fracture"),
-                "bonds of this law let go while they bear: the load jumps there, and has no path",
-            )
-            .help("take a law whose bonds soften to nothing, or control = \"breaking\", which follows linear bodies bond after bond"));
-        }
-        if spec.interfaces.iter().any(|i| i.fracture.is_some()) {
-            return refused(
-                "statics.control",
-                "bonds of an interface let go while they bear: the load jumps there, and has no path",
-                "leave the fracture of the interface out, or write control = \"breaking\"",
-            );
-        }
+    pub(in crate::run) fn check_path(&mut self) -> Result<(), BuildError> {
+        self.check_factor()?;
         self.enough_memory_for_rows()
     }
 }
@@ -267,21 +220,19 @@ impl<const D: usize> Problem<'_, D> {
 
     /// Forces on the free components and displacements of the others under the load of 1.
     fn unit_load(&mut self, support: &Support<D>) -> Vec<[f64; D]> {
-        let clock = self.system.clock;
-        self.system.clock.set(1.0);
-        let mut u = self.system.body.at_rest();
-        self.system.prescribed.place(&mut u, 1.0);
-        let load = self.system.external();
-        let (mut unit, load) = (
-            self.system.body.values(&u),
-            self.system.body.per_point(&load),
-        );
+        let system = &mut *self.system;
+        let clock = system.clock;
+        system.clock.set(1.0);
+        let mut u = system.body.at_rest();
+        system.prescribed.place(&mut u, 1.0);
+        let load = system.external();
+        let (mut unit, load) = (system.body.values(&u), system.body.per_point(&load));
         for ((unit, load), free) in unit.iter_mut().zip(&load).zip(&support.free) {
             for a in (0..D).filter(|a| free[*a]) {
                 unit[a] = load[a];
             }
         }
-        self.system.clock = clock;
+        system.clock = clock;
         unit
     }
 
@@ -320,13 +271,14 @@ impl<const D: usize> Problem<'_, D> {
         b: &[[f64; D]],
         stable: bool,
     ) -> Result<Vec<[f64; D]>, SolveError> {
-        let id = self.system.body.ids_by_slot();
+        let system = &*self.system;
+        let id = system.body.ids_by_slot();
         let mut bonds = vec![];
         // along b, and against it
         let mut fastest = [0.0f64; 2];
-        self.system
+        system
             .interaction
-            .each_bond(&self.system.body, &mut |i, j, xi, state| {
+            .each_bond(&system.body, &mut |i, j, xi, state| {
                 if state != BondState::Whole {
                     return;
                 }

@@ -4,6 +4,7 @@
 use super::problem::Problem;
 use super::state::StaticState;
 use crate::condition::indenter::Indenter;
+use crate::condition::load::Load;
 use crate::dynamics::stable_step::largest_ratio;
 use crate::error::SolveError;
 use crate::interaction::friction::Friction;
@@ -94,82 +95,68 @@ impl<const D: usize> Problem<'_, D> {
         })
     }
 
-    /// Raises masses where points touch: they stay light enough to settle elsewhere. `sum` is room for a number per slot.
+    /// Raises masses where points touch or forces hold them: they stay light enough to settle elsewhere. `sum` is room for a number per slot.
     fn weigh(&self, sum: &mut [f64], own: &[f64], mass: &mut [f64]) {
-        if self.system.contact.is_none() && self.system.applied.rigid.is_empty() {
+        let system = &*self.system;
+        let springs = system.applied.loads.iter().any(Load::has_stiffness);
+        if system.contact.is_none() && system.applied.rigid.is_empty() && !springs {
             return;
         }
         sum.fill(0.0);
-        if let Some(contact) = &self.system.contact {
-            contact
-                .central
-                .add_stiffness(&self.system.body, &self.system.u, sum);
+        system.applied.each_stiffness(|slot, block| {
+            let size: f64 = block.as_flattened().iter().map(|k| k.abs()).sum();
+            sum[slot] += system.body.volume.at(slot) * size;
+        });
+        if let Some(contact) = &system.contact {
+            contact.central.add_stiffness(&system.body, &system.u, sum);
         }
-        for indenter in &self.system.applied.rigid {
-            indenter.add_stiffness(&self.system.body, &self.system.u, sum);
+        for indenter in &system.applied.rigid {
+            indenter.add_stiffness(&system.body, &system.u, sum);
         }
-        for ((m, own), &s) in mass.iter_mut().zip(own).zip(&self.system.body.slots) {
+        for ((m, own), &s) in mass.iter_mut().zip(own).zip(&system.body.slots) {
             *m = m.max(own + sum[s as usize]);
         }
     }
 
     /// Do points repel that are in each other's family?
     fn repels_inside(&mut self) -> bool {
-        self.system.contact.is_some()
-            && self
-                .system
-                .interaction
-                .energy(&self.system.body, &self.system.u)[1]
-                > 0.0
+        let system = &mut *self.system;
+        system.contact.is_some() && system.interaction.energy(&system.body, &system.u)[1] > 0.0
     }
 
     /// Raises masses by what repulsion inside families resists with.
     fn weigh_families(&self, own: &mut [f64]) {
-        let Some(contact) = &self.system.contact else {
+        let system = &*self.system;
+        let Some(contact) = &system.contact else {
             return;
         };
-        let mut sum = vec![0.0; self.system.body.len];
-        self.system
+        let mut sum = vec![0.0; system.body.len];
+        system
             .interaction
-            .each_bond(&self.system.body, &mut |i, j, xi, _| {
+            .each_bond(&system.body, &mut |i, j, xi, _| {
                 let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
-                if let Some(stiffness) =
-                    contact
-                        .central
-                        .first_stiffness(&self.system.body, [i, j], r0)
-                {
+                if let Some(stiffness) = contact.central.first_stiffness(&system.body, [i, j], r0) {
                     sum[i] += stiffness;
                     sum[j] += stiffness;
                 }
             });
-        for (m, &s) in own.iter_mut().zip(&self.system.body.slots) {
+        for (m, &s) in own.iter_mut().zip(&system.body.slots) {
             *m += sum[s as usize];
         }
     }
 
     /// What rubs is pressed as it is now.
     fn press(&mut self) {
-        if let Some(friction) = self
-            .system
-            .contact
-            .as_mut()
-            .and_then(|c| c.friction.as_mut())
-        {
+        let system = &mut *self.system;
+        if let Some(friction) = system.contact.as_mut().and_then(|c| c.friction.as_mut()) {
             friction.press();
         }
-        self.system
-            .applied
-            .rigid
-            .iter_mut()
-            .for_each(Indenter::press);
+        system.applied.rigid.iter_mut().for_each(Indenter::press);
     }
 
     fn rubs(&self) -> bool {
-        let friction = self
-            .system
-            .contact
-            .as_ref()
-            .and_then(|c| c.friction.as_ref());
-        friction.is_some_and(Friction::rubs) || self.system.applied.rigid.iter().any(Indenter::rubs)
+        let system = &*self.system;
+        let friction = system.contact.as_ref().and_then(|c| c.friction.as_ref());
+        friction.is_some_and(Friction::rubs) || system.applied.rigid.iter().any(Indenter::rubs)
     }
 }

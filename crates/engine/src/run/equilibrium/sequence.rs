@@ -19,7 +19,8 @@ use crate::error::{BuildError, SolveError};
 use crate::interaction::bond::critical_stretch;
 use crate::interaction::{BondState, history};
 use crate::run::system::System;
-use crate::spec::{CrackKind, Method, Spec, Statics};
+use crate::run::traits;
+use crate::spec::CrackKind;
 use crate::statics::Solved;
 
 /// Factors that differ by this part are of bonds that break together.
@@ -38,37 +39,8 @@ fn stretch<const D: usize>(i: usize, j: usize, xi: &[f64; D], u: &Field<D>) -> f
 
 impl<const D: usize> System<D> {
     /// Can bonds be broken one after the other?
-    pub(in crate::run) fn check_sequence(
-        &mut self,
-        options: Statics,
-        spec: &Spec,
-    ) -> Result<(), BuildError> {
-        let refused = |path: &str, message: &str, help: &str| {
-            Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
-        };
-        if options.method != Method::Linear {
-            return refused(
-                "statics.control",
-                "bonds are broken in turn where the body is linear about the reference",
-                "write method = \"linear\", or leave it out",
-            );
-        }
-        self.check_factor(spec)?;
-        let alpha = |m: &crate::spec::MaterialSpec| m.fracture.is_some_and(|f| f.alpha != 0.0);
-        if spec.materials.iter().any(alpha) {
-            return refused(
-                "materials[0].fracture",
-                "strengthening under compression (alpha) makes critical stretches follow the load",
-                "leave alpha out",
-            );
-        }
-        if self.toughness.as_ref().is_some_and(|t| t.changes()) {
-            return refused(
-                "toughness[0]",
-                "a toughness that changes with t has no place where t is the factor of the load",
-                "leave t out of it",
-            );
-        }
+    pub(in crate::run) fn check_sequence(&mut self) -> Result<(), BuildError> {
+        self.check_factor()?;
         self.learn_strength();
         let between = self.interaction.criticals_between();
         let all = [self.criticals()].into_iter().chain(between);
@@ -83,32 +55,9 @@ impl<const D: usize> System<D> {
     }
 
     /// Has the load a factor that is sought, in a body that begins without forces?
-    pub(super) fn check_factor(&mut self, spec: &Spec) -> Result<(), BuildError> {
-        let refused = |path: &str, message: &str, help: &str| {
-            Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
-        };
-        if !self.at_peace() || !spec.transfers.is_empty() {
-            return refused(
-                "statics.control",
-                "the factor of a load is sought where the reference is without forces, in which nothing spreads",
-                "leave control out",
-            );
-        }
-        if spec.periodic.iter().any(Option::is_some) {
-            return refused(
-                "statics.control",
-                "bonds through periodic faces are not followed one by one",
-                "leave periodic or control out",
-            );
-        }
-        if !self.loads_are_proportional() {
-            return refused(
-                "conditions",
-                "loads that are not proportional to t have no factor that rises and falls",
-                "write each as t times what it is at t = 1; what is held is held at 0",
-            );
-        }
-        Ok(())
+    pub(super) fn check_factor(&mut self) -> Result<(), BuildError> {
+        let proportional = self.loads_are_proportional();
+        traits::of_control(self, proportional)
     }
 
     /// Critical values of `e` by slot; none where bonds do not break.
@@ -177,24 +126,28 @@ impl<const D: usize> Problem<'_, D> {
     }
 
     fn let_go_of(&mut self, bonds: &[Critical<D>]) {
-        let held: f64 = self.system.quadratic_energy().iter().sum();
-        let near = 1e-6 * self.system.body.spacing;
+        let system = &mut *self.system;
+        let held: f64 = system.quadratic_energy().iter().sum();
+        let near = 1e-6 * system.body.spacing;
         let at = |slot: usize| -> [f64; D] {
-            let x = self.system.body.position(slot);
+            let x = system.body.position(slot);
             std::array::from_fn(|a| x[a])
         };
-        let ends: Vec<[[f64; D]; 2]> = bonds.iter().map(|b| [at(b.i), at(b.j)]).collect();
+        // from either end, through a periodic face as well
+        let along = |x: [f64; D], xi: [f64; D], by: f64| std::array::from_fn(|a| x[a] + by * xi[a]);
+        let from = |slot: usize, xi: [f64; D], by: f64| [at(slot), along(at(slot), xi, by)];
+        let ends = bonds.iter();
+        let ends: Vec<[[f64; D]; 2]> = ends
+            .flat_map(|b| [from(b.i, b.xi, 1.0), from(b.j, b.xi, -1.0)])
+            .collect();
         let same = |x: &[f64; D], y: &[f64; D]| (0..D).all(|a| (x[a] - y[a]).abs() < near);
         let is = |from: [f64; D], to: [f64; D]| {
             ends.iter()
                 .any(|[a, b]| (same(a, &from) && same(b, &to)) || (same(b, &from) && same(a, &to)))
         };
-        self.system.accounts.broken +=
-            self.system
-                .interaction
-                .cut(&self.system.body, CrackKind::Broken, &is);
-        let kept: f64 = self.system.quadratic_energy().iter().sum();
-        self.system.accounts.released.book(held - kept);
+        system.accounts.broken += system.interaction.cut(&system.body, CrackKind::Broken, &is);
+        let kept: f64 = system.quadratic_energy().iter().sum();
+        system.accounts.released.book(held - kept);
     }
 
     fn next_equilibrium(
@@ -242,10 +195,11 @@ impl<const D: usize> Problem<'_, D> {
 
     /// The lowest factor of the load of now at which bonds are at their critical stretch, and which.
     fn weakest(&self) -> Result<(f64, Vec<Critical<D>>), SolveError> {
-        let critical = self.system.criticals();
-        let between = self.system.interaction.criticals_between();
+        let system = &*self.system;
+        let critical = system.criticals();
+        let between = system.interaction.criticals_between();
         let limits = |i: usize, j: usize| -> [f64; 2] {
-            if self.system.body.piece_of(i) == self.system.body.piece_of(j) {
+            if system.body.piece_of(i) == system.body.piece_of(j) {
                 // bodies whose bonds never break have no such column
                 let of = |s: usize| critical.get(s).copied().unwrap_or(history::NEVER);
                 return [of(i), of(j)];
@@ -257,20 +211,17 @@ impl<const D: usize> Problem<'_, D> {
         };
         let mut all = vec![];
         let mut most = 0.0f64;
-        self.system
+        system
             .interaction
-            .each_bond(&self.system.body, &mut |i, j, xi, state| {
+            .each_bond(&system.body, &mut |i, j, xi, state| {
                 if state != BondState::Whole {
                     return;
                 }
-                let limit = self
-                    .system
-                    .interaction
-                    .bond_limit([i, j], &xi, limits(i, j));
+                let limit = system.interaction.bond_limit([i, j], &xi, limits(i, j));
                 if !limit.is_finite() {
                     return;
                 }
-                let s = stretch(i, j, &xi, &self.system.u);
+                let s = stretch(i, j, &xi, &system.u);
                 most = most.max(s.abs());
                 if s > 0.0 {
                     let bond = Critical {
@@ -296,23 +247,24 @@ impl<const D: usize> Problem<'_, D> {
 
     /// Work of loads and reactions from the last equilibrium to that at `factor`; displacements and forces are those under the load 1.
     fn account_sequence(&mut self, u: &Field<D>, last: Option<&Sequence<D>>, factor: f64) {
+        let system = &mut *self.system;
         let dot = |f: &dyn Fn(usize, usize) -> f64, x: &dyn Fn(usize, usize) -> f64| {
-            let each = self.system.body.slots.iter().map(|s| *s as usize);
+            let each = system.body.slots.iter().map(|s| *s as usize);
             each.map(|i| {
                 let along: f64 = (0..D).map(|a| f(a, i) * x(a, i)).sum();
-                self.system.body.volume.at(i) * along
+                system.body.volume.at(i) * along
             })
             .sum::<f64>()
         };
         // what acts from outside is what bonds pull against
-        let stiffness = -dot(&|a, i| self.system.f[a][i], &|a, i| self.system.u[a][i]);
+        let stiffness = -dot(&|a, i| system.f[a][i], &|a, i| system.u[a][i]);
         let mut work = 0.0;
         let mut from = 0.0;
         if let Some(last) = last {
             let each = last
                 .next
                 .iter()
-                .map(|b| b.stretch / stretch(b.i, b.j, &b.xi, &self.system.u));
+                .map(|b| b.stretch / stretch(b.i, b.j, &b.xi, &system.u));
             let mean = each.sum::<f64>() / last.next.len() as f64;
             // where the ends of a bond come nearer to each other under the load without it, it lets go at the load that it had
             from = match mean > 0.0 && mean.is_finite() {
@@ -320,12 +272,11 @@ impl<const D: usize> Problem<'_, D> {
                 false => last.factor,
             };
             work -= 0.5
-                * dot(
-                    &|a, i| last.f[a][i] + from * self.system.f[a][i],
-                    &|a, i| from * self.system.u[a][i] - u[a][i],
-                );
+                * dot(&|a, i| last.f[a][i] + from * system.f[a][i], &|a, i| {
+                    from * system.u[a][i] - u[a][i]
+                });
         }
         work += 0.5 * (factor * factor - from * from) * stiffness;
-        self.system.accounts.past.conditions += work;
+        system.accounts.past.conditions += work;
     }
 }

@@ -1,10 +1,9 @@
 //! Can a body move by implicit steps?
 
 use super::system::System;
+use super::traits;
 use crate::error::BuildError;
-use crate::quantity::rounded;
-use crate::spec::{Control, Method, Newmark, Release, Solver, Spec, Statics};
-use crate::statics;
+use crate::spec::{Control, Method, Newmark, Spec, Statics};
 
 /// Can bonds break?
 pub(super) fn breaks(spec: &Spec) -> bool {
@@ -27,7 +26,7 @@ pub(super) fn equations(options: Newmark) -> Statics {
 
 impl<const D: usize> System<D> {
     /// Has all that acts a tangent, and is the method stable?
-    pub(super) fn check_implicit(&self, options: Newmark, spec: &Spec) -> Result<(), BuildError> {
+    pub(super) fn check_implicit(&self, options: Newmark) -> Result<(), BuildError> {
         let Newmark {
             beta, gamma, alpha, ..
         } = options;
@@ -57,15 +56,7 @@ impl<const D: usize> System<D> {
             )
             .help("leave both out: 0.25 and 0.5 are of second order and lose no energy"));
         }
-        let explicit = "integrator = \"verlet\" knows it; or leave it out";
-        self.knows_its_time("schedule.integrator", true)?;
-        if breaks(spec) && spec.release == Release::AfterForce {
-            return Err(BuildError::unsupported(
-                "materials[0].fracture",
-                "bonds that pull once more after they broke have no place in an implicit step",
-            )
-            .help("leave release out, or take integrator = \"verlet\""));
-        }
+        traits::of_implicit_steps(self, options.solver)?;
         if self.applied.free().next().is_some() && self.held().unknowns() == 0 {
             return Err(BuildError::unsupported(
                 "indenters",
@@ -73,24 +64,9 @@ impl<const D: usize> System<D> {
             )
             .help("take integrator = \"verlet\""));
         }
-        if let Some(what) = self.applied.without_tangent() {
-            return Err(BuildError::unsupported(
-                "conditions",
-                format!("{what} has no tangent, which an implicit step needs"),
-            )
-            .help(explicit));
-        }
         let equations = equations(options);
         if self.factored(equations, &self.held()) {
             self.enough_memory_for_rows()?;
-        }
-        let asymmetry = self.interaction.asymmetry();
-        if asymmetry > statics::SYMMETRIC && options.solver == Solver::ConjugateGradients {
-            return Err(BuildError::unsupported(
-                "schedule.solver",
-                format!("conjugate gradients need a symmetric body, and action is not reaction in this one (asymmetry {})", rounded(asymmetry, 2)),
-            )
-            .help("write solver = \"direct\""));
         }
         Ok(())
     }

@@ -22,9 +22,6 @@ const NEAR: f64 = 1e-9;
 
 /// What cannot begin in equilibrium.
 pub(super) fn possible(spec: &Spec, preload: &PreloadSpec) -> Result<(), BuildError> {
-    let refused = |path: &str, message: &str, help: &str| {
-        Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
-    };
     if preload.increments == 0 {
         return Err(BuildError::invalid(
             "preload.statics",
@@ -42,30 +39,13 @@ pub(super) fn possible(spec: &Spec, preload: &PreloadSpec) -> Result<(), BuildEr
         ));
     }
     match spec.schedule.stepper {
-        Kind::Verlet | Kind::Newmark(_) => {}
-        Kind::Still | Kind::Statics(_) => {
-            return refused(
-                "schedule.integrator",
-                "statics before motion, and no motion follows",
-                "take integrator = \"verlet\" or \"newmark\"",
-            );
-        }
+        Kind::Verlet | Kind::Newmark(_) => Ok(()),
+        Kind::Still | Kind::Statics(_) => Err(BuildError::unsupported(
+            "schedule.integrator",
+            "statics before motion, and no motion follows",
+        )
+        .help("take integrator = \"verlet\" or \"newmark\"")),
     }
-    if !spec.transfers.is_empty() {
-        return refused(
-            "preload.statics",
-            "heat or a species spreads in time, and statics before motion has none",
-            "leave [statics] out and load the body in time, or leave out what spreads",
-        );
-    }
-    if !spec.pairs.is_empty() {
-        return refused(
-            "pairs",
-            "pairs of materials with constants of their own have no tangents: there is no statics before their motion",
-            "leave [statics] out",
-        );
-    }
-    Ok(())
 }
 
 impl<const D: usize> System<D> {

@@ -21,6 +21,7 @@ use crate::message;
 use crate::observe::Values;
 use crate::quantity::Dimension;
 use crate::run::model::Model;
+use crate::run::record;
 use crate::run::system::System;
 use crate::spec::ContourSpec;
 
@@ -112,7 +113,7 @@ impl<const D: usize> System<D> {
         let strained = |xx: f64, yy: f64| {
             let mut strain = [[0.0; 3]; 3];
             (strain[0][0], strain[1][1]) = (SMALL * xx, SMALL * yy);
-            let energy = self.strained(strain);
+            let energy = record::strained(self, strain);
             energy
                 .into_iter()
                 .map(|w| w / (SMALL * SMALL))

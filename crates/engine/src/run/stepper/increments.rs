@@ -8,7 +8,6 @@ use crate::interaction::friction::Pressed;
 use crate::message;
 use crate::quantity::Dimension;
 use crate::run::clock::Clock;
-use crate::run::constitutive::Shelf;
 use crate::run::equilibrium::Way;
 use crate::run::equilibrium::problem::Problem;
 use crate::run::equilibrium::state::StaticState;
@@ -58,6 +57,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
         system.update_toughness(t + dt)?;
         system.spread(t, dt)?;
         system.pay(0.5, 0.0);
+        let pressed = system.pressed();
         let options = self.state.options;
         wear(system, options.cycles);
         let (u, f) = (system.u.clone(), system.f.clone());
@@ -101,6 +101,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
         system.accounts.past.dissipated += lost;
         system.accounts.past.conditions += work;
         system.acting_arrive(&u);
+        system.heat_by_deformation(pressed);
         system.pay(0.5, 0.0);
         Ok(())
     }
@@ -127,19 +128,14 @@ impl<const D: usize> Increments<D> {
     ///
     /// # Errors
     /// Nothing brings it into equilibrium.
-    pub fn of(
-        options: Statics,
-        spec: &Spec,
-        shelf: &Shelf,
-        system: &mut System<D>,
-    ) -> Result<Self, BuildError> {
+    pub fn of(options: Statics, spec: &Spec, system: &mut System<D>) -> Result<Self, BuildError> {
         if spec.schedule.steps > 0 {
             system.check_statics(options)?;
             match options.control {
                 Control::Load => {}
-                Control::Breaking => system.check_sequence(options, spec)?,
+                Control::Breaking => system.check_sequence()?,
                 Control::Opening(_) | Control::ArcLength(_) => {
-                    system.check_path(options, spec, shelf)?;
+                    system.check_path()?;
                 }
             }
         }

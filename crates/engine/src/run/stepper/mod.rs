@@ -9,7 +9,6 @@ use self::increments::Increments;
 use self::newmark::NewmarkStepper;
 use self::rest::Rest;
 use self::verlet::VelocityVerlet;
-use super::constitutive::Shelf;
 use super::system::{Regime, System};
 use super::time_step::Limits;
 use crate::error::{BuildError, RunError};
@@ -59,7 +58,6 @@ pub(super) trait SplitStep<const D: usize> {
 /// It cannot move this system.
 pub(super) fn stepper<const D: usize>(
     spec: &Spec,
-    shelf: &Shelf,
     simd: Simd,
     system: &mut System<D>,
     (limits, dt): (&Limits, f64),
@@ -68,7 +66,7 @@ pub(super) fn stepper<const D: usize>(
         Kind::Verlet => Box::new(VelocityVerlet::new(spec, simd, system, limits, dt)),
         Kind::Still => Box::new(Rest),
         Kind::Newmark(options) => Box::new(NewmarkStepper::of(options, spec, system, limits, dt)?),
-        Kind::Statics(options) => Box::new(Increments::of(options, spec, shelf, system)?),
+        Kind::Statics(options) => Box::new(Increments::of(options, spec, system)?),
     })
 }
 

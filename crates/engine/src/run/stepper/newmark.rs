@@ -41,7 +41,7 @@ pub(super) struct NewmarkStepper<const D: usize> {
     acceleration: Vec<[f64; D]>,
     /// `(m a, dL/dt)` of rigid bodies with mass at the end of the last step; empty: what acts on them.
     bodies: Vec<Wrench>,
-    /// Can bonds break?
+    /// Can bonds break or heal?
     breaks: bool,
     period: [Option<f64>; D],
 }
@@ -74,6 +74,7 @@ impl<const D: usize> Stepper<D> for NewmarkStepper<D> {
         system.update_toughness(t + dt)?;
         system.spread(t, dt)?;
         system.pay(0.5, 0.0);
+        let pressed = system.pressed();
         let (u, v, f) = (system.u.clone(), system.v.clone(), system.f.clone());
         let (accelerations, bodies) = (self.acceleration.clone(), self.bodies.clone());
         system.acting_depart(Pressed::Now);
@@ -99,6 +100,7 @@ impl<const D: usize> Stepper<D> for NewmarkStepper<D> {
             return Err(error);
         }
         system.acting_arrive(&u);
+        system.heat_by_deformation(pressed);
         let end = system.clock.time();
         let change = system.coupled_change(&v);
         system.account_constraints(end, dt, change.as_ref());
@@ -140,8 +142,8 @@ impl<const D: usize> NewmarkStepper<D> {
         limits: &Limits,
         dt: f64,
     ) -> Result<Self, BuildError> {
-        system.check_implicit(options, spec)?;
-        let breaks = implicit::breaks(spec);
+        system.check_implicit(options)?;
+        let breaks = implicit::breaks(spec) || spec.healing.is_some();
         let reach = system.info.horizon / system.info.spacing;
         if breaks && dt > reach * limits.bond {
             system.info.warnings.push(message![
@@ -189,12 +191,13 @@ impl<const D: usize> NewmarkStepper<D> {
         taken
     }
 
-    /// Breaks the bonds that the end of a step stretched too far, and lets forces and accelerations jump.
+    /// Heals bonds that the end of a step brought back, breaks those that it stretched too far, and lets forces and accelerations jump.
     fn let_go(&mut self, system: &mut System<D>) {
         let before = system.accounts.broken;
         let whole = system.f.clone();
+        let healed = system.heal(system.clock.time());
         system.evolve();
-        if system.accounts.broken == before {
+        if !healed && system.accounts.broken == before {
             return;
         }
         self.equations.forget();

@@ -4,6 +4,7 @@ use super::{SplitStep, Stepper};
 use crate::dynamics::verlet::Verlet;
 use crate::error::RunError;
 use crate::execute::simd::Simd;
+use crate::interaction::PointEnergies;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::run::system::{Regime, System};
 use crate::run::time_step::Limits;
@@ -120,7 +121,7 @@ impl<const D: usize> SplitStep<D> for VelocityVerlet {
             limit,
         );
         if !(fastest < limit * limit) {
-            let error = system.refused(limit);
+            let error = refused(system, limit);
             self.retreat(system, limit);
             system.prescribed.refused(&mut system.v, [t, dt]);
             return Err(error);
@@ -234,4 +235,56 @@ fn parts_of_indenters<const D: usize>(system: &System<D>, fraction: f64) -> u32 
     let stiffest = system.applied.rigid.iter().map(|i| i.stiffened(bonds));
     let lambda = stiffest.fold(0.0, f64::max);
     (0.5 * dt * lambda.sqrt() / HELD).ceil().clamp(1.0, PARTS) as u32
+}
+
+/// Which point the pass refused, and why: one that is nowhere, else the one that went furthest.
+fn refused<const D: usize>(system: &System<D>, limit: f64) -> RunError {
+    let step = system.clock.step() + 1;
+    let path = |i: usize| {
+        let square = (0..D).map(|a| (system.clock.dt() * system.v[a][i]).powi(2));
+        square.sum::<f64>().sqrt()
+    };
+    // what is not a number is furthest
+    let far = |i: usize| {
+        if path(i).is_nan() {
+            f64::INFINITY
+        } else {
+            path(i)
+        }
+    };
+    let nowhere = |i: usize| (0..D).any(|a| !system.u[a][i].is_finite());
+    let slots = || system.body.slots.iter().map(|s| *s as usize).enumerate();
+    let found = slots()
+        .find(|(_, i)| nowhere(*i))
+        .or_else(|| slots().max_by(|a, b| far(a.1).total_cmp(&far(b.1))));
+    let (id, i) = found.expect("a body has points");
+    let x = system.body.position(i);
+    let position = std::array::from_fn(|a| if a < D { x[a] + system.u[a][i] } else { 0.0 });
+    let (id, path) = (id as u64 + 1, path(i));
+    if nowhere(i) || !path.is_finite() {
+        return RunError::NotFinite { step, id, position };
+    }
+    RunError::TooFast {
+        step,
+        id,
+        position,
+        path,
+        spacing: limit,
+        contact: is_pushed(system, i).then_some(system.info.contact_step),
+    }
+}
+
+/// Does a slot's repulsion hold more energy than its bonds?
+fn is_pushed<const D: usize>(system: &System<D>, slot: usize) -> bool {
+    let mut seen = PointEnergies::default();
+    system
+        .interaction
+        .observe(&system.body, &system.u, &mut seen);
+    if let Some(contact) = &system.contact {
+        let repulsion = &mut seen.repulsion;
+        contact
+            .central
+            .add_energy_density(&system.body, &system.u, repulsion);
+    }
+    seen.repulsion[slot] > seen.strain[slot]
 }

@@ -4,6 +4,7 @@ use super::System;
 use crate::body::Field;
 use crate::interaction::friction::Pressed;
 use crate::interaction::{Evaluation, Sweep};
+use crate::run::Watched;
 
 impl<const D: usize> System<D> {
     /// All forces at the current displacements, no bond breaking.
@@ -28,12 +29,13 @@ impl<const D: usize> System<D> {
     /// `steps` that end and begin here, for what breaking costs.
     fn forces_of_steps(&mut self, bonds: bool, at: Evaluation, steps: [f64; 2]) {
         self.refresh_images();
-        let mut watched = self.watch.room();
-        self.watch.virial = self.watch.wants_virial().then(|| match bonds {
+        let last = self.watch.energies.take();
+        let mut watched = { self.watch.take(Watched::Energies) }.then(|| last.unwrap_or_default());
+        self.watch.virial = self.watch.take(Watched::Virial).then(|| match bonds {
             true => self.virial_of_bonds(),
             false => [0.0; 6],
         });
-        self.watch.virials = self.watch.wants_virials().then(|| match bonds {
+        self.watch.virials = self.watch.take(Watched::Virials).then(|| match bonds {
             true => self.virials_of_bonds(),
             false => vec![[0.0; 6]; self.body.len],
         });

@@ -23,7 +23,6 @@ use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::condition::toughness::ToughnessField;
 use crate::interaction::{ContactForces, Fault, Interaction, PointEnergies};
 use crate::observe::Observed;
-use crate::space::Point;
 use crate::spec::Release;
 use crate::transfer::Transfer;
 
@@ -103,14 +102,6 @@ impl<const D: usize> System<D> {
             contact.central.look_again();
         }
         self.applied.all().for_each(|x| x.moved(f64::INFINITY));
-    }
-
-    /// Displacements from outside.
-    pub fn set_displacements(&mut self, u: &[Point]) {
-        self.watch.forget_virials();
-        self.body.scatter(&mut self.u, u);
-        self.refresh_images();
-        self.look_again();
     }
 
     /// Displacements of a trial, in order of ids.

@@ -4,7 +4,7 @@ use super::make::Maker;
 use crate::error::BuildError;
 use crate::run::system::System;
 use crate::space::lattice::LatticeKind;
-use crate::spec::{BodySpec, Quantity, Spec, Stepper, TransferMethod};
+use crate::spec::{BodySpec, Quantity, Spec};
 use crate::transfer::Touching;
 
 /// Where faces are not those of cubic cells.
@@ -25,6 +25,7 @@ fn is_cubic(body: &BodySpec) -> bool {
 impl<const D: usize> Maker<'_, D> {
     /// Takes the contact conductance of a spec whose transfers are made.
     pub(super) fn make_contact(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        let system = &mut *self.system;
         const PATH: &str = "contact.conductance";
         let Some(h) = spec.contact.as_ref().and_then(|c| c.conductance) else {
             return Ok(());
@@ -33,62 +34,22 @@ impl<const D: usize> Maker<'_, D> {
             let message = format!("the contact conductance is {h}, expected a positive number");
             return Err(BuildError::invalid(PATH, message).help("leave it out for none"));
         }
-        let each = &mut self.system.transfers.all;
+        let each = &mut system.transfers.all;
         let Some(heat) = each.iter_mut().find(|t| t.quantity == Quantity::Heat) else {
             let message = "contact conducts heat, and there is no heat";
             return Err(BuildError::conflict(PATH, message)
                 .help("add [heat] and the heat of every material, or leave conductance out"));
         };
-        match heat.method {
-            TransferMethod::Explicit { .. } | TransferMethod::Implicit { .. } => {}
-            TransferMethod::Steady { .. } => {
-                let message = "contact comes and goes, and a body that nothing else holds has no steady temperature without it";
-                return Err(BuildError::unsupported(PATH, message).help(
-                    "write method = \"implicit\" in [heat] with steps as long as you like, or leave conductance out",
-                ));
-            }
-        }
-        if !spec.interfaces.is_empty() {
-            let message = "bonds between bodies conduct, and contact would conduct beside them";
-            return Err(BuildError::unsupported(PATH, message)
-                .help("leave conductance out, or take the interfaces away"));
-        }
-        if let BodySpec::Several(pieces) = &spec.body
-            && let Some(loose) = pieces.iter().find(|p| !p.bonded)
-        {
-            let message = format!(
-                "the points of `{}` are loose, and contact does not know which way the faces of such points look",
-                loose.name
-            );
-            return Err(BuildError::unsupported(PATH, message)
-                .help("leave conductance out, or bonded = false"));
-        }
-        let moves = match spec.schedule.stepper {
-            Stepper::Verlet | Stepper::Still => true,
-            Stepper::Newmark(_) | Stepper::Statics(_) => false,
-        };
-        if !moves || spec.preload.is_some() {
-            let message = "contact conducts heat beside explicit motion or at rest only, not in implicit steps or equilibrium";
-            return Err(BuildError::unsupported(PATH, message).help(
-                "take [run] with integrator = \"verlet\" or \"still\" and no [statics], or leave conductance out",
-            ));
-        }
-        let mut faces = vec![0.0; self.system.body.points()];
-        for &s in &self.system.body.slots {
-            faces[self.system.transfers.place[s as usize] as usize] =
-                self.system.body.face_at(s as usize);
+        let mut faces = vec![0.0; system.body.points()];
+        for &s in &system.body.slots {
+            faces[system.transfers.place[s as usize] as usize] = system.body.face_at(s as usize);
         }
         heat.with_contact(Touching::new(h, faces));
         if !is_cubic(&spec.body) {
-            self.system.info.warnings.push(ROUGH);
+            system.info.warnings.push(ROUGH);
         }
-        self.system.conduct_contact();
-        let told = self
-            .system
-            .info
-            .transfers
-            .iter_mut()
-            .zip(&self.system.transfers.all);
+        system.conduct_contact();
+        let told = system.info.transfers.iter_mut().zip(&system.transfers.all);
         told.for_each(|(info, t)| info.stable_step = t.stable_step(0.0));
         Ok(())
     }
@@ -105,6 +66,10 @@ impl<const D: usize> System<D> {
         let (Some(touching), Some(contact)) = (touching, &mut self.contact) else {
             return;
         };
+        if self.regime.implicit || self.regime.equilibrium {
+            // trials went anywhere
+            contact.central.look_again();
+        }
         let body = &self.body;
         contact.find(body, &self.u, self.interaction.as_ref());
         let place = &self.transfers.place;

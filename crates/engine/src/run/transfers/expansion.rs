@@ -5,7 +5,7 @@ use super::state::Transfers;
 use crate::error::BuildError;
 use crate::run::constitutive::general;
 use crate::run::system::System;
-use crate::spec::{Method, Spec, Statics, Stepper, TransferSpec};
+use crate::spec::{Spec, TransferSpec};
 
 /// Where a material expands, `pmb` and `lps` are laws of `law/material`: their own kernels know no temperature. Were laws changed?
 pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
@@ -26,32 +26,21 @@ pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
 impl<const D: usize> Maker<'_, D> {
     /// Bodies that expand: can their bonds?
     pub(super) fn make_expansion(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        let system = &mut *self.system;
         for (n, t) in spec.transfers.iter().enumerate() {
             let strains: Vec<f64> = t.materials.iter().map(|m| m.expansion).collect();
             if strains.iter().any(|x| *x != 0.0) {
-                self.system.transfers.grown.push((n, t.reference, strains));
+                system.transfers.grown.push((n, t.reference, strains));
             }
         }
-        let Some((n, ..)) = self.system.transfers.grown.first() else {
+        let Some((n, ..)) = system.transfers.grown.first() else {
             return Ok(());
         };
         let name = spec.transfers[*n].quantity.name();
-        if let Stepper::Statics(Statics {
-            method: Method::Linear,
-            ..
-        }) = spec.schedule.stepper
-        {
-            return Err(BuildError::unsupported(
-                "statics.method",
-                "linear statics is about the reference, and a body that expands has left it",
-            )
-            .help("write method = \"newton\""));
-        }
-        self.system.transfers.strain = vec![0.0; self.system.body.len];
-        if !self
-            .system
+        system.transfers.strain = vec![0.0; system.body.len];
+        if !system
             .interaction
-            .expand(&self.system.body, &self.system.transfers.strain)
+            .expand(&system.body, &system.transfers.strain)
         {
             return Err(BuildError::unsupported(
                 name,
@@ -64,25 +53,14 @@ impl<const D: usize> Maker<'_, D> {
 
     /// What deformation heats.
     pub(super) fn make_heated(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        let system = &mut *self.system;
         let transfers = &spec.transfers;
         let Some(n) = transfers.iter().position(|t| t.deformation) else {
             return Ok(());
         };
-        if spec.schedule.stepper != Stepper::Verlet {
-            return Err(BuildError::unsupported(
-                transfers[n].quantity.name(),
-                "heat of deformation belongs to motion in time by explicit steps",
-            )
-            .help("take integrator = \"verlet\", or leave deformation out"));
-        }
-        let mut trace = vec![0.0; self.system.body.len];
-        let (body, u) = (&self.system.body, &self.system.u);
-        if D == 2
-            && self.system.expands()
-            && !self
-                .system
-                .interaction
-                .add_stress_across(body, u, &mut trace)
+        let mut trace = vec![0.0; system.body.len];
+        let (body, u) = (&system.body, &system.u);
+        if D == 2 && system.expands() && !system.interaction.add_stress_across(body, u, &mut trace)
         {
             return Err(BuildError::unsupported(
                 transfers[n].quantity.name(),
@@ -91,7 +69,7 @@ impl<const D: usize> Maker<'_, D> {
             .help("leave deformation out, or take three dimensions"));
         }
         let strains = transfers[n].materials.iter().map(|m| m.expansion);
-        self.system.transfers.heated = Some((n, strains.collect()));
+        system.transfers.heated = Some((n, strains.collect()));
         Ok(())
     }
 }
@@ -178,7 +156,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Heat of the deformation since `−V tr σ` was this, at the temperatures of now.
-    pub(super) fn heat_by_deformation(&mut self, before: Option<Vec<f64>>) {
+    pub(in crate::run) fn heat_by_deformation(&mut self, before: Option<Vec<f64>>) {
         let (Some(before), Some(now)) = (before, self.pressed()) else {
             return;
         };

@@ -57,6 +57,7 @@ impl<const D: usize> Maker<'_, D> {
 
     /// Points stand still: how long a step is, and that nothing is asked to move.
     pub(in crate::run) fn stand_for(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        let system = &mut *self.system;
         let refused = |path: &str, what: &str| {
             Err(
                 BuildError::conflict(path, format!("points stand still, and {what}")).help(
@@ -64,7 +65,7 @@ impl<const D: usize> Maker<'_, D> {
                 ),
             )
         };
-        if self.system.transfers.all.is_empty() {
+        if system.transfers.all.is_empty() {
             return Err(BuildError::missing(
                 "schedule.integrator",
                 "points stand still and nothing spreads: there is nothing to do",
@@ -83,13 +84,7 @@ impl<const D: usize> Maker<'_, D> {
             TimeStep::Auto => 1.0,
         };
         let mut dt = f64::INFINITY;
-        for (t, info) in self
-            .system
-            .transfers
-            .all
-            .iter()
-            .zip(&self.system.info.transfers)
-        {
+        for (t, info) in system.transfers.all.iter().zip(&system.info.transfers) {
             match t.method {
                 TransferMethod::Explicit { safety } => {
                     dt = dt.min(part * safety * info.stable_step);
@@ -104,11 +99,11 @@ impl<const D: usize> Maker<'_, D> {
             )
             .help(message![
                 "write time_step as a number: what is here spreads over the body in about ",
-                Dimension::TIME.of(self.system.info.transfers[0].spread),
+                Dimension::TIME.of(system.info.transfers[0].spread),
             ]));
         }
-        self.system.clock = Clock::new(dt);
-        self.system.info.time_step = dt;
+        system.clock = Clock::new(dt);
+        system.info.time_step = dt;
         Ok(())
     }
 
@@ -128,8 +123,11 @@ impl<const D: usize> Maker<'_, D> {
             .help("take a law of solids (pmb, lps, …)"));
         }
         let of = |slot: usize| &t.materials[body.material_of(slot)];
-        let weight =
-            |slot: usize, xi: &[f64], r: f64| self.system.constitutive.at(slot).0.weight(xi, r);
+        let weight = |slot: usize, xi: &[f64], r: f64| {
+            let model = self.system.constitutive.at(slot).0;
+            let own = body.horizon.get(slot);
+            model.weight_within(own.copied().unwrap_or(model.horizon), xi, r)
+        };
         let ends_at_points = |f: &&SurfaceFactors| f.ends_at_points();
         let exact = spec.surface.as_ref().filter(ends_at_points);
         let exact = exact.map(|f| (Factors::new(f, body), family(spec, body.spacing)));
@@ -212,11 +210,10 @@ impl<const D: usize> Maker<'_, D> {
 
     /// Places and reference positions of a set.
     fn places(&self, set: &str, path: &str) -> Result<(Vec<u32>, Vec<Point>), BuildError> {
-        let found = self.system.body.slots_of(set, &self.names.sets);
+        let system = &*self.system;
+        let found = system.body.slots_of(set, &self.names.sets);
         let (slots, points) = found.map_err(|e| e.at(path))?;
-        let place = slots
-            .iter()
-            .map(|s| self.system.transfers.place[*s as usize]);
+        let place = slots.iter().map(|s| system.transfers.place[*s as usize]);
         Ok((place.collect(), points))
     }
 
@@ -226,14 +223,12 @@ impl<const D: usize> Maker<'_, D> {
         c: &TransferCondition,
         quantity: Quantity,
     ) -> Result<(Condition, Option<LoadInfo>), BuildError> {
+        let system = &*self.system;
         let path = quantity.name();
         let (places, points) = self.places(&c.set, path)?;
-        let slots = self.system.body.slots_of(&c.set, &self.names.sets)?.0;
+        let slots = system.body.slots_of(&c.set, &self.names.sets)?.0;
         let area = |area: &Option<f64>| -> Result<Vec<f64>, BuildError> {
-            let areas = self
-                .names
-                .faces
-                .areas(&self.system.body, &c.set, &slots, *area);
+            let areas = self.names.faces.areas(&system.body, &c.set, &slots, *area);
             areas.map_err(|e| e.at(path))
         };
         let (what, sizes) = match (&c.kind, quantity) {
@@ -251,11 +246,7 @@ impl<const D: usize> Maker<'_, D> {
                 area(a)?,
             ),
         };
-        let volumes = || {
-            slots
-                .iter()
-                .map(|s| self.system.body.volume.at(*s as usize))
-        };
+        let volumes = || slots.iter().map(|s| system.body.volume.at(*s as usize));
         let power = match &c.kind {
             TransferKind::Flux { value, .. } => Some((value, sizes.clone())),
             TransferKind::Source(value) => Some((value, volumes().collect())),
@@ -276,9 +267,7 @@ impl<const D: usize> Maker<'_, D> {
             TransferKind::Value(e) => Condition::held(e, places, points),
             TransferKind::Flux { value, .. } => Condition::power(value, sizes, places, points),
             TransferKind::Source(e) => {
-                let volume = slots
-                    .iter()
-                    .map(|s| self.system.body.volume.at(*s as usize));
+                let volume = slots.iter().map(|s| system.body.volume.at(*s as usize));
                 Condition::power(e, volume.collect(), places, points)
             }
             TransferKind::Exchange { law, .. } => match law {
@@ -302,6 +291,7 @@ impl<const D: usize> Maker<'_, D> {
     }
 
     fn told(&self, spec: &Spec, t: &TransferSpec, made: &Transfer) -> TransferInfo {
+        let system = &*self.system;
         let each = t.materials.iter().zip(&spec.materials);
         let diffusivity: Vec<f64> = each
             .map(|(t_m, m)| match t.quantity {
@@ -310,16 +300,15 @@ impl<const D: usize> Maker<'_, D> {
             })
             .collect();
         let extent = |a: usize| {
-            let along = self
-                .system
+            let along = system
                 .body
                 .slots
                 .iter()
-                .map(|s| self.system.body.position(*s as usize)[a]);
+                .map(|s| system.body.position(*s as usize)[a]);
             let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
                 (l.min(x), h.max(x))
             });
-            high - low + self.system.body.spacing
+            high - low + system.body.spacing
         };
         let longest = (0..D).map(extent).fold(0.0, f64::max);
         let least = diffusivity.iter().copied().fold(f64::INFINITY, f64::min);

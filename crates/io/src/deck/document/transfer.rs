@@ -27,7 +27,7 @@ pub struct Heat {
     #[serde(default)]
     pub across_broken: bool,
     /// Deformation makes and takes heat, −T α tr σ̇ per volume (temperatures from absolute zero, capacities at constant strain); false when
-    /// left out. Of integrator = "verlet".
+    /// left out. Not where points stand still.
     #[serde(default)]
     pub deformation: bool,
 }

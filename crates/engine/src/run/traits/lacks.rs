@@ -1,0 +1,270 @@
+//! What the parts of a spec have not.
+
+use super::{Lack, Property};
+use crate::run::constitutive::Shelf;
+use crate::spec::{
+    BodySpec, CrackKind, Criterion, FractureSpec, IndenterMotion, LawSpec, MaterialSpec, Method,
+    Quantity, Release, Solver, Spec, Stepper, ToughnessFactor, TransferMethod, TransferSpec,
+};
+
+pub(super) fn of(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
+    let mut all = of_bodies(spec);
+    all.extend(of_transfers(spec));
+    all.extend(of_statics(spec));
+    all.extend(of_strength(spec));
+    for (n, m) in spec.materials.iter().enumerate() {
+        all.extend(of_material(n, m, shelf));
+    }
+    all
+}
+
+fn of_bodies(spec: &Spec) -> Vec<Lack> {
+    let mut all = vec![];
+    if !spec.pairs.is_empty() {
+        let says = "the constants of pairs of materials are one table for all bonds of a body";
+        all.push(Lack::new(
+            Property::ConstantsOfPoints,
+            says,
+            "leave pairs out",
+        ));
+    }
+    if !mirrored(spec) {
+        let says = "materials of unlike constants with each other pull at each other unlike: action is not reaction";
+        all.push(Lack::new(Property::Symmetric, says, ""));
+    }
+    if spec.surface.is_some() {
+        let says = "factors of bonds near the surface are those of one lattice";
+        all.push(Lack::new(Property::SideBySide, says, "leave surface out").at("surface"));
+    }
+    if spec.own_horizon.is_some() {
+        let says = "points have horizons of their own";
+        all.push(Lack::new(Property::OneHorizon, says, "leave own_horizon out").at("own_horizon"));
+    }
+    if !spec.interfaces.is_empty() {
+        let says = "an interface bonds points of two bodies";
+        let instead = "take the interfaces away";
+        all.push(Lack::new(Property::Unbonded, says, instead));
+    }
+    if spec.interfaces.iter().any(|i| i.fracture.is_some()) {
+        let says = "bonds of an interface let go while they bear";
+        let instead = "leave the fracture of the interface out, or write control = \"breaking\"";
+        all.push(Lack::new(Property::Fades, says, instead).at("statics.control"));
+    }
+    if let BodySpec::Several(pieces) = &spec.body {
+        if let Some(loose) = pieces.iter().find(|p| !p.bonded) {
+            let says = format!("the points of `{}` are loose", loose.name);
+            all.push(Lack::new(Property::Faces, says, "leave bonded = false out"));
+        }
+        let says = "bodies that touch answer to half a load by more or less than half";
+        all.push(Lack::new(Property::InProportion, says, ""));
+    }
+    if !spec.indenters.is_empty() {
+        let says = "what touches an indenter answers to half a load by more or less than half";
+        all.push(Lack::new(
+            Property::InProportion,
+            says,
+            "leave the indenters out",
+        ));
+    }
+    if let Some(n) = (spec.conditions.iter()).position(|c| c.kind.depends_on_time()) {
+        let says = "this condition depends on t";
+        let instead = "leave t out of it; increments count cycles, whose number is in history.csv";
+        let lack = Lack::new(Property::SameInCycles, says, instead);
+        all.push(lack.at(format!("conditions[{n}]")));
+    }
+    all
+}
+
+/// Has every pair of materials the same constants both ways round?
+fn mirrored(spec: &Spec) -> bool {
+    let n = spec.materials.len();
+    let fits = spec.pairs.len() == n * n;
+    let alike = |a: usize, b: usize| spec.pairs[a * n + b].law == spec.pairs[b * n + a].law;
+    !fits || (0..n).all(|a| (0..a).all(|b| alike(a, b)))
+}
+
+fn of_transfers(spec: &Spec) -> Vec<Lack> {
+    let mut all = vec![];
+    if !spec.transfers.is_empty() {
+        let says = "heat or a species spreads in time";
+        let instead = "leave out what spreads";
+        all.push(Lack::new(Property::TwoStages, says, instead));
+        all.push(Lack::new(Property::Proportional, says, instead));
+    }
+    let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
+    if spec.transfers.iter().any(expands) {
+        let says = "a body that expands has left its reference";
+        let instead = "leave expansion and swelling out";
+        all.push(Lack::new(Property::Memoryless, says, instead));
+    }
+    let steady = |t: &TransferSpec| {
+        t.quantity == Quantity::Heat && matches!(t.method, TransferMethod::Steady { .. })
+    };
+    if spec.transfers.iter().any(steady) {
+        let says = "a steady temperature is that which the held places and the bonds of now say";
+        let instead = "write method = \"implicit\" in [heat] with steps as long as you like";
+        all.push(Lack::new(Property::Transient, says, instead));
+    }
+    all
+}
+
+/// Of statics, and of what is in equilibrium before it moves.
+fn of_statics(spec: &Spec) -> Vec<Lack> {
+    let mut all = vec![];
+    if let Some(preload) = &spec.preload {
+        let free = |motion: &IndenterMotion| matches!(motion, IndenterMotion::Free(_));
+        if let Some(n) = (preload.indenters.iter()).position(|i| free(&i.motion)) {
+            let says = "an indenter with a mass goes where forces push it";
+            let instead = "leave mass and density out, or write stage = \"motion\"";
+            let lack = Lack::new(Property::Rest, says, instead);
+            all.push(lack.at(format!("preload.indenters[{n}]")));
+        }
+    }
+    let Some(statics) = spec.schedule.statics() else {
+        return all;
+    };
+    let says = "statics looks for one state that is at rest";
+    all.push(Lack::new(
+        Property::Motion,
+        says,
+        "take [run] with integrator = \"verlet\" or \"newmark\"",
+    ));
+    let newton = "write method = \"newton\"";
+    match statics.method {
+        Method::Linear => {
+            let says = "linear statics is about the reference";
+            all.push(Lack::new(Property::Newton, says, newton));
+            all.push(Lack::new(Property::BeyondReference, says, newton));
+        }
+        Method::Newton | Method::Relaxation | Method::Fire => {
+            let says = "this method goes beyond the reference";
+            let instead = "write method = \"linear\", or leave it out";
+            all.push(Lack::new(Property::AboutReference, says, instead));
+        }
+    }
+    if statics.method.minimizes() {
+        let says = "this method finds states under loads that are given";
+        all.push(Lack::new(Property::Newton, says, newton));
+    }
+    if statics.solver == Solver::ConjugateGradients {
+        let says = "conjugate gradients solve equations of one sign";
+        let lack = Lack::new(Property::AnySign, says, "leave solver out");
+        all.push(lack.at("statics.solver"));
+    }
+    if statics.cycles.is_some() {
+        let says = "cycles say the greatest load";
+        let lack = Lack::new(Property::KnownLoad, says, "leave cycles out");
+        all.push(lack.at("statics.cycles"));
+    }
+    all
+}
+
+/// Of what bonds bear, in all materials alike.
+fn of_strength(spec: &Spec) -> Vec<Lack> {
+    let mut all = vec![];
+    let changes = |factor: &ToughnessFactor| match factor {
+        ToughnessFactor::Stretch(e) | ToughnessFactor::Energy(e) => e.depends_on_time(),
+        ToughnessFactor::Temperature(_) => true,
+        ToughnessFactor::NoFailure => false,
+    };
+    if let Some(n) = (spec.toughness.iter()).position(|t| changes(&t.factor)) {
+        let says = "this toughness changes with t";
+        let lack = Lack::new(Property::ConstantStrength, says, "leave t out of it");
+        all.push(lack.at(format!("toughness[{n}]")));
+    }
+    let breaks = spec.materials.iter().any(|m| m.fracture.is_some())
+        || spec.interfaces.iter().any(|i| i.fracture.is_some());
+    if breaks && spec.release == Release::AfterForce {
+        let says = "bonds that pull once more after they broke";
+        let lack = Lack::new(Property::EndsAtOnce, says, "leave release out");
+        all.push(lack.at("materials[0].fracture"));
+    }
+    if spec.precracks.iter().any(|p| p.kind == CrackKind::Absent) {
+        let says =
+            "a bond that is absent from the start cannot be told from one that was never there";
+        let instead = "write kind = \"broken\" in [[precrack]]";
+        all.push(Lack::new(Property::Heals, says, instead));
+    }
+    if spec.schedule.stepper == Stepper::Still {
+        let says = "points stand still";
+        let instead = "take [run] with integrator = \"verlet\" or \"newmark\"";
+        for property in [Property::Motion, Property::Deformation] {
+            all.push(Lack::new(property, says, instead));
+        }
+    }
+    all
+}
+
+fn of_material(n: usize, m: &MaterialSpec, shelf: &Shelf) -> Vec<Lack> {
+    let mut all = vec![];
+    let name = match &m.law {
+        LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
+            let says = "atoms, and given micromoduli, are a body of their own";
+            let lack = Lack::new(Property::SideBySide, says, "take pmb, lps or springs");
+            all.push(lack.at(format!("materials[{n}].law")));
+            ""
+        }
+        LawSpec::Named(law) => law.name.as_str(),
+        LawSpec::Pmb(_)
+        | LawSpec::Lps(_)
+        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::EamLike { .. }
+        | LawSpec::Springs(_) => "",
+    };
+    if shelf.ends(name) {
+        let says = format!("the law {name} has its critical stretch among its constants");
+        all.push(Lack::new(Property::StrengthOfPoints, says, ""));
+    }
+    if shelf.kinds(name) {
+        let says = format!(
+            "bonds of the law {name} break at stretches of two kinds, and a factor is of one"
+        );
+        all.push(Lack::new(Property::StrengthTimesFactor, says, ""));
+    }
+    if let Some(fracture) = m.fracture {
+        let path = format!("materials[{n}].fracture");
+        all.extend(of_fracture(fracture, &path));
+        if !shelf.fades(name) {
+            let says = "bonds of this law let go while they bear";
+            let instead = "take a law whose bonds soften to nothing, or control = \"breaking\", which follows linear bodies bond after bond";
+            all.push(Lack::new(Property::Fades, says, instead).at(path));
+        }
+    }
+    all
+}
+
+fn of_fracture(fracture: FractureSpec, path: &str) -> Vec<Lack> {
+    let mut all = vec![];
+    if fracture.alpha != 0.0 {
+        let says =
+            "strengthening under compression (alpha) makes critical stretches follow the load";
+        for property in [Property::ConstantStrength, Property::StrengthOfPoints] {
+            all.push(Lack::new(property, says, "leave alpha out").at(path));
+        }
+    }
+    if fracture.remembers() {
+        let says = "these bonds break by more than the stretch that they have now";
+        let instead = "give critical_stretch or energy without criterion, rate and fatigue";
+        let lack = Lack::new(Property::PresentStretch, says, instead);
+        all.push(lack.at(path));
+    }
+    if fracture.rate.is_some() {
+        let says = "these bonds break by how fast they are stretched";
+        let lack = Lack::new(Property::Timeless, says, "leave rate out");
+        all.push(lack.at(format!("{path}.rate")));
+    }
+    match fracture.criterion {
+        Criterion::VonMises(_) | Criterion::PlasticStrain(_) => {
+            let says = "a limit of stress or of plastic strain has no factors";
+            all.push(Lack::new(Property::StrengthTimesFactor, says, ""));
+        }
+        Criterion::BondEnergy(_) => {
+            let says = "these bonds bear a work, their part of a fracture energy";
+            let instead = "give critical_stretch, or energy without criterion";
+            let lack = Lack::new(Property::StretchAtEveryHorizon, says, instead);
+            all.push(lack.at(path));
+        }
+        Criterion::Stretch(_) | Criterion::Energy(_) => {}
+    }
+    all
+}

@@ -1,0 +1,166 @@
+//! Which parts of a spec do not go together. Each says what it has not ([`Lack`]) or what it asks for ([`Need`]), whoever else is there: that two of them
+//! meet in a property is found here, and written down nowhere.
+
+mod lacks;
+mod needs;
+mod system;
+
+pub(super) use system::{of_control, of_implicit_steps, of_statics};
+
+use super::constitutive::Shelf;
+use crate::error::BuildError;
+use crate::message;
+use crate::quantity::Message;
+use crate::spec::Spec;
+
+/// What parts of a spec ask for and others have not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Property {
+    /// Forces have slopes.
+    Tangent,
+    /// Action is reaction: forces are the slope of an energy.
+    Symmetric,
+    /// Goes without motion.
+    Rest,
+    /// May come to an equilibrium at all.
+    Balance,
+    /// Answers alike however fast it is deformed.
+    Timeless,
+    /// What happens takes longer than a step.
+    Slow,
+    /// Remembers nothing.
+    Memoryless,
+    /// Loads are what they are wherever points go.
+    DeadLoads,
+    /// Slopes do not jump: Newton's method converges without inertia.
+    Continuous,
+    /// Stays about the reference.
+    AboutReference,
+    /// Sees states beyond the reference.
+    BeyondReference,
+    /// Is Newton's method.
+    Newton,
+    /// Solves equations of any sign.
+    AnySign,
+    /// Nothing pulls in the reference.
+    ForceFree,
+    /// Proportional to a factor of the load.
+    Proportional,
+    /// The greatest load is known before.
+    KnownLoad,
+    /// Forces do not jump where bonds end.
+    Fades,
+    /// Bonds bear the same whatever acts on the body.
+    ConstantStrength,
+    /// Bonds end by the stretch that they have now.
+    PresentStretch,
+    /// What bonds bear is known whatever the horizon.
+    StretchAtEveryHorizon,
+    /// What bonds bear may be another one at every point.
+    StrengthOfPoints,
+    /// What bonds bear may be multiplied.
+    StrengthTimesFactor,
+    /// Ends within the step in which it is found.
+    EndsAtOnce,
+    /// A t that begins again where the next stage does.
+    TwoStages,
+    /// All points have the horizon of the body.
+    OneHorizon,
+    /// Bonds are those of their points, not of a table of pairs.
+    ConstantsOfPoints,
+    /// May stand beside other bodies.
+    SideBySide,
+    /// No bonds between bodies.
+    Unbonded,
+    /// Its bonds may be whole again.
+    Heals,
+    /// Points go away and come back.
+    Motion,
+    /// Points go anywhere.
+    Deformation,
+    /// Its faces are known.
+    Faces,
+    /// Values at the end of a step follow from those at its beginning.
+    Transient,
+    /// The same in every cycle of a load.
+    SameInCycles,
+    /// Answers to a part of a load by that part.
+    InProportion,
+}
+
+/// A part of a spec that has not some property.
+pub(super) struct Lack {
+    pub property: Property,
+    /// `None`: what asks for it is where the mistake is.
+    pub path: Option<String>,
+    /// Who it is and how it is: the first half of a sentence.
+    pub says: Message,
+    /// What to write in its place.
+    pub instead: &'static str,
+}
+
+/// A part of a spec that asks for one.
+pub(super) struct Need {
+    pub property: Property,
+    pub path: String,
+    /// Why: the second half of the sentence.
+    pub why: &'static str,
+    pub instead: &'static str,
+}
+
+impl Lack {
+    fn new(property: Property, says: impl Into<Message>, instead: &'static str) -> Lack {
+        Lack {
+            property,
+            path: None,
+            says: says.into(),
+            instead,
+        }
+    }
+
+    /// The mistake is there, whoever asks.
+    fn at(self, path: impl Into<String>) -> Lack {
+        Lack {
+            path: Some(path.into()),
+            ..self
+        }
+    }
+}
+
+impl Need {
+    fn new(
+        property: Property,
+        path: impl Into<String>,
+        why: &'static str,
+        instead: &'static str,
+    ) -> Need {
+        Need {
+            property,
+            path: path.into(),
+            why,
+            instead,
+        }
+    }
+}
+
+/// Does everybody have what others ask for?
+///
+/// # Errors
+/// The first need that somebody does not meet: both, and what to write in place of either.
+pub(super) fn met(needs: Vec<Need>, lacks: Vec<Lack>) -> Result<(), BuildError> {
+    for need in needs {
+        if let Some(lack) = lacks.iter().find(|l| l.property == need.property) {
+            let path = lack.path.clone().unwrap_or(need.path);
+            let both = [need.instead, lack.instead];
+            let instead: Vec<&str> = both.into_iter().filter(|i| !i.is_empty()).collect();
+            let message = message![lack.says.clone(), need.why];
+            return Err(BuildError::unsupported(path, message).help(instead.join(", or ")));
+        }
+    }
+    Ok(())
+}
+
+/// Do the parts of a spec go together?
+pub(super) fn agree(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
+    met(needs::of(spec), lacks::of(spec, shelf))
+}

@@ -1,0 +1,263 @@
+//! What the parts of a spec ask for.
+
+use super::{Need, Property};
+use crate::spec::{BodySpec, Control, Method, Spec, Statics, Stepper, ToughnessFactor};
+
+pub(super) fn of(spec: &Spec) -> Vec<Need> {
+    let mut all = of_bodies(spec);
+    all.extend(of_contact(spec));
+    all.extend(of_strength(spec));
+    all.extend(of_stages(spec));
+    if let Some(statics) = spec.schedule.statics() {
+        all.extend(of_statics(statics));
+    }
+    all
+}
+
+fn of_bodies(spec: &Spec) -> Vec<Need> {
+    let mut all = vec![];
+    if matches!(spec.body, BodySpec::Several(_)) {
+        let why = ", and several bodies have bonds of their own each";
+        all.push(Need::new(Property::SideBySide, "body", why, ""));
+        all.push(Need::new(Property::ConstantsOfPoints, "pairs", why, ""));
+    }
+    if let Some(heat) = spec.transfers.iter().find(|t| t.deformation) {
+        all.push(Need::new(
+            Property::Deformation,
+            heat.quantity.name(),
+            ", and heat of deformation is made where they move",
+            "leave deformation out",
+        ));
+    }
+    if spec.surface.is_some() || !spec.bonds.is_empty() || !spec.pairs.is_empty() {
+        let why = ", and factors of bonds are those of one";
+        all.push(Need::new(Property::OneHorizon, "own_horizon", why, ""));
+    }
+    if spec.own_horizon.is_some() {
+        all.push(Need::new(
+            Property::StretchAtEveryHorizon,
+            "own_horizon",
+            ", which follows from one horizon, and every point has another",
+            "leave own_horizon out",
+        ));
+    }
+    all
+}
+
+fn of_contact(spec: &Spec) -> Vec<Need> {
+    let mut all = vec![];
+    let Some(contact) = &spec.contact else {
+        return all;
+    };
+    if contact.cohesion.is_some() {
+        all.push(Need::new(
+            Property::Unbonded,
+            "contact.cohesion",
+            ", which would attract each other as well",
+            "leave out cohesion",
+        ));
+    }
+    if contact.conductance.is_some() {
+        let need = |property, why| {
+            let instead = "leave conductance out";
+            Need::new(property, "contact.conductance", why, instead)
+        };
+        all.extend([
+            need(
+                Property::Transient,
+                ", and contact comes and goes: a body that nothing else holds has none without it",
+            ),
+            need(
+                Property::Unbonded,
+                ": its bonds conduct, and contact would conduct beside them",
+            ),
+            need(
+                Property::Faces,
+                ", and contact does not know which way the faces of such points look",
+            ),
+        ]);
+    }
+    all
+}
+
+/// Of what bonds bear, and of bonds that heal.
+fn of_strength(spec: &Spec) -> Vec<Need> {
+    let mut all = vec![];
+    if let Some(n) = (spec.materials.iter()).position(|m| m.fracture.is_some_and(|f| f.remembers()))
+    {
+        all.push(Need::new(
+            Property::ConstantsOfPoints,
+            format!("materials[{n}].fracture"),
+            ", with critical stretches and no other measure",
+            "give critical_stretch or energy alone",
+        ));
+    }
+    if !spec.toughness.is_empty() {
+        let why = ", which a toughness of places gives to points";
+        let need = |property| {
+            let instead = "leave toughness out";
+            Need::new(property, "toughness[0]", why, instead)
+        };
+        all.push(need(Property::ConstantsOfPoints));
+        all.push(need(Property::StrengthOfPoints));
+    }
+    let factor = |factor: &ToughnessFactor| !matches!(factor, ToughnessFactor::NoFailure);
+    if let Some(n) = (spec.toughness.iter()).position(|t| factor(&t.factor)) {
+        all.push(Need::new(
+            Property::StrengthTimesFactor,
+            format!("toughness[{n}]"),
+            ": only no_failure goes with it",
+            "write no_failure = true, or leave toughness out",
+        ));
+    }
+    if spec.healing.is_some() {
+        let need = |property, why| Need::new(property, "healing", why, "leave healing out");
+        all.push(need(
+            Property::Motion,
+            ", and bonds heal in motion, which brings their points back",
+        ));
+        all.push(need(Property::Heals, ", and none such heals"));
+    }
+    all
+}
+
+/// Of statics before motion, and of implicit steps.
+fn of_stages(spec: &Spec) -> Vec<Need> {
+    let mut all = vec![];
+    if spec.preload.is_some() {
+        all.push(Need::new(
+            Property::TwoStages,
+            "preload.statics",
+            ", and t begins again where statics ends and motion begins",
+            "leave [statics] out and load the body in time",
+        ));
+        all.push(Need::new(
+            Property::Rest,
+            "preload.statics",
+            ", and in equilibrium nothing moves",
+            "",
+        ));
+    }
+    let explicit = spec.schedule.stepper == Stepper::Verlet && spec.preload.is_none();
+    if !explicit {
+        all.push(Need::new(
+            Property::Symmetric,
+            "pairs",
+            ", and without an energy explicit steps alone know where that goes",
+            "take integrator = \"verlet\" without [statics]",
+        ));
+    }
+    match spec.schedule.stepper {
+        Stepper::Newmark(_) => all.push(Need::new(
+            Property::EndsAtOnce,
+            "schedule.integrator",
+            " have no place in an implicit step",
+            "take integrator = \"verlet\"",
+        )),
+        Stepper::Verlet | Stepper::Statics(_) | Stepper::Still => {}
+    }
+    all
+}
+
+fn of_statics(statics: Statics) -> Vec<Need> {
+    let mut all = vec![Need::new(
+        Property::Timeless,
+        "statics",
+        ", and in equilibrium nothing moves",
+        "write [run]",
+    )];
+    if statics.method == Method::Linear {
+        all.push(Need::new(
+            Property::Memoryless,
+            "statics.method",
+            ", and a linear solution knows the reference alone",
+            "write method = \"newton\"",
+        ));
+    }
+    if statics.cycles.is_some() {
+        all.extend([
+            Need::new(
+                Property::BeyondReference,
+                "statics.method",
+                ", and cycles of load wear its bonds out: another body",
+                "",
+            ),
+            Need::new(
+                Property::InProportion,
+                "statics.cycles",
+                ", and a cycle is known by its greatest load and the ratio of its least to that",
+                "leave cycles out",
+            ),
+            Need::new(
+                Property::SameInCycles,
+                "statics.cycles",
+                ": in cycles of load conditions are the greatest of each cycle, and stay as they are",
+                "",
+            ),
+        ]);
+    }
+    all.extend(of_control(statics.control));
+    all
+}
+
+fn of_control(control: Control) -> Vec<Need> {
+    let leave = "leave control out";
+    let sought = [
+        Need::new(
+            Property::Proportional,
+            "statics.control",
+            ", and t is the factor of a load that is sought",
+            leave,
+        ),
+        Need::new(
+            Property::PresentStretch,
+            "statics.control",
+            ", by which alone the load is known that they bear",
+            leave,
+        ),
+        Need::new(
+            Property::KnownLoad,
+            "statics.control",
+            ", which is sought here",
+            leave,
+        ),
+    ];
+    let own = match control {
+        Control::Load => return vec![],
+        Control::Breaking => vec![
+            Need::new(
+                Property::AboutReference,
+                "statics.control",
+                ", and bonds are broken in turn where the body is linear about the reference",
+                "",
+            ),
+            Need::new(
+                Property::ConstantStrength,
+                "statics.control",
+                ", and bonds that break in turn bear what they bear before any load",
+                "",
+            ),
+        ],
+        Control::Opening(_) | Control::ArcLength(_) => vec![
+            Need::new(
+                Property::Newton,
+                "statics.method",
+                ", and the path of a body is followed by Newton's method",
+                "",
+            ),
+            Need::new(
+                Property::AnySign,
+                "statics.solver",
+                ", and where the load falls tangents have any",
+                "",
+            ),
+            Need::new(
+                Property::Fades,
+                "statics.control",
+                ": the load jumps there, and has no path",
+                "",
+            ),
+        ],
+    };
+    own.into_iter().chain(sought).collect()
+}
