@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Where a run ends before its last step, as if a signal had come: `peridyne resume` goes on from there.
 #[derive(clap::Args, Debug, Clone, Default)]
 pub struct Early {
-    /// End after this step.
+    /// End after this step; a LAMMPS script at the first place from then on from which it can go on.
     #[arg(long, value_name = "STEP")]
     pub stop_after: Option<u64>,
     /// End when so much time has gone by, such as "47 h": what a queue gives a job, less what writing takes.
@@ -31,19 +31,6 @@ impl Early {
         let time = self.time.as_ref().filter(late);
         let step = step.map(|n| format!("--stop-after {n}"));
         step.or_else(|| time.map(|(_, text)| format!("--for {text}")))
-    }
-
-    /// Of a script, which has no states to go on from.
-    ///
-    /// # Errors
-    /// It was asked to end early.
-    pub fn refused(&self) -> Result<(), Failure> {
-        match self.stop_after.is_some() || self.time.is_some() {
-            true => Err(Failure::input(
-                "--stop-after and --for end runs of decks, from whose states `peridyne resume` goes on; a script of LAMMPS says itself where it ends",
-            )),
-            false => Ok(()),
-        }
     }
 }
 

@@ -2,11 +2,13 @@
 
 use crate::Input;
 use crate::deck;
-use crate::early::Early;
+use crate::early::{Early, same_files};
 use crate::failure::{Failure, note};
 use crate::initial::InitialState;
 use crate::law;
 use crate::run::{Begin, RunArguments, run_deck, with_threads};
+use crate::script;
+use peridyne_io::read::source;
 use peridyne_io::write::checkpoint::{Asked, Checkpoint};
 use std::path::PathBuf;
 use toml::{Table, Value};
@@ -58,6 +60,9 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
         threads: arguments.threads,
         early: arguments.early.clone(),
     };
+    if anew.is_none() && !deck::is_deck(&run.input) {
+        return resume_script(run, asked, from);
+    }
     if anew.is_none()
         && let Some(law) = law::read(&run.input)?
     {
@@ -90,6 +95,36 @@ fn same_deck(asked: &Asked, text: &str) -> Result<(), Failure> {
             MAY_CHANGE.join(", ")
         )));
     }
+    going_on(asked);
+    Ok(())
+}
+
+/// A script of LAMMPS.
+fn resume_script(mut run: RunArguments, asked: Asked, mut from: Checkpoint) -> Result<(), Failure> {
+    // of a script these are its variables
+    (run.input.set, run.input.var) = (vec![], asked.set.clone());
+    if deck::text(&run.input)? != asked.text {
+        return Err(Failure::input(format!(
+            "{}: this is not the script that the run began with; put it back, or begin anew with peridyne run",
+            asked.deck.display()
+        )));
+    }
+    for (path, _) in &asked.files {
+        // one that cannot be read is not the same
+        let _ = source::open(path);
+    }
+    same_files(&asked.files, &source::sums())?;
+    let mut place = run.place_of_script();
+    from.load(|archive| archive.one("shared", &mut place.shared))
+        .map_err(|e| Failure::input(e.to_string()))?;
+    going_on(&asked);
+    with_threads(run.threads, |threads| {
+        script::run(&place, threads, Some((asked, from)))
+    })
+}
+
+/// Says where a run goes on.
+fn going_on(asked: &Asked) {
     let of = match asked.steps {
         0 => String::new(),
         steps => format!(" of {steps}"),
@@ -98,7 +133,6 @@ fn same_deck(asked: &Asked, text: &str) -> Result<(), Failure> {
         "going on from step {}{of}, as `{}` began",
         asked.step, asked.command
     ));
-    Ok(())
 }
 
 /// Keys that differ between two decks, with both values.

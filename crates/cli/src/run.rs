@@ -60,14 +60,19 @@ impl RunArguments {
             early: &self.early,
         }
     }
+
+    /// Of a script of LAMMPS.
+    pub fn place_of_script(&self) -> script::Place<'_> {
+        let (out, outside) = (self.out.as_deref(), self.allow_outside);
+        script::Place::new(&self.input, out, outside, &self.early)
+    }
 }
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if !deck::is_deck(&arguments.input) {
-        arguments.early.refused()?;
+        let place = arguments.place_of_script();
         return with_threads(arguments.threads, |threads| {
-            let out = arguments.out.as_deref();
-            script::run(&arguments.input, out, arguments.allow_outside, threads)
+            script::run(&place, threads, None)
         });
     }
     if let Some(deck) = law::read(&arguments.input)? {

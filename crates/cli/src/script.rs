@@ -2,14 +2,17 @@
 
 use crate::Input;
 use crate::deck;
+use crate::early::{Early, asked};
 use crate::failure::{Failure, note, say};
 use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
+use peridyne::state::Archive;
 use peridyne_io::deck::{Dim, UnitSystem, counted};
 use peridyne_io::drive::default_dir;
 use peridyne_io::write::atomic::{create_directory, write_file};
+use peridyne_io::write::checkpoint::{Asked, Checkpoint, CheckpointSchedule, Checkpoints};
 use peridyne_io::write::folder::{FILES, Folder};
 use peridyne_io::write::history::{Column, History};
 use peridyne_io::write::picture::PictureOptions;
@@ -19,9 +22,9 @@ use peridyne_io::write::run_json::{
     self, EnergyReport, FieldNote, RunReport, Setting, Spent, Status, UnitNames,
 };
 use peridyne_io::write::{Series, SeriesOptions, WriteError};
-use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup};
+use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup, Wish};
 use peridyne_lammps::model::{ModelEngine, ModelHost, Prepared};
-use peridyne_lammps::{Options, Outcome, Record, run_text};
+use peridyne_lammps::{Options, Outcome, Record, go_on_text, run_text};
 use std::cell::RefCell;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -98,17 +101,49 @@ fn options(input: &Input, output: &Path) -> Result<Options, Failure> {
     })
 }
 
-/// Run a script. Files that it names go to `out`, or to the current folder as with LAMMPS; the report, the picture
-/// and the last state go to `out`, or to `out/<name of the script>`.
-pub fn run(
-    input: &Input,
-    out: Option<&Path>,
+/// What a script is run with, and where.
+pub struct Place<'a> {
+    input: &'a Input,
+    /// Of the results.
+    dir: PathBuf,
+    /// Do files that the script names go there, too?
+    pub shared: bool,
     allow_outside: bool,
+    early: &'a Early,
+}
+
+impl<'a> Place<'a> {
+    pub fn new(
+        input: &'a Input,
+        out: Option<&Path>,
+        allow_outside: bool,
+        early: &'a Early,
+    ) -> Place<'a> {
+        Place {
+            input,
+            dir: out.map_or_else(|| folder(&input.file), Path::to_path_buf),
+            shared: out.is_some(),
+            allow_outside,
+            early,
+        }
+    }
+}
+
+/// Run a script, or let it go on from a state. Files that it names go to the folder of its results where that was given, or to the
+/// current folder as with LAMMPS; the report, the picture and the last state go to `out/<name of the script>` then.
+pub fn run(
+    place: &Place<'_>,
     threads: usize,
+    from: Option<(Asked, Checkpoint)>,
 ) -> Result<(), Failure> {
+    let (input, results) = (place.input, place.dir.clone());
+    let (allow_outside, out) = (place.allow_outside, place.shared.then_some(&*results));
     let text = deck::text(input)?;
-    let name = input.file.display().to_string();
-    let results = out.map_or_else(|| folder(&input.file), Path::to_path_buf);
+    let name = name(input, from.as_ref().map(|(asked, _)| asked));
+    let command = match &from {
+        Some((asked, _)) => asked.command.clone(),
+        None => deck::command(input),
+    };
     // in the current folder there are files of others
     let made = (out.is_none() && !allow_outside).then(|| Made::of(&results));
     let options = Options {
@@ -123,14 +158,32 @@ pub fn run(
         },
         dir: results.clone(),
         held: None,
+        goes_on: from.is_some(),
+        states: Rc::default(),
     };
     if out.is_some() {
         host.claim();
     }
-    let mut console = Terminal::default();
-    let result = match &host.held {
-        Some(Err(e)) => return Err(Failure::Run(e.to_string())),
-        _ => run_text(&name, &text, &options, &mut host, &mut console),
+    let mut console = Terminal {
+        bar: None,
+        place,
+        begun: Instant::now(),
+        records: [&command, &name, &text].map(String::clone),
+        states: host.states.clone(),
+        kept: false,
+        ended_by: None,
+    };
+    let result = match (&host.held, from) {
+        (Some(Err(e)), _) => return Err(Failure::Run(e.to_string())),
+        (_, None) => run_text(&name, &text, &options, &mut host, &mut console),
+        (_, Some((_, mut from))) => {
+            for why in &from.passed_over {
+                console.note(&format!(
+                    "{why}; the script goes on from the state before it"
+                ));
+            }
+            go_on_text(&name, &text, &options, &mut host, &mut console, &mut from)
+        }
     };
     console.end();
     if let Some(Err(e)) = host.held {
@@ -149,15 +202,37 @@ pub fn run(
             Failure::Input((*e).into())
         }
     })?;
-    let signal = signals::received().filter(|_| outcome.ended);
+    let (ended, signal) = (outcome.ended, signals::received());
+    let signal = signal.filter(|_| ended && console.ended_by.is_none());
+    let ended_by = console.ended_by.take().or(signal.map(|s| s.to_string()));
     let told = Told {
         name: &name,
         text: &text,
-        command: deck::command(input),
+        command,
         threads,
+        ended_by: ended_by.filter(|_| ended),
     };
     told.finish(outcome, &results)?;
+    if let Some(states) = host.states.take() {
+        let closed = if ended { states.ended() } else { states.done() };
+        closed.map_err(|e| Failure::Run(e.to_string()))?;
+    }
+    if ended && console.kept {
+        say(&format!("go on:    peridyne resume {}", results.display()));
+    }
     signal.map_or(Ok(()), |s| Err(Failure::Ended(s)))
+}
+
+/// What the script is called in its records: as it was when it began, where that is still it.
+fn name(input: &Input, asked: Option<&Asked>) -> String {
+    let began = asked.map(|asked| &asked.name);
+    let same = |name: &&String| {
+        Path::new(name)
+            .canonicalize()
+            .is_ok_and(|p| p == input.file)
+    };
+    let now = || input.file.display().to_string();
+    began.filter(same).cloned().unwrap_or_else(now)
 }
 
 /// Files that a script has made outside the folder of its results, which it may replace when it runs again: whole paths, in
@@ -203,12 +278,21 @@ struct Holder {
     host: ModelHost,
     dir: PathBuf,
     held: Option<Result<Folder, WriteError>>,
+    goes_on: bool,
+    /// States, once the folder is held.
+    states: Rc<RefCell<Option<Checkpoints>>>,
 }
 
 impl Holder {
     fn claim(&mut self) {
         if self.held.is_none() {
-            self.held = Some(Folder::claim(&self.dir));
+            let held = Folder::claim(&self.dir).and_then(|held| {
+                let schedule = Some(CheckpointSchedule::default());
+                let states = Checkpoints::new(&self.dir, schedule, self.goes_on)?;
+                self.states.replace(Some(states));
+                Ok(held)
+            });
+            self.held = Some(held);
         }
     }
 }
@@ -230,6 +314,8 @@ struct Told<'a> {
     text: &'a str,
     command: String,
     threads: usize,
+    /// Who ended it early.
+    ended_by: Option<String>,
 }
 
 impl Told<'_> {
@@ -258,9 +344,9 @@ impl Told<'_> {
         };
         let seconds = outcome.seconds_stepping;
         let mut report = self.report(sim, units.system(), outcome.steps, seconds);
-        if let Some(signal) = signals::received().filter(|_| outcome.ended) {
+        if self.ended_by.is_some() {
             report.status = Status::Ended;
-            report.ended_by = Some(signal.to_string());
+            report.ended_by.clone_from(&self.ended_by);
         }
         let snapshot = sim.snapshot(&USUAL, false);
         let notes = snapshot.columns.iter().map(|c| FieldNote {
@@ -294,7 +380,7 @@ impl Told<'_> {
         report.setting = Some(setting);
         report.peak_memory_bytes = run_json::peak_memory_bytes();
         spent.all = seconds + begun.elapsed().as_secs_f64();
-        report.seconds = spent;
+        report.seconds = spent.clone();
         report.write(&dir.join("run.json")).map_err(failed)?;
         report::of_run(dir, report.ended_by.is_some())
             .map_err(|e| Failure::Run(format!("report.html: {e}")))?;
@@ -446,12 +532,20 @@ fn folder(script: &Path) -> PathBuf {
 }
 
 /// LAMMPS's lines on standard output, a bar or notes on standard error.
-#[derive(Default)]
-struct Terminal {
+struct Terminal<'a> {
     bar: Option<ProgressBar>,
+    place: &'a Place<'a>,
+    begun: Instant,
+    /// Command, name and text of the script.
+    records: [String; 3],
+    states: Rc<RefCell<Option<Checkpoints>>>,
+    /// Is there a state of this part?
+    kept: bool,
+    /// What ended it that is no signal.
+    ended_by: Option<String>,
 }
 
-impl Terminal {
+impl Terminal<'_> {
     fn end(&mut self) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
@@ -459,7 +553,7 @@ impl Terminal {
     }
 }
 
-impl Console for Terminal {
+impl Console for Terminal<'_> {
     fn print(&mut self, line: &str) {
         match &self.bar {
             Some(bar) => bar.suspend(|| say(line)),
@@ -477,6 +571,40 @@ impl Console for Terminal {
 
     fn ended(&mut self) -> bool {
         signals::received().is_some()
+    }
+
+    fn wish(&mut self, steps: u64) -> Wish {
+        self.ended_by = self.place.early.reached(steps, self.begun);
+        let due = { self.states.borrow() }
+            .as_ref()
+            .is_some_and(Checkpoints::is_due);
+        match (&self.ended_by, due || signals::asked_for_checkpoint()) {
+            (Some(_), _) => Wish::End,
+            (None, true) => Wish::State,
+            (None, false) => Wish::Nothing,
+        }
+    }
+
+    fn keep(&mut self, steps: u64, pass: &mut dyn FnMut(&mut Archive<'_>)) {
+        let mut asked = Asked {
+            set: self.place.input.var.clone(),
+            step: steps,
+            ..asked(self.place.input, self.records.clone())
+        };
+        let mut shared = self.place.shared;
+        let written = { self.states.borrow_mut() }.as_mut().map(|states| {
+            states.write(&mut asked, |archive| {
+                archive.one("shared", &mut shared);
+                pass(archive);
+            })
+        });
+        match written {
+            Some(Err(error)) => self.note(&format!(
+                "step {steps}: no state to go on from was written: {error}"
+            )),
+            Some(Ok(())) => self.kept = true,
+            None => {}
+        }
     }
 
     fn progress(&mut self, done: u64, of: u64) {

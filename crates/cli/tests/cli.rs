@@ -594,6 +594,10 @@ fn a_run_that_was_cut_off_goes_on_only_with_what_it_left() {
     let frame = std::fs::read(&first).unwrap();
     std::fs::remove_file(&first).unwrap();
     refused("points_00000000.vtu");
+    let mut bytes = frame.clone();
+    *bytes.last_mut().unwrap() ^= 1;
+    std::fs::write(&first, bytes).unwrap();
+    refused("points_00000000.vtu`: it is not as the run left it");
     std::fs::write(&first, frame).unwrap();
     // a state that is damaged
     let states = std::fs::read_dir(out.join("checkpoint")).unwrap();
@@ -608,6 +612,16 @@ fn a_run_that_was_cut_off_goes_on_only_with_what_it_left() {
     std::fs::write(&state, &whole).unwrap();
     good(peridyne(&["resume", to]));
     assert_eq!(report(&out)["status"], "done");
+    let seconds = &report(&out)["seconds"];
+    let parts: Vec<f64> = { seconds["parts"].as_array().unwrap().iter() }
+        .map(|part| part.as_f64().unwrap())
+        .collect();
+    assert_eq!(parts.len(), 2);
+    let all = seconds["all"].as_f64().unwrap();
+    assert!(
+        (parts.iter().sum::<f64>() - all).abs() < 1e-9 * all,
+        "{seconds}"
+    );
     refused("there is no state to go on from: the run has ended");
 }
 

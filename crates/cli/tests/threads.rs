@@ -19,6 +19,8 @@ const CLOCK: [&str; 5] = [
     "peak_memory_bytes",
     "threads",
 ];
+/// How lines of LAMMPS's own output begin that tell of the clock and of memory.
+const CLOCK_OF_LAMMPS: [&str; 2] = ["Loop time of ", "Per MPI rank memory"];
 /// The same of a conservation law.
 const CLOCK_OF_LAW: [&str; 3] = ["seconds_stepping", "ns_per_point_step", "peak_memory_bytes"];
 
@@ -31,6 +33,13 @@ fn stop_clock(run: &mut Value) {
     for key in clock {
         assert!(run.as_object_mut().unwrap().remove(*key).is_some(), "{key}");
     }
+}
+
+/// Lines without those of the clock.
+fn without_clock_of_lammps<'a>(lines: impl Iterator<Item = &'a str>) -> String {
+    let clock = |line: &&str| CLOCK_OF_LAMMPS.iter().any(|word| line.starts_with(word));
+    let lines = lines.filter(|line| !clock(line));
+    lines.map(|line| format!("{line}\n")).collect()
 }
 
 /// What is run.
@@ -46,10 +55,27 @@ impl Case {
     fn is_script(&self) -> bool {
         self.name.starts_with("in.")
     }
+
+    /// Where a run of so many steps is cut off: a deck after a third of them, a script that has several runs after its first and in the
+    /// middle of what is left.
+    fn stops(&self, steps: u64) -> Vec<u64> {
+        if !self.is_script() {
+            return vec![steps / 3];
+        }
+        let text = std::fs::read_to_string(&self.path).unwrap();
+        let runs: Vec<u64> = { text.lines() }
+            .filter_map(|line| line.strip_prefix("run ")?.split_whitespace().next())
+            .map(|steps| steps.parse().unwrap())
+            .collect();
+        match runs[..] {
+            [first, _, ..] => vec![first, first + (steps - first) / 2],
+            [_] | [] => vec![],
+        }
+    }
 }
 
-/// A copy of the good decks and what they read, with short runs.
-fn decks(to: &Path) -> Vec<Case> {
+/// A copy of the good decks and what they read, with runs of so many steps.
+fn decks(to: &Path, steps: i64) -> Vec<Case> {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good");
     let mut decks = vec![];
     for entry in std::fs::read_dir(from).unwrap() {
@@ -68,7 +94,7 @@ fn decks(to: &Path) -> Vec<Case> {
             let integrator = run.get("integrator").and_then(|i| i.as_str());
             factors |= integrator.is_some_and(|i| ["newmark", "hht"].contains(&i));
             run.remove("duration");
-            run.insert("steps".into(), toml::Value::Integer(STEPS));
+            run.insert("steps".into(), toml::Value::Integer(steps));
         }
         std::fs::write(&copy, toml::to_string(&deck).unwrap()).unwrap();
         decks.push(Case {
@@ -133,6 +159,10 @@ fn files(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             if path.file_name().is_some_and(|n| n == "report.html") {
                 bytes = without_clock(&bytes);
             }
+            if path.extension().is_some_and(|e| e == "log") {
+                let text = String::from_utf8(bytes).unwrap();
+                bytes = without_clock_of_lammps(text.lines()).into_bytes();
+            }
             all.insert(path.strip_prefix(dir).unwrap().to_path_buf(), bytes);
         }
     }
@@ -153,8 +183,8 @@ fn without_clock(page: &[u8]) -> Vec<u8> {
     format!("{before}{meta}{after}").into_bytes()
 }
 
-/// The program on a case.
-fn program(case: &Case, arguments: &[&str]) {
+/// The program on a case. What LAMMPS would have printed, without the clock: what comes before the first line of ours.
+fn program(case: &Case, arguments: &[&str]) -> String {
     let name = &case.name;
     let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
         .args(arguments)
@@ -163,6 +193,13 @@ fn program(case: &Case, arguments: &[&str]) {
     let said = String::from_utf8_lossy(&done.stderr).into_owned();
     assert_eq!(done.status.code(), Some(0), "{name} {arguments:?}: {said}");
     assert!(!said.contains("energy balance"), "{name}: {said}");
+    let text = String::from_utf8(done.stdout).unwrap();
+    let ours = |line: &&str| {
+        ["done", "ended by "]
+            .iter()
+            .any(|word| line.starts_with(word))
+    };
+    without_clock_of_lammps(text.lines().take_while(|line| !ours(line)))
 }
 
 /// Runs a case; all that it wrote.
@@ -170,55 +207,91 @@ fn run(dir: &Path, case: &Case, threads: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let out = dir.join(format!("{}-{threads}", case.name));
     let to = out.to_str().unwrap();
     let deck = case.path.to_str().unwrap();
-    program(case, &["run", deck, "--threads", threads, "--out", to]);
-    files(&out)
+    let said = program(case, &["run", deck, "--threads", threads, "--out", to]);
+    with_output(case, files(&out), said)
 }
 
-/// The same in two parts: on one thread to a third of the steps, as if it were cut off there, and on three from there.
-fn run_in_two(dir: &Path, case: &Case, steps: u64) -> BTreeMap<PathBuf, Vec<u8>> {
-    let out = dir.join(format!("{}-two", case.name));
+/// Of a script what it printed, too.
+fn with_output(
+    case: &Case,
+    mut files: BTreeMap<PathBuf, Vec<u8>>,
+    said: String,
+) -> BTreeMap<PathBuf, Vec<u8>> {
+    if case.is_script() {
+        files.insert("printed".into(), said.into_bytes());
+    }
+    files
+}
+
+/// The same in parts: on one thread to the first stop, as if it were cut off there, from there on three to the next, and so on.
+fn run_in_parts(dir: &Path, case: &Case, stops: &[u64]) -> BTreeMap<PathBuf, Vec<u8>> {
+    let out = dir.join(format!("{}-parts", case.name));
     let to = out.to_str().unwrap();
     let deck = case.path.to_str().unwrap();
-    let third = (steps / 3).to_string();
-    let first = [
-        "run",
-        deck,
-        "--threads",
-        "1",
-        "--out",
-        to,
-        "--stop-after",
-        &third,
-    ];
-    program(case, &first);
-    assert!(out.join("checkpoint").is_dir(), "{}", case.name);
-    program(case, &["resume", to, "--threads", "3"]);
-    files(&out)
+    let mut said = String::new();
+    for part in 0..=stops.len() {
+        let mut arguments = match part {
+            0 => vec!["run", deck, "--out", to],
+            _ => vec!["resume", to],
+        };
+        arguments.extend(["--threads", ["1", "3", "2"][part % 3]]);
+        let stop = stops.get(part).map(u64::to_string);
+        if let Some(stop) = &stop {
+            arguments.extend(["--stop-after", stop]);
+        }
+        let before = last_state(&out);
+        let printed = program(case, &arguments);
+        // where no state was written the next part begins where this one did
+        if stop.is_none() || last_state(&out) != before {
+            said += &printed;
+        }
+        assert_eq!(
+            out.join("checkpoint").is_dir(),
+            stop.is_some(),
+            "{}",
+            case.name
+        );
+    }
+    with_output(case, files(&out), said)
 }
 
-/// One case on one thread and on three, which halve no work evenly. How it ended: a line of the table.
+/// Steps of the newest state of a run that was cut off.
+fn last_state(out: &Path) -> Option<String> {
+    let entries = std::fs::read_dir(out.join("checkpoint")).into_iter();
+    let names = entries
+        .flatten()
+        .map(|e| e.unwrap().file_name().into_string().unwrap());
+    let steps = names.filter_map(|name| {
+        let digits = name.strip_prefix("step_")?.strip_suffix(".state")?;
+        digits.parse::<u64>().ok()
+    });
+    steps.max().map(|step| step.to_string())
+}
+
+/// One case on one thread and on three, which halve no work evenly, in parts where it has some. How it ended: a line of the table.
 fn compare(dir: &Path, case: &Case) -> String {
+    compare_cut(dir, case, &|steps| case.stops(steps))
+}
+
+fn compare_cut(dir: &Path, case: &Case, stops: &dyn Fn(u64) -> Vec<u64>) -> String {
     let name = &case.name;
     let one = run(dir, case, "1");
     assert!(one.len() >= 2, "{name}");
     let report = Path::new("run.json");
     let steps = |of: &[u8]| serde_json::from_slice::<Value>(of).unwrap()["steps"].as_u64();
-    let many = match steps(&one[report]) {
-        Some(steps) if steps > 0 && !case.is_script() => run_in_two(dir, case, steps),
-        _ => run(dir, case, "3"),
+    let stops = steps(&one[report])
+        .filter(|steps| *steps > 0)
+        .map(stops)
+        .unwrap_or_default();
+    let many = match stops[..] {
+        [] => run(dir, case, "3"),
+        [..] => run_in_parts(dir, case, &stops),
     };
     let names = |of: &BTreeMap<PathBuf, Vec<u8>>| of.keys().cloned().collect::<Vec<_>>();
     assert_eq!(names(&one), names(&many), "{name}: other files");
     for (file, bytes) in &one {
-        // LAMMPS's own output has the clock
-        if !case.is_script() || file == report {
-            let same = many[file] == *bytes;
-            assert!(
-                same,
-                "{name}: {} in two parts on 1 and 3 threads",
-                file.display()
-            );
-        }
+        let same = many[file] == *bytes;
+        assert!(same, "{name}: {} cut off at {stops:?}", file.display());
     }
     let report: Value = serde_json::from_slice(&one[report]).unwrap();
     let [state, ledger] = ["state_hash", "ledger_hash"].map(|key| report[key].as_str());
@@ -277,32 +350,11 @@ fn wrong(table: &str, lines: &[String]) -> Vec<String> {
 #[test]
 fn every_good_deck_writes_the_same_bytes_on_any_number_of_threads_and_ends_as_it_did() {
     let dir = TempDir::new().unwrap();
-    let mut cases = decks(dir.path());
+    let mut cases = decks(dir.path(), STEPS);
     assert!(cases.len() >= 20);
     cases.extend(laws());
     cases.extend(scripts());
-    let next = AtomicUsize::new(0);
-    let lines = Mutex::new(BTreeMap::new());
-    let failed = Mutex::new(vec![]);
-    // two at a time: much of a run is on one thread
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                loop {
-                    let n = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(case) = cases.get(n) else { break };
-                    // all that fail are told
-                    match catch_unwind(AssertUnwindSafe(|| compare(dir.path(), case))) {
-                        Ok(line) => drop(lines.lock().unwrap().insert(n, line)),
-                        Err(_) => failed.lock().unwrap().push(&*case.name),
-                    }
-                }
-            });
-        }
-    });
-    let failed = failed.into_inner().unwrap();
-    assert!(failed.is_empty(), "{failed:?}");
-    let lines: Vec<String> = lines.into_inner().unwrap().into_values().collect();
+    let lines = each(&cases, &|case| compare(dir.path(), case));
     if std::env::var_os("PERIDYNE_RENEW_HASHES").is_some() {
         let text = format!("{}\n{HEADER}{}\n", features(), lines.join("\n"));
         return std::fs::write(table(), text).unwrap();
@@ -315,6 +367,155 @@ fn every_good_deck_writes_the_same_bytes_on_any_number_of_threads_and_ends_as_it
         table().display(),
         wrong.join("\n")
     );
+}
+
+/// Runs in a loop, in another file, in a command and in parts; with numbers that are drawn, means, and files that grow in every way.
+const SCRIPT: &str = r#"# A bar of LPS
+log             bar.log
+variable        seed index 5
+units           si
+dimension       3
+boundary        s s s
+atom_style      peri
+atom_modify     map array
+neighbor        0.0005 bin
+lattice         sc 0.0005
+region          box block -4 4 -3 3 -3 3
+create_box      1 box
+create_atoms    1 region box
+pair_style      peri/lps
+pair_coeff      * * 14.9e9 10.2e9 0.0015001 0.01 0.25
+set             group all density 2200
+set             group all volume 1.25e-10
+velocity        all set 0.0 0.0 0.0 sum no units box
+timestep        1.0e-7
+compute         dmg all damage/atom
+compute         dsum all reduce sum c_dmg
+compute         way all displace/atom
+compute         wmax all reduce max c_way[4]
+fix             F1 all nve
+fix             AV all ave/time 1 2 4 c_dsum ave running file means.txt
+variable        e equal ke
+fix             P1 all print 3 "step $(step) energy ${e}" file print.txt screen no
+thermo_style    custom step pe ke c_dsum c_wmax f_AV
+thermo_modify   format float %.17g
+thermo          5
+run             1
+variable        vx atom 2.0e3*x+5.0*random(-1,1,${seed})
+velocity        all set v_vx 0.0 0.0 sum no units box
+dump            D1 all custom 7 bar.dump id type x vx c_dmg
+dump_modify     D1 sort id format float %.17g
+run             20
+region          r block 1 INF INF INF INF INF
+group           right region r
+group           left subtract all right
+unfix           F1
+fix             F2 left nve
+fix             M2 right move linear 10.0 NULL NULL
+variable        i loop 3
+label           again
+velocity        left set v_vx 0.0 0.0 sum yes units box
+print           "pass $i" append passes.txt
+run             6
+next            i
+jump            SELF again
+include         more.in
+if "$(c_wmax) > 0" then "run 4"
+run             6 every 3 "print between"
+run             2
+"#;
+
+#[test]
+fn a_script_that_is_cut_off_anywhere_goes_on_to_the_same_bytes() {
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("in.bar");
+    std::fs::write(&path, SCRIPT).unwrap();
+    std::fs::write(dir.path().join("more.in"), "run 5\n").unwrap();
+    let case = Case {
+        name: "in.bar".into(),
+        path: path.clone(),
+        factors: false,
+    };
+    // at the end of a run, in runs, in that of a loop, of a file; what is asked for in the run of a command and in one of parts waits
+    let stops = [1, 12, 24, 33, 41, 46, 50];
+    compare_cut(dir.path(), &case, &|steps| {
+        assert_eq!(steps, 56);
+        stops.to_vec()
+    });
+    let out = dir.path().join("cut");
+    let [to, script] = [&out, &path].map(|p| p.to_str().unwrap());
+    program(&case, &["run", script, "--out", to, "--stop-after", "46"]);
+    assert_eq!(last_state(&out).unwrap(), "48");
+    let refused = |why: &str| {
+        let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+            .args(["resume", to])
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).replace('│', " ");
+        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(done.status.code(), Some(2), "{said}");
+        assert!(said.contains(why), "{why}: {said}");
+    };
+    for name in ["bar.dump", "means.txt", "print.txt", "bar.log"] {
+        let file = out.join(name);
+        let bytes = std::fs::read(&file).unwrap();
+        let mut other = bytes.clone();
+        other[5] ^= 1;
+        std::fs::write(&file, other).unwrap();
+        refused("it is not as the run left it");
+        std::fs::write(&file, bytes).unwrap();
+    }
+    std::fs::write(dir.path().join("more.in"), "run 6\n").unwrap();
+    refused("this is not the file that the run began with");
+    std::fs::write(
+        &path,
+        SCRIPT.replace("run             2", "run             3"),
+    )
+    .unwrap();
+    refused("this is not the script that the run began with");
+}
+
+/// What each case gives, two at a time: much of a run is on one thread.
+fn each(cases: &[Case], of: &(dyn Fn(&Case) -> String + Sync)) -> Vec<String> {
+    let next = AtomicUsize::new(0);
+    let lines = Mutex::new(BTreeMap::new());
+    let failed = Mutex::new(vec![]);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                loop {
+                    let n = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(case) = cases.get(n) else { break };
+                    // all that fail are told
+                    match catch_unwind(AssertUnwindSafe(|| of(case))) {
+                        Ok(line) => drop(lines.lock().unwrap().insert(n, line)),
+                        Err(_) => failed.lock().unwrap().push(&*case.name),
+                    }
+                }
+            });
+        }
+    });
+    let failed = failed.into_inner().unwrap();
+    assert!(failed.is_empty(), "{failed:?}");
+    lines.into_inner().unwrap().into_values().collect()
+}
+
+/// Of as many steps as `PERIDYNE_RESTART_STEPS` says, 48 otherwise; of decks with a part of a name in `PERIDYNE_DECKS` alone.
+#[test]
+#[ignore = "hours with many steps: the command is in CONTRIBUTING.md"]
+fn every_good_deck_that_is_cut_off_three_times_writes_the_same_bytes() {
+    let dir = TempDir::new().unwrap();
+    let steps = std::env::var("PERIDYNE_RESTART_STEPS");
+    let mut cases = decks(dir.path(), steps.map_or(48, |n| n.parse().unwrap()));
+    cases.extend(laws());
+    let only = std::env::var("PERIDYNE_DECKS").unwrap_or_default();
+    cases.retain(|case| case.name.contains(&only));
+    let quarters = |steps: u64| [1, 2, 3].map(|n| n * steps / 4).to_vec();
+    each(&cases, &|case| {
+        let line = compare_cut(dir.path(), case, &quarters);
+        println!("{line}");
+        line
+    });
 }
 
 #[test]

@@ -605,3 +605,105 @@ fn a_cloud_in_another_order_of_lines_has_the_same_step() {
     let (one, other) = (step(), step());
     assert!((one - other).abs() <= 1e-13 * one, "{one} is not {other}");
 }
+
+/// Steps of the states of a run, the oldest first.
+#[cfg(unix)]
+fn states(case: &Case) -> Vec<u64> {
+    let entries = std::fs::read_dir(case.path("o/checkpoint"));
+    let names = entries.into_iter().flatten().flatten();
+    let mut steps: Vec<u64> = names
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok()?;
+            let digits = name.strip_prefix("step_")?.strip_suffix(".state")?;
+            digits.parse().ok()
+        })
+        .collect();
+    steps.sort_unstable();
+    steps
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_asked_for_a_state_writes_it_and_goes_on() {
+    let text = deck(
+        "run = { steps = 100000000 }\n[output]\nvtu = false\nreport = false\npicture = false\nhistory = 1000\ncheckpoint = false\n",
+    );
+    let case = Case::new(&[("d.toml", &text)]);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .args(["run", "d.toml", "--out", "o", "--threads", "1"])
+        .current_dir(case.0.path())
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let until = Instant::now() + Duration::from_secs(60);
+    let wait = |what: &str, is: &dyn Fn() -> bool| {
+        while !is() {
+            assert!(Instant::now() < until, "{what}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    };
+    let signal = |name: &str| {
+        let told = Command::new("kill")
+            .args([name, &child.id().to_string()])
+            .status();
+        assert!(told.unwrap().success());
+    };
+    let rows = || {
+        let text = std::fs::read_to_string(case.path("o/history.csv"));
+        text.map_or(0, |t| t.lines().count())
+    };
+    wait("no steps", &|| rows() > 2);
+    assert!(states(&case).is_empty());
+    signal("-USR1");
+    wait("no state", &|| states(&case).len() == 1);
+    let (first, before) = (states(&case)[0], rows());
+    wait("it does not go on", &|| rows() > before + 2);
+    signal("-USR1");
+    wait("no second state", &|| states(&case).len() == 2);
+    assert!(states(&case)[1] > first);
+    signal("-TERM");
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+    let run: serde_json::Value = serde_json::from_str(&case.text("o/run.json")).unwrap();
+    let last = states(&case);
+    assert_eq!(run["steps"].as_u64(), last.last().copied());
+    let stop = (last[last.len() - 1] + 5).to_string();
+    let done = case.shell("", &["resume", "o", "--stop-after", &stop]);
+    assert_eq!(done.status.code(), Some(0), "{}", plain(&done.stderr));
+    assert!(
+        case.text("o/run.json")
+            .contains(&format!("\"steps\": {stop}"))
+    );
+}
+
+/// No file may be larger than some kilobytes: a state is not written, and the one before stays.
+#[cfg(unix)]
+#[test]
+fn a_disk_that_is_full_when_a_state_is_written_leaves_the_one_before() {
+    let text = deck(
+        "run = { steps = 30 }\n[[initial]]\nvelocity = { x = \"0.1*sin(1e3*y)\" }\n[output]\nvtu = false\nreport = false\npicture = false\nhistory = 10\ncheckpoint = false\n",
+    )
+    .replace("12 mm", "24 mm");
+    let case = Case::new(&[("d.toml", &text)]);
+    let good = |before: &str, arguments: &[&str]| {
+        let done = case.shell(before, arguments);
+        assert_eq!(done.status.code(), Some(0), "{}", plain(&done.stderr));
+        plain(&done.stderr)
+    };
+    good("", &["run", "d.toml", "--out", "whole"]);
+    good("", &["run", "d.toml", "--out", "o", "--stop-after", "10"]);
+    assert_eq!(states(&case), [10]);
+    // of 512 or 1024 bytes each; a state of 2197 points has more than 150 kilobytes
+    let full = "trap '' XFSZ; ulimit -f 100;";
+    let said = good(full, &["resume", "o", "--stop-after", "20"]);
+    assert!(
+        said.contains("no state to go on from was written"),
+        "{said}"
+    );
+    assert!(said.contains("step_0000000020.state"), "{said}");
+    assert_eq!(states(&case), [10]);
+    let names = std::fs::read_dir(case.path("o/checkpoint")).unwrap();
+    assert_eq!(names.count(), 1, "a part of a state is left");
+    let said = good("", &["resume", "o"]);
+    assert!(said.contains("going on from step 10"), "{said}");
+    assert_eq!(case.text("o/history.csv"), case.text("whole/history.csv"));
+}

@@ -184,9 +184,9 @@ pub fn drive(
     let begin = Instant::now();
     let _held = Folder::claim(&plan.dir)?;
     plan.stays_inside()?;
-    let mut run = Run::begin(sim, plan, progress, from)?;
+    let mut run = Run::begin(sim, plan, progress, (from, begin))?;
     run.go_on(sim, plan, progress)?;
-    run.end(sim, plan, progress, begin)
+    run.end(sim, plan, progress)
 }
 
 /// A run between its first step and its last.
@@ -194,12 +194,12 @@ struct Run {
     writers: Vec<Box<dyn Writer>>,
     checkpoints: Checkpoints,
     known: Known,
+    /// In parts before this one, and in this one what is no steps.
     spent: Spent,
+    begin: Instant,
     /// Steps done.
     step: u64,
     goes_on: bool,
-    /// Time that an earlier part of the run spent in steps (s).
-    before: f64,
     stopped: Option<RunError>,
     /// Who ended it early.
     ended: Option<String>,
@@ -211,7 +211,7 @@ impl Run {
         sim: &mut dyn Simulation,
         plan: &Plan,
         progress: &mut dyn Progress,
-        from: Option<Checkpoint>,
+        (from, begin): (Option<Checkpoint>, Instant),
     ) -> Result<Run, DriveError> {
         let goes_on = from.is_some();
         // of the part before, too: all are drawn at the end
@@ -226,9 +226,9 @@ impl Run {
                 ..Known::default()
             },
             spent: Spent::default(),
+            begin,
             step: 0,
             goes_on,
-            before: 0.0,
             stopped: None,
             ended: None,
         };
@@ -246,7 +246,7 @@ impl Run {
         };
         run.step = from.asked.step;
         from.load(|archive| pass(sim, &mut run.known, &mut run.writers, archive))?;
-        run.before = run.known.stepping;
+        run.spent = run.known.spent.clone();
         from.passed_over.into_iter().for_each(|why| {
             progress.warning(&format!("{why}; the run goes on from the state before it"));
         });
@@ -375,6 +375,7 @@ impl Run {
     /// Writes a state to go on from; where it cannot be written, the one before stays and the run goes on.
     fn save(&mut self, sim: &mut dyn Simulation, plan: &Plan, progress: &mut dyn Progress) {
         let begin = Instant::now();
+        self.known.spent = self.spent_so_far();
         let mut asked = Asked {
             step: self.step,
             steps: plan.steps,
@@ -395,13 +396,21 @@ impl Run {
         self.spent.checkpoints += begin.elapsed().as_secs_f64();
     }
 
+    /// In all parts up to now.
+    fn spent_so_far(&self) -> Spent {
+        let part = self.begin.elapsed().as_secs_f64();
+        let mut spent = self.spent.clone();
+        spent.parts.push(0.0);
+        spent.goes_on(part);
+        spent
+    }
+
     /// Writes what stands for all of the run, and its record.
     fn end(
         mut self,
         sim: &mut dyn Simulation,
         plan: &Plan,
         progress: &mut dyn Progress,
-        begin: Instant,
     ) -> Result<RunReport, DriveError> {
         let due = self.due(plan);
         let mut made = Made::default();
@@ -412,7 +421,7 @@ impl Run {
             &mut stopped,
             (due, self.ended.is_some()),
         );
-        for writer in self.writers {
+        for writer in std::mem::take(&mut self.writers) {
             writer.end(&mut now, &mut made)?;
         }
         let snapshot = now.snapshot();
@@ -422,14 +431,13 @@ impl Run {
             None if self.ended.is_some() => Status::Ended,
             None => Status::Done,
         };
+        let (looked, mut spent) = (Instant::now(), self.spent_so_far());
         match status {
             Status::Done => self.checkpoints.done()?,
             Status::Ended | Status::Stopped(_) => self.checkpoints.ended()?,
         }
-        let (info, known, mut spent) = (sim.info(), self.known, self.spent);
-        spent.all = begin.elapsed().as_secs_f64();
-        let elsewhere =
-            known.stepping - self.before + spent.fields + spent.pictures + spent.checkpoints;
+        let (info, known) = (sim.info(), self.known);
+        let elsewhere = known.stepping + spent.fields + spent.pictures + spent.checkpoints;
         spent.frames = (spent.all - elsewhere).max(0.0);
         let mut report = RunReport {
             version: env!("CARGO_PKG_VERSION").to_string(),
@@ -469,8 +477,8 @@ impl Run {
             progress.phase("report");
             report::of_run(&plan.dir, report.ended_by.is_some())?;
         }
-        report.seconds.all = begin.elapsed().as_secs_f64();
-        report.seconds.report = report.seconds.all - spent.all;
+        report.seconds.report = looked.elapsed().as_secs_f64();
+        report.seconds.goes_on(report.seconds.report);
         match stopped {
             None => Ok(report),
             Some(error) => Err(DriveError::Run {

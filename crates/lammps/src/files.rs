@@ -4,11 +4,13 @@
 
 use std::cell::RefCell;
 use std::fs::File;
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use peridyne::state::{Archive, Owner};
 use peridyne_io::write::folder::is_own;
+use peridyne_io::write::{Seal, Summed};
 
 use peridyne_io::read::source;
 
@@ -31,20 +33,39 @@ pub struct Folder {
     pub made: Option<Rc<RefCell<Vec<PathBuf>>>>,
     /// Files that are being written.
     pub open: Rc<RefCell<Vec<PathBuf>>>,
+    /// Files that were written, and what is in them.
+    pub closed: Rc<RefCell<Vec<(PathBuf, Seal)>>>,
 }
 
 /// A text file that is being written. What was [flushed](Sink::flush) is whole; of what does not fit nothing is kept.
 pub struct Sink {
     path: PathBuf,
     /// `None`: nothing is written.
-    out: Option<BufWriter<File>>,
-    /// Bytes that are whole.
-    whole: u64,
+    out: Option<BufWriter<Summed<File>>>,
+    /// What is whole.
+    whole: Seal,
+    /// Where relative names start from.
+    home: PathBuf,
     open: Rc<RefCell<Vec<PathBuf>>>,
+    closed: Rc<RefCell<Vec<(PathBuf, Seal)>>>,
+}
+
+/// The path of a file as it is called from `home`, which may be called otherwise when a script goes on.
+pub fn archive_path(archive: &mut Archive<'_>, home: &Path, path: &mut PathBuf) {
+    let inside = path.strip_prefix(home).unwrap_or(path);
+    let mut name = inside.to_string_lossy().into_owned();
+    archive.text("path", &mut name);
+    *path = home.join(name);
 }
 
 impl Drop for Sink {
     fn drop(&mut self) {
+        // who asks for errors has flushed it
+        if self.out.is_some() && self.flush().is_ok() {
+            let mut closed = self.closed.borrow_mut();
+            closed.retain(|(path, _)| *path != self.path);
+            closed.push((self.path.clone(), self.whole));
+        }
         let mut open = self.open.borrow_mut();
         if let Some(k) = open.iter().position(|p| *p == self.path) {
             open.swap_remove(k);
@@ -89,7 +110,7 @@ impl Sink {
             // what is buffered must not follow
             let (file, _) = out.into_parts();
             // if cutting fails too, the error tells more
-            let _ = file.set_len(self.whole);
+            let _ = file.inner().set_len(self.whole.length);
         }
         Box::new(Problem {
             while_running: true,
@@ -116,11 +137,54 @@ impl Sink {
             None => Ok(()),
         };
         flushed.map_err(|e| self.cut(&e))?;
-        // a device has no end
-        if let Some(Ok(end)) = { self.out.as_mut() }.map(|o| o.get_mut().seek(SeekFrom::End(0))) {
-            self.whole = end;
+        if let Some(out) = &self.out {
+            self.whole = out.get_ref().seal();
         }
         Ok(())
+    }
+
+    /// Goes on behind what the state says of it.
+    ///
+    /// # Errors
+    /// The file is not as it was.
+    pub fn go_on(&mut self) -> Result<()> {
+        // a device holds nothing
+        let file = match self.path.metadata().is_ok_and(|m| !m.is_file()) {
+            true => File::options()
+                .append(true)
+                .open(&self.path)
+                .map_err(|e| failed(&self.path, &e))?,
+            false => self
+                .whole
+                .cut_back(&self.path)
+                .map_err(|e| Problem::new(e.to_string()))?,
+        };
+        source::made(&file);
+        self.out = Some(BufWriter::new(Summed::after(file, self.whole)));
+        self.open.borrow_mut().push(self.path.clone());
+        Ok(())
+    }
+}
+
+/// What is in it and where; one that was read [goes on](Sink::go_on) when it is told to.
+impl Owner for Sink {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        // an error shows at the next line
+        let _ = self.flush();
+        archive_path(archive, &self.home, &mut self.path);
+        archive.part("whole", &mut self.whole);
+    }
+}
+
+/// What was written and closed.
+impl Owner for Folder {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let mut closed = self.closed.borrow_mut();
+        let none = || (PathBuf::new(), Seal::default());
+        archive.items("closed", &mut closed, none, |(path, seal), archive| {
+            archive_path(archive, &self.output, path);
+            archive.part("whole", seal);
+        });
     }
 }
 
@@ -207,7 +271,7 @@ impl Folder {
     /// It lies outside, or cannot be opened.
     pub fn open(&self, name: &str, append: bool) -> Result<Sink> {
         let path = self.path(name)?;
-        let open = self.open.clone();
+        let (open, closed) = (self.open.clone(), self.closed.clone());
         if open.borrow().contains(&path) {
             let wrong = format!("`{name}` is being written by another command");
             return Err(Problem::new(wrong).help("give each its own file"));
@@ -216,12 +280,18 @@ impl Folder {
             path,
             out,
             whole,
+            home: self.output.clone(),
             open,
+            closed,
         };
         if self.dry {
-            return Ok(sink(path, None, 0));
+            return Ok(sink(path, None, Seal::default()));
         }
         self.replaceable(&path)?;
+        let there = match append {
+            true => self.there(&path)?,
+            false => Seal::default(),
+        };
         let file = File::options()
             .create(true)
             .write(true)
@@ -230,9 +300,54 @@ impl Folder {
             .open(&path)
             .map_err(|e| failed(&path, &e))?;
         self.has_made(&path, &file);
-        let whole = file.metadata().map_or(0, |m| m.len());
+        // what is in it is the new one's to say
+        self.closed.borrow_mut().retain(|(p, _)| *p != path);
         self.open.borrow_mut().push(path.clone());
-        Ok(sink(path, Some(BufWriter::new(file)), whole))
+        let file = BufWriter::new(Summed::after(file, there));
+        Ok(sink(path, Some(file), there))
+    }
+
+    /// A file that nothing is written to before a state says which it is.
+    pub fn waiting(&self) -> Sink {
+        Sink {
+            path: PathBuf::new(),
+            out: None,
+            whole: Seal::default(),
+            home: self.output.clone(),
+            open: self.open.clone(),
+            closed: self.closed.clone(),
+        }
+    }
+
+    /// What is in a file that is appended to.
+    fn there(&self, path: &Path) -> Result<Seal> {
+        let found = path.metadata().ok().filter(std::fs::Metadata::is_file);
+        let Some(length) = found.map(|m| m.len()) else {
+            return Ok(Seal::default());
+        };
+        let closed = self.closed.borrow();
+        let known = { closed.iter() }
+            .find(|(p, seal)| p == path && seal.length == length)
+            .map(|(_, seal)| *seal);
+        match known {
+            Some(seal) => Ok(seal),
+            None => File::open(path)
+                .and_then(|mut file| Seal::of(&mut file, length))
+                .map_err(|e| failed(path, &e)),
+        }
+    }
+
+    /// Cuts files back that were written, closed and then appended to; what is another file now is written anew.
+    pub fn cut_back(&self) {
+        for (path, seal) in self.closed.borrow().iter() {
+            if path
+                .metadata()
+                .is_ok_and(|m| m.is_file() && m.len() > seal.length)
+            {
+                // not as it was: a command writes it anew
+                let _ = seal.cut_back(path);
+            }
+        }
     }
 
     /// May a file take this place?
@@ -285,7 +400,7 @@ impl Folder {
         self.replaceable(&path)?;
         std::fs::rename(&sink.path, &path).map_err(|e| failed(&path, &e))?;
         if let Some(out) = &sink.out {
-            self.has_made(&path, out.get_ref());
+            self.has_made(&path, out.get_ref().inner());
         }
         Ok(())
     }

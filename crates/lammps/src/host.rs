@@ -17,6 +17,7 @@ use super::units::Units;
 pub use peridyne::condition::carried::{Carry, Motion};
 pub use peridyne::condition::indenter::{Form, Push};
 pub use peridyne::run::Wall;
+use peridyne::state::Archive;
 
 /// What is asked for at the first `run`.
 #[derive(Debug)]
@@ -186,6 +187,19 @@ pub trait Engine: Particles {
         Vec::new()
     }
 
+    /// Takes up a run like [`Engine::setup`], but evaluates nothing: a state is read next.
+    ///
+    /// # Errors
+    /// The model cannot be run like this, or has no states.
+    fn await_state(&mut self, _: &RunStart, _: &[Condition]) -> Result<(), HostError> {
+        Err(HostError::new("this model has no states to go on from"))
+    }
+
+    /// Passes its state through an archive; of one that was not read, [`Engine::await_state`] comes before.
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.refuse("model");
+    }
+
     /// For the caller of the interpreter, who knows the type.
     fn as_any(&mut self) -> &mut dyn Any;
 }
@@ -197,6 +211,16 @@ pub trait Host {
     /// # Errors
     /// The set-up cannot be built.
     fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError>;
+}
+
+/// What is wanted of the state of a script, where it can be kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wish {
+    Nothing,
+    /// It is written down, and the script goes on.
+    State,
+    /// The same, and the script ends there.
+    End,
 }
 
 /// Where text goes.
@@ -211,4 +235,10 @@ pub trait Console {
     fn ended(&mut self) -> bool {
         false
     }
+    /// Asked after steps and commands from which a script can go on.
+    fn wish(&mut self, _steps: u64) -> Wish {
+        Wish::Nothing
+    }
+    /// Writes the state after so many steps down; what it is, `pass` passes through an archive.
+    fn keep(&mut self, _steps: u64, _pass: &mut dyn FnMut(&mut Archive<'_>)) {}
 }

@@ -4,6 +4,8 @@
 //! (97, 33) minus an arithmetic sequence, both exact in 24 bits. LAMMPS makes one generator per run from the
 //! first seed that it meets and ignores later seeds.
 
+use peridyne::state::{Archive, Owner};
+
 #[derive(Debug, Clone)]
 pub struct Ranmar {
     u: [f64; 97],
@@ -25,6 +27,29 @@ pub fn polar(mut uniform: impl FnMut() -> f64) -> [f64; 2] {
             let f = (-2.0 * r.ln() / r).sqrt();
             return [b * f, a * f];
         }
+    }
+}
+
+impl Default for Ranmar {
+    /// One whose numbers are still to be read.
+    fn default() -> Self {
+        Ranmar {
+            u: [0.0; 97],
+            c: 0.0,
+            i: 96,
+            j: 32,
+            spare: None,
+        }
+    }
+}
+
+impl Owner for Ranmar {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.all("u", &mut self.u);
+        archive.one("c", &mut self.c);
+        archive.one("i", &mut self.i);
+        archive.one("j", &mut self.j);
+        archive.one("spare", &mut self.spare);
     }
 }
 

@@ -64,9 +64,17 @@ impl Record {
         }
     }
 
+    /// Names of fields that columns can be.
+    pub const FIELDS: [&str; 2] = ["damage", "dilatation"];
+
     /// Where what pushes atoms out is now.
-    pub fn place(&mut self, time: f64, acting: &[Condition]) {
+    pub fn stand(&mut self, acting: &[Condition]) {
         self.rigid = acting.iter().filter_map(pushes).collect();
+    }
+
+    /// The same, and for ever.
+    pub fn place(&mut self, time: f64, acting: &[Condition]) {
+        self.stand(acting);
         for (n, body) in self.rigid.iter().enumerate() {
             if self.notes.len() <= n {
                 self.notes.push(RigidNote::of(&body.form));

@@ -11,6 +11,7 @@ use super::input;
 use super::record::Record;
 use super::session::{Session, Store};
 use super::text::{Text, logical_lines, words};
+use peridyne_io::write::checkpoint::Checkpoint;
 
 /// How a script is run.
 #[derive(Debug, Clone, Default)]
@@ -46,21 +47,34 @@ pub struct Outcome {
 }
 
 /// A script file that is being read.
-struct Source {
-    path: String,
-    text: Rc<str>,
+pub struct Source {
+    pub path: String,
+    pub text: Rc<str>,
     lines: Rc<[Text]>,
-    next: usize,
+    pub next: usize,
+}
+
+impl Source {
+    pub fn new(path: &str, text: &str) -> Source {
+        Source {
+            path: path.to_string(),
+            text: text.into(),
+            lines: logical_lines(text).into(),
+            next: 0,
+        }
+    }
 }
 
 /// A running script.
 pub struct Script<'a> {
     pub session: Session<'a>,
-    open: Vec<Source>,
+    pub open: Vec<Source>,
     /// Set by `next` on an exhausted variable: the next `jump` is passed over.
     pub skip_jump: bool,
     /// Commands inside commands.
     pub depth: usize,
+    /// A `run` to this step that was left and goes on, and whether it reports.
+    pub within: Option<(u64, bool)>,
 }
 
 /// Runs the script in the file `path`.
@@ -90,6 +104,31 @@ pub fn run_text(
     host: &mut dyn Host,
     console: &mut dyn Console,
 ) -> std::result::Result<Outcome, Box<ScriptError>> {
+    start(name, text, options, (host, console), None)
+}
+
+/// The same of a script that goes on from a state of it, of which nothing was read but how it was asked for.
+///
+/// # Errors
+/// As for [`run_file`]; the state is of another script, or files are not as they were.
+pub fn go_on_text(
+    name: &str,
+    text: &str,
+    options: &Options,
+    host: &mut dyn Host,
+    console: &mut dyn Console,
+    from: &mut Checkpoint,
+) -> std::result::Result<Outcome, Box<ScriptError>> {
+    start(name, text, options, (host, console), Some(from))
+}
+
+fn start<'a>(
+    name: &str,
+    text: &str,
+    options: &Options,
+    (host, console): (&'a mut dyn Host, &'a mut dyn Console),
+    from: Option<&'a mut Checkpoint>,
+) -> std::result::Result<Outcome, Box<ScriptError>> {
     let folder = Folder {
         output: options.output.clone(),
         script: Path::new(name)
@@ -97,17 +136,22 @@ pub fn run_text(
             .map(Path::to_path_buf)
             .unwrap_or_default(),
         outside: options.allow_outside,
-        dry: options.dry,
+        // what is repeated is not written again
+        dry: options.dry || from.is_some(),
         shared: options.shared,
         made: options.made.clone(),
         open: Rc::default(),
+        closed: Rc::default(),
     };
-    let session = Session::new(host, console, folder, name.to_string());
+    let mut session = Session::new(host, console, folder, name.to_string());
+    session.console.quiet = from.is_some();
+    session.from = from;
     let mut script = Script {
         session,
         open: Vec::new(),
         skip_jump: false,
         depth: 0,
+        within: None,
     };
     for (variable, values) in &options.variables {
         script
@@ -145,13 +189,7 @@ pub fn run_text(
 
 impl Script<'_> {
     fn push(&mut self, path: &str, text: &str) {
-        let lines = logical_lines(text).into();
-        self.open.push(Source {
-            path: path.to_string(),
-            text: text.into(),
-            lines,
-            next: 0,
-        });
+        self.open.push(Source::new(path, text));
     }
 
     fn run_open(&mut self) -> std::result::Result<(), Box<ScriptError>> {
@@ -163,10 +201,23 @@ impl Script<'_> {
             };
             source.next += 1;
             self.session.here = (path.clone(), text.clone(), line.whole());
-            self.line(&line)
+            let mut done = self.line(&line);
+            if std::mem::take(&mut self.session.went_on) {
+                done = self.finish_run();
+            }
+            done.and_then(|()| self.look_for_wish(None))
                 .map_err(|p| ScriptError::locate(*p, &path, &text, line.whole()))?;
         }
-        Ok(())
+        match self.session.from {
+            // of another script
+            Some(_) => Err(ScriptError::locate(
+                *Problem::new("the script has no `run` to go on with"),
+                "",
+                "",
+                (0, 0),
+            )),
+            None => Ok(()),
+        }
     }
 
     /// Ends the script.

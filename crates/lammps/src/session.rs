@@ -4,6 +4,7 @@ mod parts;
 mod population;
 mod progress;
 mod space;
+mod state;
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -16,6 +17,7 @@ use super::particles::{Field, View};
 use super::variable::tree::Tree;
 pub use parts::PairState;
 use parts::{Fixes, Formulas, Neighbors, Pairs, Watch};
+use peridyne_io::write::checkpoint::Checkpoint;
 use population::Population;
 pub use population::Store;
 use progress::Progress;
@@ -40,6 +42,16 @@ pub struct Session<'a> {
     pub watch: Watch,
     pub formulas: Formulas,
     pub progress: Progress,
+    /// The state that the script goes on from, until its first `run`.
+    pub from: Option<&'a mut Checkpoint>,
+    /// Has it come to that state?
+    pub went_on: bool,
+    /// Commands since the first `run` that define something, with the values of their variables.
+    pub commands: Vec<String>,
+    /// Why the script cannot go on from any later place.
+    pub lasting: Option<&'static str>,
+    /// Was it told?
+    pub told: bool,
 }
 
 impl<'a> Session<'a> {
@@ -64,11 +76,19 @@ impl<'a> Session<'a> {
             watch: Watch::default(),
             formulas: Formulas::default(),
             progress: Progress::default(),
+            from: None,
+            went_on: false,
+            commands: vec![],
+            lasting: None,
+            told: false,
         }
     }
 
     /// Everything as it was before the first command, but variables, the log and the wall clock.
     pub fn clear(&mut self) {
+        if let Store::Engine(_) = self.population.store {
+            self.lasting = Some("after `clear`");
+        }
         self.space = Space::default();
         self.population = Population::default();
         self.neighbors = Neighbors::default();

@@ -176,6 +176,15 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Of bonds between bodies those that are broken.
     fn each_broken_between(&self, _visit: &mut dyn FnMut(usize, usize, [f64; D])) {}
 
+    /// Every undirected bond of the reference family, those of interfaces too, that is not whole, as one of an absent crack is not.
+    fn each_gone(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        self.each_bond(body, &mut |i, j, xi, state| {
+            if state == BondState::Broken {
+                visit(i, j, xi);
+            }
+        });
+    }
+
     /// Broken bonds become whole again, as they were in the reference, where `heals` of their ends and their `e` (see [`history`](super::history)) at `u`,
     /// images of which are fresh; it must say the same of both directions. How many directed ones; `None`: those of the law do not.
     fn mend(

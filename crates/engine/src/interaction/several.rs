@@ -414,6 +414,13 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
+    fn each_gone(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        for (p, bonds) in self.each(body) {
+            bonds.each_gone(&p.body, &mut |i, j, xi| visit(i + p.first, j + p.first, xi));
+        }
+        self.each_broken_between(visit);
+    }
+
     fn each_broken_between(&self, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         for interface in &self.interfaces {
             interface.each_bond(&mut |i, j, xi, state| {

@@ -5,7 +5,7 @@
 
 use super::system::System;
 use crate::columns::{Life, On};
-use crate::interaction::{BondState, history};
+use crate::interaction::history;
 use crate::observe::state_hash::{Words, hash_of_name};
 use crate::observe::{Ledger, StateHash};
 use crate::transfer::TransferAccount;
@@ -147,7 +147,7 @@ fn of_law<const D: usize>(system: &System<D>, name: &str) -> Vec<f64> {
     values
 }
 
-/// Of each block, which bonds of its points are broken, and what the others of its bonds' columns say.
+/// Of each block, which bonds of its points are broken or were never there, and what the others of its bonds' columns say.
 fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
     let mut bonds = Bonds {
         system,
@@ -156,14 +156,10 @@ fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
         words: Words::default(),
     };
     let whole = hash_of_name(history::WHOLE);
-    system
-        .interaction
-        .each_bond(&system.body, &mut |i, j, xi, state| {
-            if state == BondState::Broken {
-                bonds.add(whole, [i, j], xi, &[]);
-                bonds.add(whole, [j, i], xi.map(|x| -x), &[]);
-            }
-        });
+    system.interaction.each_gone(&system.body, &mut |i, j, xi| {
+        bonds.add(whole, [i, j], xi, &[]);
+        bonds.add(whole, [j, i], xi.map(|x| -x), &[]);
+    });
     for column in system.interaction.columns() {
         let kept = column.life == Life::Persistent && column.on == On::Bonds;
         if !kept || column.name == history::WHOLE {

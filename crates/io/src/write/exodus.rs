@@ -10,15 +10,16 @@
 
 use std::f64::consts::PI;
 use std::fs::File;
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use crc32fast::Hasher;
 use peridyne::observe::{Column, Snapshot};
 use peridyne::state::{Archive, Owner};
 
-use super::atomic::{WriteError, write_file};
+use super::atomic::WriteError;
 use super::fields::{fields, invalid};
-use super::grown::changed;
+use super::grown::{Seal, Summed, changed, write_sealed};
 use crate::netcdf::{Attribute, Header, Type, Version, lay_out};
 
 /// What a file says of its points besides frames.
@@ -49,6 +50,8 @@ pub struct Exodus {
     globals: usize,
     /// Of the last frame.
     step: Option<u64>,
+    /// Checksum of all, as if no records were counted.
+    sum: u32,
 }
 
 /// The library's width of names, with the zero at the end.
@@ -226,8 +229,8 @@ impl Start {
     }
 
     /// A file without records.
-    fn write(&self, path: &Path) -> Result<(), WriteError> {
-        write_file(path, |w| {
+    fn write(&self, path: &Path) -> Result<Seal, WriteError> {
+        write_sealed(path, |w| {
             self.header.write(w)?;
             self.fixed.iter().try_for_each(|numbers| numbers.write(w))
         })
@@ -265,7 +268,8 @@ fn numbers(points: &[u32]) -> Vec<i32> {
 /// # Errors
 /// Those of [`Exodus::create`].
 pub fn write_mesh(path: &Path, layout: &Layout, at: &[[f64; 3]]) -> Result<(), WriteError> {
-    begun(path, layout, at, &[])?.0.write(path)
+    begun(path, layout, at, &[])?.0.write(path)?;
+    Ok(())
 }
 
 /// What is not recorded, and its length.
@@ -312,6 +316,7 @@ impl Owner for Exodus {
         archive.same("record", &mut self.record);
         archive.one("records", &mut self.header.records);
         archive.one("step", &mut self.step);
+        archive.one("checksum", &mut self.sum);
     }
 }
 
@@ -330,20 +335,20 @@ impl Exodus {
     /// # Errors
     /// As [`create`](Exodus::create).
     pub fn reopen(path: &Path, layout: &Layout, now: &Snapshot) -> Result<Self, WriteError> {
-        Exodus::made(path, layout, now, |_| Ok(()))
+        Exodus::made(path, layout, now, |_| Ok(Seal::default()))
     }
 
     fn made(
         path: &Path,
         layout: &Layout,
         like: &Snapshot,
-        write: impl FnOnce(&Start) -> Result<(), WriteError>,
+        write: impl FnOnce(&Start) -> Result<Seal, WriteError>,
     ) -> Result<Self, WriteError> {
         let failed = |e: io::Error| WriteError::at("write", path)(e);
         let columns = fields(like).map_err(failed)?;
         let nodal: Vec<String> = columns.iter().flat_map(|c| names_of(c)).collect();
         let (begun, start) = begun(path, layout, &like.reference, &nodal)?;
-        write(&begun)?;
+        let sum = write(&begun)?.sum;
         let header = begun.header;
         let file = File::options().read(true).write(true).open(path);
         Ok(Exodus {
@@ -355,23 +360,45 @@ impl Exodus {
             nodal,
             globals: layout.globals.len(),
             step: None,
+            sum,
         })
     }
 
     /// Takes away the frames that came after the state that was read: first they are not counted any more, then they are cut off.
     ///
     /// # Errors
-    /// The operating system's; there are fewer frames.
+    /// The operating system's; frames are not as they were, or there are fewer.
     pub fn rewind(&mut self) -> Result<(), WriteError> {
         let failed = |e| WriteError::at("go on with", &self.path)(e);
         let end = self.start + self.header.records * self.record;
-        if self.file.metadata().map_err(failed)?.len() < end {
+        let there = self.file.metadata().map_err(failed)?.len();
+        if there < end || self.sum_to(end).map_err(failed)? != self.sum {
             return Err(changed(&self.path));
         }
         self.count(self.header.records)
             .and_then(|()| self.file.sync_data())
             .and_then(|()| self.file.set_len(end))
             .map_err(failed)
+    }
+
+    /// The checksum of the first bytes, as if no records were counted.
+    fn sum_to(&self, end: u64) -> io::Result<u32> {
+        let (at, none) = self.header.records_mark(0);
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(0))?;
+        let mut head = vec![0; at as usize + none.len()];
+        file.read_exact(&mut head)?;
+        head[at as usize..].copy_from_slice(&none);
+        let mut sum = Hasher::new();
+        sum.update(&head);
+        let (mut left, mut room) = (end - head.len() as u64, vec![0; 1 << 18]);
+        while left > 0 {
+            let now = room.len().min(usize::try_from(left).unwrap_or(usize::MAX));
+            file.read_exact(&mut room[..now])?;
+            sum.update(&room[..now]);
+            left -= now as u64;
+        }
+        Ok(sum.finalize())
     }
 
     /// Adds a frame, or nothing; one of the step of the last frame is passed over.
@@ -384,27 +411,33 @@ impl Exodus {
             return Ok(());
         }
         let end = self.start + self.header.records * self.record;
-        let done = self.frame(s, globals, end);
-        if let Err(error) = done {
-            // if cutting fails too, the error of the frame tells more
-            let _ = self.count(self.header.records);
-            let _ = self.file.set_len(end);
-            return Err(WriteError::at("append to", &self.path)(error));
-        }
+        let frame = match self.frame(s, globals, end) {
+            Ok(frame) => frame,
+            Err(error) => {
+                // if cutting fails too, the error of the frame tells more
+                let _ = self.count(self.header.records);
+                let _ = self.file.set_len(end);
+                return Err(WriteError::at("append to", &self.path)(error));
+            }
+        };
+        let mut all = Hasher::new_with_initial_len(self.sum, end);
+        all.combine(&frame);
+        self.sum = all.finalize();
         self.header.records += 1;
         self.step = Some(s.step);
         Ok(())
     }
 
-    fn frame(&self, s: &Snapshot, globals: &[f64], end: u64) -> io::Result<()> {
+    fn frame(&self, s: &Snapshot, globals: &[f64], end: u64) -> io::Result<Hasher> {
         let columns = fields(s)?;
         let names = columns.iter().flat_map(|c| names_of(c));
         if !names.eq(self.nodal.iter().cloned()) || globals.len() != self.globals {
             let message = "the frame has other fields than the first";
             return Err(invalid(message.into()));
         }
-        let mut w = BufWriter::with_capacity(1 << 18, &self.file);
-        w.seek(SeekFrom::Start(end))?;
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(end))?;
+        let mut w = BufWriter::with_capacity(1 << 18, Summed::new(file));
         w.write_all(&s.time.to_be_bytes())?;
         globals
             .iter()
@@ -417,10 +450,12 @@ impl Exodus {
             }
         }
         w.flush()?;
+        let sum = w.get_ref().sum.clone();
         drop(w);
         // the count must not reach the disk before what it counts
         self.file.sync_data()?;
-        self.count(self.header.records + 1)
+        self.count(self.header.records + 1)?;
+        Ok(sum)
     }
 
     /// Says how many frames there are.

@@ -13,11 +13,90 @@ use peridyne::state::{Archive, Owner};
 
 use super::atomic::{WriteError, open_to_append, write_file};
 
-/// A writer that counts and sums what goes through it.
-pub(super) struct Summed<W> {
-    to: W,
+/// What is in a file, in short.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Seal {
+    /// Bytes.
     pub length: u64,
-    pub sum: Hasher,
+    /// CRC-32 of them.
+    pub sum: u32,
+}
+
+impl Seal {
+    /// Of the first bytes of a file.
+    ///
+    /// # Errors
+    /// The operating system's; there are not so many.
+    pub fn of(file: &mut File, length: u64) -> io::Result<Seal> {
+        let sum = sum_of(file, length)?;
+        Ok(Seal { length, sum })
+    }
+
+    /// Opens a file that begins with this, to append to it, and cuts off what came after.
+    ///
+    /// # Errors
+    /// It does not, or the operating system's.
+    pub fn cut_back(self, path: &Path) -> Result<File, WriteError> {
+        let failed = |e| WriteError::at("go on with", path)(e);
+        let mut file = File::open(path).map_err(failed)?;
+        let there = file.metadata().map_err(failed)?.len();
+        if there < self.length || Seal::of(&mut file, self.length).map_err(failed)? != self {
+            return Err(changed(path));
+        }
+        let file = open_to_append(path)?;
+        file.set_len(self.length).map_err(failed)?;
+        Ok(file)
+    }
+
+    /// Is this still in the file?
+    ///
+    /// # Errors
+    /// It is not, or the operating system's.
+    pub fn holds(self, path: &Path) -> Result<(), WriteError> {
+        let failed = |e| WriteError::at("go on with", path)(e);
+        let mut file = File::open(path).map_err(failed)?;
+        let there = file.metadata().map_err(failed)?.len();
+        match there == self.length && sum_of(&mut file, there).map_err(failed)? == self.sum {
+            true => Ok(()),
+            false => Err(changed(path)),
+        }
+    }
+}
+
+impl Owner for Seal {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.one("length", &mut self.length);
+        archive.one("checksum", &mut self.sum);
+    }
+}
+
+/// Writes a file like [`write_file`], and says what is in it.
+///
+/// # Errors
+/// As [`write_file`].
+pub fn write_sealed(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<&mut dyn Write>) -> io::Result<()>,
+) -> Result<Seal, WriteError> {
+    let mut seal = Seal::default();
+    write_file(path, |w| {
+        let mut summed = Summed::new(w);
+        let to: &mut dyn Write = &mut summed;
+        let mut room = BufWriter::with_capacity(1 << 18, to);
+        fill(&mut room)?;
+        room.flush()?;
+        drop(room);
+        seal = summed.seal();
+        Ok(())
+    })?;
+    Ok(seal)
+}
+
+/// A writer that counts and sums what goes through it.
+pub struct Summed<W> {
+    to: W,
+    pub(super) length: u64,
+    pub(super) sum: Hasher,
 }
 
 impl<W: Write> Summed<W> {
@@ -26,6 +105,28 @@ impl<W: Write> Summed<W> {
             to,
             length: 0,
             sum: Hasher::new(),
+        }
+    }
+
+    /// The same behind what is there already.
+    pub fn after(to: W, there: Seal) -> Self {
+        Summed {
+            to,
+            length: there.length,
+            sum: Hasher::new_with_initial_len(there.sum, there.length),
+        }
+    }
+
+    /// Where it goes to.
+    pub fn inner(&self) -> &W {
+        &self.to
+    }
+
+    /// What has gone through, behind what was there.
+    pub fn seal(&self) -> Seal {
+        Seal {
+            length: self.length,
+            sum: self.sum.clone().finalize(),
         }
     }
 }

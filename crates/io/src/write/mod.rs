@@ -31,5 +31,5 @@ pub mod trajectory;
 pub mod vtu;
 
 pub use atomic::WriteError;
-pub use grown::Grown;
+pub use grown::{Grown, Seal, Summed};
 pub use series::{Series, SeriesOptions};

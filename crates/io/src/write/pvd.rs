@@ -7,13 +7,15 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::atomic::{WriteError, write_file};
+use super::grown::Seal;
 use peridyne::state::{Archive, Owner};
 
 /// A collection file and what it lists.
 #[derive(Debug, Clone)]
 pub struct Pvd {
     path: PathBuf,
-    entries: Vec<(f64, String)>,
+    /// Time, name and what is in the file.
+    entries: Vec<(f64, String, Seal)>,
 }
 
 impl Pvd {
@@ -31,15 +33,24 @@ impl Pvd {
 
     /// Names of the files that it lists.
     pub fn files(&self) -> impl Iterator<Item = &str> {
-        self.entries.iter().map(|(_, file)| &**file)
+        self.entries.iter().map(|(_, file, _)| &**file)
     }
 
     /// Adds a file (relative to the collection) at a time and rewrites the collection. A file that is listed
     /// already gets the new time.
-    pub fn push(&mut self, time: f64, file: &str) -> Result<(), WriteError> {
-        self.entries.retain(|(_, listed)| listed != file);
-        self.entries.push((time, file.to_string()));
+    pub fn push(&mut self, time: f64, file: &str, seal: Seal) -> Result<(), WriteError> {
+        self.entries.retain(|(_, listed, _)| listed != file);
+        self.entries.push((time, file.to_string(), seal));
         self.write()
+    }
+
+    /// Are the files that it lists as they were when they were pushed?
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn holds(&self) -> Result<(), WriteError> {
+        let mut entries = self.entries.iter();
+        entries.try_for_each(|(_, file, seal)| seal.holds(&self.path.with_file_name(file)))
     }
 
     /// Writes what it lists.
@@ -51,7 +62,7 @@ impl Pvd {
                 r#"<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">"#
             )?;
             writeln!(w, "<Collection>")?;
-            for (time, file) in &self.entries {
+            for (time, file, _) in &self.entries {
                 let file = escape(file);
                 writeln!(
                     w,
@@ -65,10 +76,12 @@ impl Pvd {
 
 impl Owner for Pvd {
     fn archive(&mut self, archive: &mut Archive<'_>) {
-        let none = || (0.0, String::new());
-        archive.items("files", &mut self.entries, none, |(time, file), archive| {
+        let none = || (0.0, String::new(), Seal::default());
+        archive.items("files", &mut self.entries, none, |entry, archive| {
+            let (time, file, seal) = entry;
             archive.one("time", time);
             archive.text("name", file);
+            archive.part("file", seal);
         });
     }
 }
@@ -93,7 +106,7 @@ mod tests {
             (1e-7, "b<&\".vtu", 2),
             (2e-7, "a.vtu", 2),
         ] {
-            pvd.push(time, file).unwrap();
+            pvd.push(time, file, Seal::default()).unwrap();
             let text = std::fs::read_to_string(pvd.path()).unwrap();
             assert!(text.ends_with("</Collection>\n</VTKFile>\n"));
             assert_eq!(text.matches("<DataSet").count(), listed);

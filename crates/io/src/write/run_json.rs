@@ -61,8 +61,9 @@ pub struct RunReport {
     pub setting: Option<Setting>,
 }
 
-/// Wall time of a run (s): all of it, and the parts that are not steps.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+/// Wall time of a run (s): all of it, and what is no steps. Of a run that went on, of all its parts, each to the state that the next
+/// began with.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Spent {
     pub all: f64,
     /// Frames, rows of the history and what else is written as a run goes on.
@@ -76,9 +77,34 @@ pub struct Spent {
     /// The report; it is made of `run.json`, which does not know.
     #[serde(skip)]
     pub report: f64,
+    /// All of each part, of a run that went on.
+    #[serde(skip_serializing_if = "is_one")]
+    pub parts: Vec<f64>,
+}
+
+fn is_one(parts: &[f64]) -> bool {
+    parts.len() < 2
+}
+
+impl Owner for Spent {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.one("all", &mut self.all);
+        archive.one("fields", &mut self.fields);
+        archive.one("pictures", &mut self.pictures);
+        archive.one("checkpoints", &mut self.checkpoints);
+        archive.list("parts", &mut self.parts);
+    }
 }
 
 impl Spent {
+    /// So much more of the part that is going on.
+    pub fn goes_on(&mut self, seconds: f64) {
+        self.all += seconds;
+        if let Some(last) = self.parts.last_mut() {
+            *last += seconds;
+        }
+    }
+
     /// A sentence of the parts that took time, with that of the steps.
     pub fn told(&self, stepping: f64) -> String {
         let parts = [
@@ -465,6 +491,7 @@ mod tests {
             checkpoints: 0.0,
             report: 1.0,
             frames: 0.001,
+            parts: vec![],
         };
         let text = "in all 9.50 s: steps 4.20 s, fields 4.00 s, pictures 0.25 s, report 1.00 s";
         assert_eq!(spent.told(4.2), text);

@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 use peridyne::observe::Snapshot;
 use peridyne::state::{Archive, Owner};
 
-use super::atomic::{WriteError, create_directory, write_file};
+use super::atomic::{WriteError, create_directory};
 use super::dump::{DumpBox, write_frame};
 use super::earlier::{sweep_frames, told};
 use super::folder::{CHECKPOINT, WAITING};
-use super::grown::{Grown, changed};
+use super::grown::{Grown, write_sealed};
 use super::picture::film::{Film, HURRY};
 use super::picture::rigid::Placed;
 use super::picture::shown::About;
@@ -146,9 +146,7 @@ impl Series {
         for (kind, list) in KINDS.iter().zip([&self.points, &self.cells, &self.bonds]) {
             let kept: Vec<&str> = list.files().collect();
             sweep_frames(&self.dir, kind, &kept)?;
-            if let Some(gone) = kept.iter().find(|f| !self.dir.join(f).is_file()) {
-                return Err(changed(&self.dir.join(gone)));
-            }
+            list.holds()?;
             if !kept.is_empty() {
                 list.write()?;
             }
@@ -184,19 +182,19 @@ impl Series {
     pub fn write(&mut self, s: &Snapshot, bodies: &[Placed]) -> Result<(), WriteError> {
         if self.options.points {
             let name = format!("points_{:08}.vtu", s.step);
-            write_file(&self.dir.join(&name), |w| write_points(w, s))?;
-            self.points.push(s.time, &name)?;
+            let seal = write_sealed(&self.dir.join(&name), |w| write_points(w, s))?;
+            self.points.push(s.time, &name, seal)?;
         }
         if self.options.writes_cells() {
             let name = format!("cells_{:08}.vtu", s.step);
             let cells = &self.options.cells;
-            write_file(&self.dir.join(&name), |w| write_cells(w, s, cells))?;
-            self.cells.push(s.time, &name)?;
+            let seal = write_sealed(&self.dir.join(&name), |w| write_cells(w, s, cells))?;
+            self.cells.push(s.time, &name, seal)?;
         }
         if self.options.bonds {
             let name = format!("bonds_{:08}.vtu", s.step);
-            write_file(&self.dir.join(&name), |w| write_bonds(w, s))?;
-            self.bonds.push(s.time, &name)?;
+            let seal = write_sealed(&self.dir.join(&name), |w| write_bonds(w, s))?;
+            self.bonds.push(s.time, &name, seal)?;
         }
         if let (Some((dump, last)), Some((_, cell))) = (&mut self.dump, &self.options.dump)
             && *last != Some(s.step)

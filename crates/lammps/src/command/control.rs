@@ -182,16 +182,16 @@ impl Script<'_> {
 
     fn run(&mut self, args: &mut Args) -> Result<()> {
         let plan = self.session.run_plan(args)?;
+        if self.session.from.is_some() {
+            return self.go_on(&plan);
+        }
         let begin = self.session.progress.step;
         let end = begin + plan.steps;
         let Some((every, commands)) = &plan.every else {
             self.session.start_run(&plan)?;
             self.end_of_step(true)?;
             self.session.first_output()?;
-            let clock = Instant::now();
-            self.steps_until(end)?;
-            self.session.end_run(&plan, clock.elapsed().as_secs_f64());
-            return Ok(());
+            return self.run_until(end, plan.report);
         };
         self.session.progress.whole = Some((begin, end));
         while self.session.progress.step < end {
@@ -208,13 +208,24 @@ impl Script<'_> {
             self.session.first_output()?;
             let clock = Instant::now();
             let target = self.session.progress.step + steps;
-            self.steps_until(target)?;
-            self.session.end_run(&part, clock.elapsed().as_secs_f64());
+            self.steps_until(target, false)?;
+            self.session.end_run(false, clock.elapsed().as_secs_f64());
             for command in commands {
                 self.line(&command.text)?;
             }
         }
         self.session.progress.whole = None;
+        Ok(())
+    }
+
+    /// Steps of a `run`, and the lines after it.
+    ///
+    /// # Errors
+    /// As [`steps_until`](Script::steps_until).
+    pub fn run_until(&mut self, end: u64, report: bool) -> Result<()> {
+        let clock = Instant::now();
+        self.steps_until(end, report)?;
+        self.session.end_run(report, clock.elapsed().as_secs_f64());
         Ok(())
     }
 
@@ -332,7 +343,11 @@ impl Script<'_> {
         } else if is_control(command.as_str()) {
             self.control(&mut args)
         } else {
-            self.session.command(args)
+            let done = self.session.command(args);
+            if done.is_ok() {
+                self.session.note_command(command.as_str(), line.as_str());
+            }
+            done
         };
         self.depth -= 1;
         let result = result.and_then(|()| self.session.console.check());

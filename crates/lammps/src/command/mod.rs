@@ -22,6 +22,7 @@ mod variables;
 mod velocity;
 
 pub use self::args::Args;
+pub use self::run::RunPlan;
 
 use super::error::{Problem, Result, suggestion};
 use super::session::Session;

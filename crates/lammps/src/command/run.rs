@@ -12,7 +12,7 @@ use crate::host::{RunStart, Setup, Style};
 use crate::printf::general;
 use crate::script::Script;
 use crate::session::{PairState, Session, Store};
-use crate::text::Word;
+use crate::text::{Text, Word, words};
 
 /// What a `run` command asks for.
 pub struct RunPlan {
@@ -123,6 +123,36 @@ impl Session<'_> {
             problem
         })?);
         Ok(())
+    }
+
+    /// Builds the model of a script that goes on, as its first `run` did.
+    ///
+    /// # Errors
+    /// As [`Session::build`].
+    pub fn build_first(&mut self, plan: &RunPlan) -> Result<()> {
+        let steps = match &plan.every {
+            Some((every, _)) => plan.steps.min(*every),
+            None => plan.steps,
+        };
+        self.progress.begin = self.progress.step;
+        self.progress.end = self.progress.step + steps;
+        self.nobody_twice()?;
+        self.rebuild()?;
+        self.count_atoms();
+        self.build()
+    }
+
+    /// Does a command again whose variables have their values.
+    ///
+    /// # Errors
+    /// Those of the command.
+    pub fn repeat(&mut self, line: &Text) -> Result<()> {
+        let mut words = words(line)?;
+        self.without_suffix(&mut words);
+        match words.split_first() {
+            Some((command, rest)) => self.command(Args::new(command, rest)),
+            None => Ok(()),
+        }
     }
 
     /// Has the disk room for the dumps of so many steps?
@@ -240,7 +270,7 @@ impl Session<'_> {
     }
 
     /// The line after a run.
-    pub fn end_run(&mut self, plan: &RunPlan, seconds: f64) {
+    pub fn end_run(&mut self, report: bool, seconds: f64) {
         self.thermo_footer();
         let steps = self.progress.step - self.progress.begin;
         let seconds = general(seconds, 6, false);
@@ -248,7 +278,7 @@ impl Session<'_> {
         self.print(&format!(
             "Loop time of {seconds} on 1 procs for {steps} steps with {atoms} atoms"
         ));
-        if plan.report {
+        if report {
             self.print("");
         }
         self.progress.begin = self.progress.step;
@@ -297,12 +327,12 @@ impl Session<'_> {
 }
 
 impl Script<'_> {
-    /// Steps until step `end`, with output on the way and at the end of the run.
+    /// Steps until step `end`, with output on the way and at the end of the run, which reports or not.
     ///
     /// # Errors
     /// The state went bad; a value or a file is not there.
-    pub fn steps_until(&mut self, end: u64) -> Result<()> {
-        let start = Instant::now();
+    pub fn steps_until(&mut self, end: u64, report: bool) -> Result<()> {
+        let mut start = Instant::now();
         let wanted = self.session.pressure_wanted();
         while self.session.progress.step < end {
             let s = &mut self.session;
@@ -326,13 +356,10 @@ impl Script<'_> {
             if thermo {
                 s.thermo_line()?;
             }
-            if s.console.ended() {
-                s.ended = true;
-                s.progress.stepping_seconds += start.elapsed().as_secs_f64();
-                return Err(Problem::new("ended from outside"));
-            }
+            s.progress.stepping_seconds += start.elapsed().as_secs_f64();
+            start = Instant::now();
+            self.look_for_wish(Some((end, report)))?;
         }
-        self.session.progress.stepping_seconds += start.elapsed().as_secs_f64();
         Ok(())
     }
 }

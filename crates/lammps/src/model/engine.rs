@@ -13,6 +13,7 @@ use peridyne::observe::Observed;
 use peridyne::observe::Snapshot;
 use peridyne::quantity::rounded;
 use peridyne::run::{Prescription, Simulation, Watched};
+use peridyne::state::{Archive, Owner};
 use std::any::Any;
 use std::cell::RefCell;
 
@@ -37,6 +38,24 @@ pub(super) struct Derived {
     dilatation: Option<Vec<f64>>,
     energy: Option<Vec<f64>>,
     virials: Option<Vec<[f64; 6]>>,
+}
+
+/// Bonds that broke in the last step are in energies and dilatations, and are found no more.
+impl Owner for Derived {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let columns = [
+            ("damage", &mut self.damage),
+            ("critical_stretch", &mut self.critical_stretch),
+            ("dilatation", &mut self.dilatation),
+            ("energy", &mut self.energy),
+        ];
+        for (name, column) in columns {
+            archive.option(name, column, Vec::new, |values, a| a.list("values", values));
+        }
+        archive.option("virials", &mut self.virials, Vec::new, |values, a| {
+            a.list("values", values);
+        });
+    }
 }
 
 /// A peridyne model that a script runs.
@@ -129,6 +148,31 @@ impl ModelEngine {
                 "atoms of types {i} and {j} have a horizon of 0: as in LAMMPS they repel with 15 c/0, without bounds, where they come closer than 0.9 of their first distance or 1.35 lattice constants; a short horizon with s00 = 0 cuts bonds and leaves a contact"
             )),
         }
+    }
+
+    /// Time step, and what moves, carries and drives points in a run. Is the time step another than before?
+    fn take_up(&mut self, run: &RunStart, conditions: &[Condition]) -> bool {
+        self.changed();
+        let n = self.count();
+        let sim = self.sim.get_mut();
+        let changed = sim.info().time_step != run.time_step;
+        sim.set_time_step(run.time_step);
+        let time = sim.time();
+        sim.set_time(run.step, time);
+        let still: Vec<u32> = (0..n as u32)
+            .filter(|i| !run.moving.as_ref().is_some_and(|m| m.contains(*i as usize)))
+            .collect();
+        sim.prescribe(Prescription::Still, &still);
+        sim.prescribe(Prescription::Carried, &run.carried);
+        let mut driven: Vec<(Drive, Option<Vec<u32>>)> = Vec::new();
+        self.driven.clear();
+        for condition in conditions {
+            let drive = super::conditions::drive(condition, self.height);
+            self.driven.push(drive.as_ref().map(|_| driven.len()));
+            driven.extend(drive.map(|d| (d, super::conditions::members(condition, n))));
+        }
+        sim.set_driven(&driven);
+        changed
     }
 
     /// Hands the values of this instant to the model.
@@ -272,13 +316,8 @@ impl Particles for ModelEngine {
 
 impl Engine for ModelEngine {
     fn setup(&mut self, run: &RunStart, conditions: &[Condition]) -> Result<(), HostError> {
-        self.changed();
-        let n = self.count();
+        let changed = self.take_up(run, conditions);
         let sim = self.sim.get_mut();
-        let changed = sim.info().time_step != run.time_step;
-        sim.set_time_step(run.time_step);
-        let time = sim.time();
-        sim.set_time(run.step, time);
         let stable = sim.info().stable_step;
         if (changed || !self.bonded) && run.time_step > stable {
             self.notes.push(format!(
@@ -288,19 +327,6 @@ impl Engine for ModelEngine {
                 rounded(0.8 * stable, 3)
             ));
         }
-        let still: Vec<u32> = (0..n as u32)
-            .filter(|i| !run.moving.as_ref().is_some_and(|m| m.contains(*i as usize)))
-            .collect();
-        sim.prescribe(Prescription::Still, &still);
-        sim.prescribe(Prescription::Carried, &run.carried);
-        let mut driven: Vec<(Drive, Option<Vec<u32>>)> = Vec::new();
-        self.driven.clear();
-        for condition in conditions {
-            let drive = super::conditions::drive(condition, self.height);
-            self.driven.push(drive.as_ref().map(|_| driven.len()));
-            driven.extend(drive.map(|d| (d, super::conditions::members(condition, n))));
-        }
-        sim.set_driven(&driven);
         // the next evaluation with bonds is now, or at the end of the first step
         if self.undefined && (self.bonded || run.steps > 0) {
             self.undefined = false;
@@ -408,6 +434,20 @@ impl Engine for ModelEngine {
 
     fn notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notes)
+    }
+
+    fn await_state(&mut self, run: &RunStart, conditions: &[Condition]) -> Result<(), HostError> {
+        self.take_up(run, conditions);
+        // they were told when it began
+        self.notes.clear();
+        Ok(())
+    }
+
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.part("model", self.sim.get_mut().as_mut());
+        archive.part("derived", self.derived.get_mut());
+        archive.one("bonded", &mut self.bonded);
+        archive.one("undefined", &mut self.undefined);
     }
 
     fn as_any(&mut self) -> &mut dyn Any {

@@ -179,6 +179,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         }
     }
 
+    fn each_gone(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        self.each_broken(body, visit);
+    }
+
     fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
         self.limit_of(ends, xi, critical)
     }

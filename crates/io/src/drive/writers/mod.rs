@@ -53,6 +53,8 @@ pub(super) struct Known {
     pub broken: u64,
     /// Time spent in steps (s).
     pub stepping: f64,
+    /// When a state is written: what was spent up to it.
+    pub spent: Spent,
 }
 
 impl Owner for Known {
@@ -68,6 +70,7 @@ impl Owner for Known {
         });
         archive.one("broken", &mut self.broken);
         archive.one("stepping", &mut self.stepping);
+        archive.part("spent", &mut self.spent);
     }
 }
 

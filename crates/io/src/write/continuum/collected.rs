@@ -5,7 +5,6 @@ use super::slice::SliceFilm;
 use super::{Table, write_arrays, write_image, write_profiles, write_slice, write_table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, create_directory, write_file};
-use crate::write::grown::changed;
 use crate::write::pvd::Pvd;
 use peridyne::state::{Archive, Owner};
 use peridyne_fields::average::Average;
@@ -85,12 +84,9 @@ impl Collected {
     /// Writes the list of frames as it was when the state was saved, and takes away frames that came after it.
     ///
     /// # Errors
-    /// The operating system's; a frame is missing.
+    /// The operating system's; a frame is not as it was.
     pub fn rewind(&mut self) -> Result<(), WriteError> {
-        let kept: Vec<&str> = self.pvd.files().collect();
-        if let Some(gone) = kept.iter().find(|f| !self.dir.join(f).is_file()) {
-            return Err(changed(&self.dir.join(gone)));
-        }
+        self.pvd.holds()?;
         if self.each {
             // frames are counted: those beyond are of later states
             for index in self.read.len().. {
@@ -100,9 +96,9 @@ impl Collected {
                 std::fs::remove_file(&path).map_err(WriteError::at("take back", &path))?;
             }
         }
-        match kept.is_empty() {
-            true => Ok(()),
-            false => self.pvd.write(),
+        match self.pvd.files().next() {
+            None => Ok(()),
+            Some(_) => self.pvd.write(),
         }
     }
 
@@ -133,11 +129,11 @@ impl Collected {
             create_directory(&self.dir)?;
             let stem = format!("frame.{index:06}");
             match write_image(&self.dir, &stem, &table, time)? {
-                Some(path) => {
+                Some((path, seal)) => {
                     let own = format!("{}", path.file_name().unwrap_or_default().display());
                     let list = self.pvd.path().to_path_buf();
                     self.written.extend([path, list]);
-                    self.pvd.push(shown.unwrap_or(index as f64), &own)?;
+                    self.pvd.push(shown.unwrap_or(index as f64), &own, seal)?;
                 }
                 None => {
                     let path = self.dir.join(format!("{stem}.csv"));

@@ -2,12 +2,13 @@
 //! (`.vts`). Raw appended binary, little-endian, 64-bit headers; every block is its length in bytes and its numbers.
 
 use super::Table;
-use crate::write::atomic::{WriteError, write_file};
+use crate::write::atomic::WriteError;
+use crate::write::grown::{Seal, write_sealed};
 use peridyne_fields::Cell;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes `stem.vti` or `stem.vts` into the folder and says which; nothing for points that are no grid.
+/// Writes `stem.vti` or `stem.vts` into the folder and says which, and what is in it; nothing for points that are no grid.
 ///
 /// # Errors
 /// The operating system's.
@@ -16,14 +17,14 @@ pub fn write_image(
     stem: &str,
     table: &Table,
     time: Option<f64>,
-) -> Result<Option<PathBuf>, WriteError> {
+) -> Result<Option<(PathBuf, Seal)>, WriteError> {
     let Some((n, cell)) = &table.grid else {
         return Ok(None);
     };
     let image = cell.is_orthogonal() && (0..3).all(|a| cell.edges[a][a] > 0.0);
     let path = dir.join(format!("{stem}.{}", if image { "vti" } else { "vts" }));
-    write_file(&path, |w| grid(w, table, *n, cell, image, time))?;
-    Ok(Some(path))
+    let seal = write_sealed(&path, |w| grid(w, table, *n, cell, image, time))?;
+    Ok(Some((path, seal)))
 }
 
 fn grid<W: Write>(

@@ -186,3 +186,48 @@ fn long_names_and_titles_fit() {
         .find(|a| a.0 == "maximum_name_length");
     assert_eq!(width.unwrap().1, Attribute::Ints(vec![70]));
 }
+
+#[test]
+fn a_file_goes_back_to_a_state_and_one_with_a_changed_frame_does_not() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.e");
+    let mut file = Exodus::create(&path, &layout(), &rich()).unwrap();
+    file.push(&rich(), &[7.0, 1.5]).unwrap();
+    let mut state = vec![];
+    let mut archive = Archive::save(&mut state);
+    archive.part("file", &mut file);
+    archive.done().unwrap();
+    let then = std::fs::read(&path).unwrap();
+    file.push(&later(), &[12.0, 2.5]).unwrap();
+    file.finish().unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    let again = || {
+        let mut file = Exodus::reopen(&path, &layout(), &rich()).unwrap();
+        let mut from = state.as_slice();
+        let mut archive = Archive::load(&mut from);
+        archive.part("file", &mut file);
+        archive.done().unwrap();
+        file
+    };
+    // of the mesh and of the frame, but not of what came after
+    for at in [200, then.len() - 1] {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1;
+        std::fs::write(&path, &bytes).unwrap();
+        let text = again().rewind().unwrap_err().to_string();
+        assert!(
+            text.contains("a.e") && text.contains("it is not as the run left it"),
+            "{text}"
+        );
+        assert_eq!(std::fs::read(&path).unwrap(), bytes);
+    }
+    let mut bytes = whole.clone();
+    bytes[then.len()] ^= 1;
+    std::fs::write(&path, &bytes).unwrap();
+    let mut file = again();
+    file.rewind().unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), then);
+    file.push(&later(), &[12.0, 2.5]).unwrap();
+    file.finish().unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), whole);
+}
