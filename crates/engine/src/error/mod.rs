@@ -2,17 +2,10 @@
 
 mod build;
 mod run;
+mod size;
 mod solve;
 
 pub use build::{BuildError, BuildErrorKind};
 pub use run::RunError;
+pub use size::size;
 pub use solve::{Loose, SolveError};
-
-/// Bytes for readers.
-pub fn size(bytes: f64) -> String {
-    match bytes {
-        b if b >= 1e12 => format!("{:.3} TB", b / 1e12),
-        b if b >= 1e9 => format!("{:.1} GB", b / 1e9),
-        b => format!("{:.0} MB", b / 1e6),
-    }
-}

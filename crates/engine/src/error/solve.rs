@@ -1,6 +1,6 @@
 //! Why no equilibrium or mode was found.
 
-use super::size;
+use super::size::size;
 
 /// A motion of a connected part that nothing resists.
 #[derive(Debug, Clone, PartialEq)]

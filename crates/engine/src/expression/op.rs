@@ -1,6 +1,8 @@
 //! Operations of the stack machine.
 
-use super::{Rule, STACK, random};
+use super::error::STACK;
+
+use super::{Rule, random};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Op {

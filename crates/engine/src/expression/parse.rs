@@ -1,8 +1,9 @@
 //! Text to program: a precedence-climbing parser that emits operations as it goes.
 
+use super::error::{ExpressionError, STACK};
 use super::measure::PLACE;
 use super::op::{Binary, FUNCTIONS, Function, Op, Ternary, Unary};
-use super::{ExpressionError, Measure, Misfit, STACK};
+use super::{Measure, Misfit};
 use std::ops::Range;
 
 /// Deepest nesting of brackets, signs and powers; keeps the parser's own stack small.

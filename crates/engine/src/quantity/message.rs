@@ -3,7 +3,9 @@
 use std::fmt;
 use std::ops::{Deref, Range};
 
-use super::{Dimension, Quantity, rounded};
+use super::number::{Quantity, rounded};
+
+use super::Dimension;
 
 /// Digits of numbers where nobody knows units.
 const DIGITS: usize = 4;

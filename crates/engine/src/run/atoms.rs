@@ -62,55 +62,12 @@ pub(super) fn check_smooth(spec: &Spec, atoms: bool) -> Result<(), BuildError> {
     let Some(smooth) = &spec.smooth else {
         return Ok(());
     };
-    let refused = |path: &str, message: &str, help: &str| {
-        Err(BuildError::unsupported(path, message).help(help))
-    };
     if !atoms || spec.family != FamilyChoice::Reference {
-        return refused(
+        return Err(BuildError::unsupported(
             "smooth",
             "smoothing averages the force states of a potential, which are those of the reference",
-            "write family = \"reference\", with an interatomic potential as the law",
-        );
-    }
-    if spec.materials.len() > 1 {
-        return refused(
-            "smooth",
-            "a node carries all atoms near it, and with several materials it is of none",
-            "give the atoms one material",
-        );
-    }
-    if spec.thermal.is_some() {
-        return refused(
-            "thermal",
-            "atoms that are carried along have no thermal motion of their own",
-            "remove thermal, or smooth",
-        );
-    }
-    for (path, there) in [
-        ("toughness[0]", !spec.toughness.is_empty()),
-        ("healing", spec.healing.is_some()),
-    ] {
-        if there {
-            return refused(
-                path,
-                "the points of this body are nodes, and what breaks are bonds between the atoms that they carry",
-                "leave it out, or smooth",
-            );
-        }
-    }
-    if matches!(&spec.body, BodySpec::Cloud(cloud) if !cloud.velocity.is_empty()) {
-        return refused(
-            "smooth",
-            "the file has velocities of atoms, and atoms that are carried along have none of their own",
-            "give the places alone; velocities of nodes are those of [[initial]]",
-        );
-    }
-    if !spec.transfers.is_empty() {
-        return refused(
-            "smooth",
-            "a potential conducts nothing: its bonds are not those of a continuum",
-            "take a law of solids (pmb, lps, …) for heat and species",
-        );
+        )
+        .help("write family = \"reference\", with an interatomic potential as the law"));
     }
     for (path, length) in [
         ("smooth.width", Some(smooth.width)),

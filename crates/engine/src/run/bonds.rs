@@ -6,8 +6,7 @@ use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
 use crate::law::BondFactors;
 use crate::law::solid::bond_based::between;
-use crate::law::solid::eam_like::Solid;
-use crate::spec::{BondFactorSpec, InterfaceRule, MaterialSpec, Spec};
+use crate::spec::{BondFactorSpec, InterfaceRule, Spec};
 use std::cell::Cell;
 
 /// Scale the bonds of `interaction` as the spec says, and what to warn of. Call before [`Interaction::prepare`] and any
@@ -18,14 +17,6 @@ pub(super) fn scale<const D: usize>(
     interaction: &mut dyn Interaction<D>,
 ) -> Result<Vec<String>, BuildError> {
     let mut warnings = vec![];
-    let solid = |m: &MaterialSpec| Solid::of_law(D, spec.plane, &m.law).is_some();
-    if !spec.bonds.is_empty() && spec.materials.iter().any(solid) {
-        return Err(BuildError::unsupported(
-            "bonds[0]",
-            "factors of bonds need a bond-based law: in a state-based one a bond also acts through the pressure of its ends",
-        )
-        .help("write law = { pmb = ... } or springs, or give parts of the body materials of their own"));
-    }
     for (n, factor) in spec.bonds.iter().enumerate() {
         let path = format!("bonds[{n}]");
         let named = |e: BuildError| e.at(path.clone());

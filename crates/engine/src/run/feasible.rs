@@ -12,7 +12,7 @@ use crate::quantity::{Dimension, rounded};
 use crate::space::ball_volume;
 use crate::spec::{LawSpec, Spec};
 
-/// Steppers and instruction sets that there are not.
+/// Stages and instruction sets that there are not.
 pub(super) fn possible(spec: &Spec, simd: Option<Simd>) -> Result<(), BuildError> {
     if let Some(preload) = &spec.preload {
         preload::possible(spec, preload)?;

@@ -81,13 +81,6 @@ fn join<const D: usize>(
             BuildError::invalid("bodies", "it joins a body with itself").help("name two bodies")
         );
     }
-    if !spec.bonds.is_empty() {
-        return Err(BuildError::unsupported(
-            "",
-            "factors of bonds do not reach the bonds of an interface",
-        )
-        .help("give the interface the stiffness that it shall have"));
-    }
     // its law on a full family of the first body
     let first = &pieces[bodies[0]];
     let own = Spec {

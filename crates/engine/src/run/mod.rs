@@ -220,6 +220,21 @@ pub struct Wall {
     pub position: f64,
 }
 
+/// What a run has come to.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Summary {
+    /// Directed bonds broken since the start, as often as they broke.
+    pub broken: u64,
+    /// Centres of the indenters of the specification, as they are now (length).
+    pub indenters: Vec<Point>,
+    /// What came in of every quantity that spreads since the start, and what is there.
+    pub transfers: Vec<(Quantity, TransferAccount)>,
+    /// Cycles of load since the start; `None`: increments are no cycles.
+    pub cycles: Option<f64>,
+    /// What the solver did in the last increment; `None`: steps are steps in time.
+    pub solved: Option<Solved>,
+}
+
 /// A running model of any dimension, law and family. All arrays are in order of point id.
 ///
 /// It [owns](Owner) its state: a model of the same specification that reads what this one wrote goes on as this one, bit for bit, and is not
@@ -252,24 +267,22 @@ pub trait Simulation: Steered + Examined + Owner + Send {
     /// Sets a persistent column of the law, or of what spreads, to numbers as [`Simulation::column`] gives them, those of the dimension's components
     /// only. False: there is no such column of the law, it follows from others, or the number of values is another.
     fn set_column(&mut self, name: &str, values: &[f64]) -> bool;
+    /// Values of points `first..first + out.len()` of a component of `reference`, `displacement`, `velocity` or `force_density`, or of `volume` or `density`, without a copy
+    /// of the others; 0 on axes beyond the dimension. False: no such column can be read so.
+    fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool;
+    /// Sets a component of `displacement` or `velocity` of points `first..first + values.len()`; axes beyond the dimension do not
+    /// exist and are left alone. Call [`Simulation::start`] afterwards. False: the column cannot be set.
+    fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool;
     /// Columns of all probes of the specification.
     fn probe_columns(&self) -> Vec<ProbeColumn>;
     /// What the probes measure now, in the order of their columns.
     fn measure(&mut self) -> Vec<f64>;
-    /// Directed bonds broken since the start, as often as they broke.
-    fn broken(&self) -> u64;
+    /// What the run has come to.
+    fn summary(&self) -> Summary;
     /// Number of fragments (connected by whole bonds) now.
     fn fragments(&self) -> u64;
     /// Ids of the points of a named set; `"all"` always exists.
     fn members(&self, set: &str) -> Option<Vec<u32>>;
-    /// Centres of the indenters of the specification, as they are now.
-    fn indenters(&self) -> Vec<Point>;
-    /// What came in of every quantity that spreads since the start, and what is there.
-    fn transfers(&self) -> Vec<(Quantity, TransferAccount)>;
-    /// Cycles of load since the start; `None`: increments are no cycles.
-    fn cycles(&self) -> Option<f64>;
-    /// What the solver did in the last increment; `None`: steps are steps in time.
-    fn solved(&self) -> Option<Solved>;
 }
 
 /// What somebody asks who leads a model step by step: halves of steps, values from outside, blocks of numbers, and what a force
@@ -299,12 +312,6 @@ pub trait Steered {
     fn remove(&mut self, ids: &[u32]);
     fn set_time(&mut self, step: u64, time: f64);
     fn set_time_step(&mut self, dt: f64);
-    /// Values of points `first..first + out.len()` of a component of `reference`, `displacement`, `velocity` or `force_density`, or of `volume` or `density`, without a copy
-    /// of the others; 0 on axes beyond the dimension. False: no such column can be read so.
-    fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool;
-    /// Sets a component of `displacement` or `velocity` of points `first..first + values.len()`; axes beyond the dimension do not
-    /// exist and are left alone. Call [`Simulation::start`] afterwards. False: the column cannot be set.
-    fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool;
     /// Replace loads, constraints and indenters; driven conditions go.
     fn set_conditions(
         &mut self,
@@ -379,6 +386,31 @@ impl dyn Simulation + '_ {
             Some(Values::Scalars(v)) => v,
             _ => vec![],
         }
+    }
+
+    /// [`Summary::broken`].
+    pub fn broken(&self) -> u64 {
+        self.summary().broken
+    }
+
+    /// [`Summary::indenters`].
+    pub fn indenters(&self) -> Vec<Point> {
+        self.summary().indenters
+    }
+
+    /// [`Summary::transfers`].
+    pub fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {
+        self.summary().transfers
+    }
+
+    /// [`Summary::cycles`].
+    pub fn cycles(&self) -> Option<f64> {
+        self.summary().cycles
+    }
+
+    /// [`Summary::solved`].
+    pub fn solved(&self) -> Option<Solved> {
+        self.summary().solved
     }
 
     pub fn displacements(&mut self) -> Vec<Point> {

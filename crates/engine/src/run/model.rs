@@ -5,15 +5,11 @@ use super::probes::state::Probe;
 use super::stages::Stages;
 use super::state_hash::hashed;
 use super::system::System;
-use super::{Info, Simulation};
+use super::{Info, Simulation, Summary};
 use crate::columns::Declaration;
 use crate::error::RunError;
 use crate::fracture::fragments::Fragments;
 use crate::observe::{Column, Ledger, ProbeColumn, Snapshot, StateHash};
-use crate::space::Point;
-use crate::spec::Quantity;
-use crate::statics::Solved;
-use crate::transfer::TransferAccount;
 
 /// A model in D dimensions.
 pub struct Model<const D: usize> {
@@ -112,8 +108,68 @@ impl<const D: usize> Simulation for Model<D> {
         self.record(fields, bonds)
     }
 
-    fn broken(&self) -> u64 {
-        self.system.accounts.broken
+    fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool {
+        let vector = match name {
+            "reference" => {
+                self.system.body.coordinates(first, component, out);
+                return true;
+            }
+            "displacement" => &self.system.u,
+            "velocity" => {
+                self.finish();
+                &self.system.v
+            }
+            "force_density" => &self.system.f,
+            "volume" | "density" => {
+                let (volume, density) = (&self.system.body.volume, &self.system.body.density);
+                let values = if name == "volume" { volume } else { density };
+                for (x, &s) in out.iter_mut().zip(&self.system.body.slots[first..]) {
+                    *x = values.at(s as usize);
+                }
+                return true;
+            }
+            _ => return false,
+        };
+        match vector.get(component) {
+            Some(values) => {
+                for (x, &s) in out.iter_mut().zip(&self.system.body.slots[first..]) {
+                    *x = values[s as usize];
+                }
+            }
+            None => out.fill(0.0),
+        }
+        true
+    }
+
+    fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool {
+        self.finish();
+        let vector = match name {
+            "displacement" => {
+                self.system.look_again();
+                self.system.watch.forget_virials();
+                &mut self.system.u
+            }
+            "velocity" => &mut self.system.v,
+            _ => return false,
+        };
+        if let Some(component) = vector.get_mut(component) {
+            for (value, &s) in values.iter().zip(&self.system.body.slots[first..]) {
+                component[s as usize] = *value;
+            }
+        }
+        true
+    }
+
+    fn summary(&self) -> Summary {
+        let accounts = &self.system.accounts;
+        let rigid = self.system.applied.rigid.iter();
+        Summary {
+            broken: accounts.broken,
+            indenters: rigid.map(|i| i.rigid.center).collect(),
+            transfers: self.system.transfer_accounts(),
+            cycles: self.system.regime.cycles.then_some(accounts.cycles),
+            solved: self.stages.solved(),
+        }
     }
 
     fn fragments(&self) -> u64 {
@@ -122,23 +178,5 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn members(&self, set: &str) -> Option<Vec<u32>> {
         self.members_of(set)
-    }
-
-    fn indenters(&self) -> Vec<Point> {
-        let rigid = self.system.applied.rigid.iter();
-        rigid.map(|i| i.rigid.center).collect()
-    }
-
-    fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {
-        self.system.transfer_accounts()
-    }
-
-    fn cycles(&self) -> Option<f64> {
-        let cycles = self.system.accounts.cycles;
-        self.system.regime.cycles.then_some(cycles)
-    }
-
-    fn solved(&self) -> Option<Solved> {
-        self.stages.solved()
     }
 }

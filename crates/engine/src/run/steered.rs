@@ -89,58 +89,6 @@ impl<const D: usize> Steered for Model<D> {
         Ok(())
     }
 
-    fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool {
-        let vector = match name {
-            "reference" => {
-                self.system.body.coordinates(first, component, out);
-                return true;
-            }
-            "displacement" => &self.system.u,
-            "velocity" => {
-                self.finish();
-                &self.system.v
-            }
-            "force_density" => &self.system.f,
-            "volume" | "density" => {
-                let (volume, density) = (&self.system.body.volume, &self.system.body.density);
-                let values = if name == "volume" { volume } else { density };
-                for (x, &s) in out.iter_mut().zip(&self.system.body.slots[first..]) {
-                    *x = values.at(s as usize);
-                }
-                return true;
-            }
-            _ => return false,
-        };
-        match vector.get(component) {
-            Some(values) => {
-                for (x, &s) in out.iter_mut().zip(&self.system.body.slots[first..]) {
-                    *x = values[s as usize];
-                }
-            }
-            None => out.fill(0.0),
-        }
-        true
-    }
-
-    fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool {
-        self.finish();
-        let vector = match name {
-            "displacement" => {
-                self.system.look_again();
-                self.system.watch.forget_virials();
-                &mut self.system.u
-            }
-            "velocity" => &mut self.system.v,
-            _ => return false,
-        };
-        if let Some(component) = vector.get_mut(component) {
-            for (value, &s) in values.iter().zip(&self.system.body.slots[first..]) {
-                component[s as usize] = *value;
-            }
-        }
-        true
-    }
-
     fn watch(&mut self, what: Watched) {
         self.system.watch.ask(what);
     }

@@ -1,6 +1,6 @@
 //! Points of the body that a coarse one was condensed from: loads act on them, and the condensation passes their forces on.
 
-use super::linear_body::{add_alike, rows};
+use super::rows::{add_alike, rows};
 
 /// `F_q = Σ_p T_qp F_p`: forces on points q of the body from those on the points p that carry loads. The condensed load of an
 /// exact elimination is the Schur complement's, `T = −K_qe K_ee⁻¹`: the transposed resolvent of silling2010 (6) where action is

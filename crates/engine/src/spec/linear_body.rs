@@ -3,6 +3,7 @@
 //! Force density at i: `L_i = Σ_j C_ij (u_j − u_i)` (silling2010, section 4, with `C_ij` the volume of j included).
 //! State-based laws fit too: their rows reach two horizons.
 
+use super::rows::rows;
 use super::{Carriers, MassMatrix};
 use std::any::Any;
 
@@ -105,38 +106,6 @@ impl AnyLinearBody {
             Self::Three(b) => Box::new(b),
         };
         body.downcast().ok().map(|b| *b)
-    }
-}
-
-/// Blocks of one partner become one, in order of partners.
-pub(crate) fn add_alike<const D: usize>(row: &mut Vec<(u32, [[f64; D]; D])>) {
-    // stable: sums have one order
-    row.sort_by_key(|r| r.0);
-    row.dedup_by(|again, kept| {
-        let same = again.0 == kept.0;
-        if same {
-            for a in 0..D {
-                for b in 0..D {
-                    kept.1[a][b] += again.1[a][b];
-                }
-            }
-        }
-        same
-    });
-}
-
-/// Are `start` the beginnings of `n` rows in `all`, whose entries are below `most`?
-pub(super) fn rows(start: &[usize], n: usize, all: &[u32], most: usize) -> Result<(), String> {
-    let rises = start.is_sorted() && start.first() == Some(&0) && start.last() == Some(&all.len());
-    if start.len() != n + 1 || !rises {
-        return Err(format!(
-            "the beginnings of {n} rows do not rise from 0 to their {} entries",
-            all.len()
-        ));
-    }
-    match all.iter().find(|j| **j as usize >= most) {
-        Some(j) => Err(format!("there is no point {j} among {most}")),
-        None => Ok(()),
     }
 }
 

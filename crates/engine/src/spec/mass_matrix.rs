@@ -3,7 +3,7 @@
 //! Force on i at accelerations a: `F_i = Σ_j M_ij a_j`, the point itself included. Of a coarsened body `M = Sᵀ M⁰ S`, with the shapes S
 //! in which retained points carry removed ones (Guyan 1965, Reduction of stiffness and mass matrices, AIAA J. 3 (2), 380).
 
-use super::linear_body::rows;
+use super::rows::rows;
 
 /// How far `|M_ij − M_jiᵀ|`, and the sum of all from the masses of the points, may be from 0, relative.
 const ROUND_OFF: f64 = 1e-9;

@@ -8,6 +8,7 @@ mod body;
 mod bonded;
 mod bonds;
 mod carriers;
+mod cohesion;
 mod condition;
 mod family;
 mod indenter;
@@ -15,12 +16,15 @@ mod interface;
 mod law;
 mod linear_body;
 mod mass_matrix;
+mod parameters;
 mod potential;
 mod preload;
 mod probe;
+mod rows;
 mod schedule;
 mod smooth;
 mod surface;
+mod table;
 mod transfer;
 
 use crate::expression::Expression;
@@ -32,26 +36,29 @@ pub use bonds::{
     HealingSpec, PrecrackSpec, ToughnessFactor, ToughnessSpec,
 };
 pub use carriers::Carriers;
+pub use cohesion::CohesionSpec;
 pub use condition::{ConditionKind, ConditionSpec, ForceSpec, InitialSpec, ThermalSpec};
 pub use family::{Calibration, FamilyChoice, Formula, Horizon, Influence};
-pub use indenter::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
+pub use indenter::{FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
 pub use interface::InterfaceSpec;
 pub use law::{
     Criterion, FatigueSpec, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, NamedLaw,
-    PairSpec, Parameter, Parameters, PmbStiffness, RateSpec, Release,
+    PairSpec, PmbStiffness, RateSpec, Release,
 };
-pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
 pub use mass_matrix::MassMatrix;
-pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
+pub use parameters::{Parameter, Parameters};
+pub use potential::{End, PotentialSpec};
 pub use preload::PreloadSpec;
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
+pub(crate) use rows::add_alike;
 pub use schedule::{
     Control, Cycles, Integrator, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep,
 };
 pub use smooth::{SmoothSpec, Window};
 use std::sync::Arc;
 pub use surface::{SurfaceFactor, SurfaceFactors, SurfaceMethod};
+pub use table::{PartnerTable, TableSpec};
 pub use transfer::{
     Area, Exchange, Quantity, TransferCondition, TransferKind, TransferMaterial, TransferMethod,
     TransferSpec,

@@ -1,7 +1,7 @@
 //! Conjugate gradients with blocks of the diagonal as preconditioner; every sum has a fixed order.
 
-use super::Solved;
 use super::operator::LinearOperator;
+use super::solved::Solved;
 use super::support::Support;
 use super::vectors::{add, add_to_multiple, dot, norm};
 use crate::error::SolveError;

@@ -1,7 +1,7 @@
 //! Direct solution of the equations of a linear body: banded in one dimension, sparse (faer) otherwise.
 
-use super::Solved;
 use super::operator::LinearOperator;
+use super::solved::Solved;
 use super::support::Support;
 use super::vectors::{Block, add, diagonal, norm};
 use crate::error::SolveError;

@@ -18,29 +18,20 @@ mod masses;
 pub mod modes;
 pub mod operator;
 pub mod relaxation;
+mod solved;
 mod soundness;
 pub mod support;
 mod vectors;
 
 use crate::error::SolveError;
-use crate::state::words;
 pub use assemble::{linear_body, linear_body_touching};
 pub use direct::{Direct, SYMMETRIC};
 pub use masses::Masses;
 pub use operator::{Assembled, LinearOperator, Shifted, Swept};
+pub use solved::Solved;
 pub use soundness::Soundness;
 pub use support::Support;
 pub use vectors::{Block, diagonal, dot, norm};
-
-/// What a solver did.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Solved {
-    pub iterations: usize,
-    /// Residual force over that of the start.
-    pub residual: f64,
-}
-
-words!([] Solved { iterations: usize, residual: f64 });
 
 impl SolveError {
     /// Where a motion that gives energy back is largest.

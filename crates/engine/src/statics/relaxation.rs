@@ -1,8 +1,8 @@
 //! Adaptive dynamic relaxation: a damped motion with made-up masses that ends in equilibrium, whatever the law (Underwood 1983;
 //! for peridynamics Kilic & Madenci 2010).
 
-use super::Solved;
 use super::cg::Goal;
+use super::solved::Solved;
 use super::support::Support;
 use super::vectors::{add, dot, norm};
 use crate::error::SolveError;

@@ -258,3 +258,44 @@ fn what_heals_at_the_end_of_an_implicit_step_pulls_in_the_next() {
         }
     }
 }
+
+/// After statics, too: what heals as motion begins moves as what was never cut.
+#[test]
+fn what_heals_after_statics_moves_as_what_was_never_cut() {
+    for (law, family) in laws() {
+        let run = |cut: bool| {
+            let mut spec = plate(law.clone(), family, cut);
+            if cut {
+                heals(&mut spec, "0.1");
+            }
+            spec.sets = vec![SetSpec {
+                name: "ends".into(),
+                members: Members::Where(e("abs(x - 7) > 4")),
+            }];
+            spec.preload = Some(PreloadSpec {
+                statics: Statics {
+                    method: Method::Newton,
+                    ..Statics::default()
+                },
+                increments: 1,
+                duration: None,
+                conditions: vec![ConditionSpec {
+                    set: "ends".into(),
+                    kind: ConditionKind::Displacement([Some(e("0")), Some(e("0")), None]),
+                }],
+                indenters: vec![],
+                cuts: vec![],
+            });
+            let mut sim = started(&spec);
+            (0..200).for_each(|_| sim.step().unwrap());
+            assert_eq!(sim.scalars("damage").iter().sum::<f64>(), 0.0);
+            sim.displacements()
+        };
+        let (healed, whole) = (run(true), run(false));
+        let most = whole.iter().flatten().fold(0.0f64, |m, u| m.max(u.abs()));
+        assert!(most > 1e-3, "{most}");
+        for (a, b) in healed.iter().flatten().zip(whole.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9 * most, "{a} {b}");
+        }
+    }
+}

@@ -1,8 +1,9 @@
 //! Boundary and initial conditions of both programs.
 
 use super::increments::{self, Stage};
+use super::program::Program;
+use super::quoted;
 use super::tree::{Entry, same};
-use super::{Program, quoted};
 
 /// One condition of the other program.
 struct Given<'a> {

@@ -3,8 +3,8 @@
 //! Here bonds are pairs with `|ξ|² ≤ δ²` in plain arithmetic. PeriLab and Peridigm's trees take the same, Peridigm after a box of
 //! `x ± δ`; a grid of Peridigm has the cells of a box, of which `NeighborhoodType: Spherical` keeps those with `|ξ|² − δ² < 0`.
 
-use super::Program;
 use super::points::Points;
+use super::program::Program;
 use std::collections::HashMap;
 
 /// How the other program looks for partners.

@@ -7,7 +7,7 @@
 //! A point on the plane loses its bonds to both sides there; a crack here counts it to one side. Two cracks, one on each side of the
 //! plane, say the same.
 
-use super::Program;
+use super::program::Program;
 use super::tree::Entry;
 
 /// What filters act on.

@@ -4,9 +4,9 @@
 //! does not depend on time, and `u₀ + f(t) − f(t₀)` where it changes in every step, from the initial displacement u₀ and the initial
 //! time t₀ on.
 
-use super::Program;
 use super::clock::Clock;
 use super::points::Points;
+use super::program::Program;
 use super::solver::Solver;
 use peridyne::expression::Expression;
 

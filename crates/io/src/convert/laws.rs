@@ -1,6 +1,6 @@
 //! Materials and damage models of both programs as laws of the shelf.
 
-use super::Program;
+use super::program::Program;
 use super::tree::Entry;
 use std::f64::consts::PI;
 

@@ -12,17 +12,20 @@ mod increments;
 mod laws;
 mod points;
 mod probes;
+mod program;
 mod solver;
 mod syntax;
+#[cfg(test)]
+mod tests;
 mod tree;
-
-use std::path::{Path, PathBuf};
 
 use crate::read::ReadError;
 use crate::write::WriteError;
 use crate::write::exodus::write_mesh;
 use family::Search;
 use points::Points;
+use program::Program;
+use std::path::{Path, PathBuf};
 pub use tree::Unmapped;
 use tree::{Entry, Value};
 
@@ -69,13 +72,6 @@ fn key(name: &str) -> String {
         true => name.into(),
         false => quoted(name),
     }
-}
-
-/// Which program a deck is of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Program {
-    Peridigm,
-    PeriLab,
 }
 
 /// A deck at `path` as one that will lie beside its mesh `mesh`.
@@ -554,6 +550,3 @@ impl<'a> Converter<'a> {
         made
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::Program;
+use super::program::Program;
 use super::tree::Entry;
 use crate::read::Holds;
 use crate::read::exodus::parse_holding;

@@ -2,8 +2,9 @@
 
 use super::clock::Clock;
 use super::probes::field;
+use super::program::Program;
+use super::quoted;
 use super::tree::{Entry, Value, same};
-use super::{Program, quoted};
 
 /// How the deck runs.
 pub struct Solver {

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::Plan;
+use super::plan::Plan;
 use crate::read::source;
 use crate::write::WriteError;
 use crate::write::folder::{is_inside, is_own, plain};

@@ -4,7 +4,7 @@ use peridyne::observe::Ledger;
 use peridyne::run::Simulation;
 use peridyne::spec::Stepper;
 
-use super::Plan;
+use super::plan::Plan;
 use crate::deck::UnitSystem;
 use crate::write::history::{
     Column, ledger_columns, ledger_values, transfer_columns, transfer_values,

@@ -1,6 +1,6 @@
 //! What reports tell of a run.
 
-use super::Plan;
+use super::plan::Plan;
 use crate::deck::Dim;
 use crate::write::run_json::{FieldNote, RigidNote, Setting, UnitNames};
 use peridyne::observe::Snapshot;

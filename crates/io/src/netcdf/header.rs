@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
+use super::format::{ATTRIBUTES, DIMENSIONS, Header, VARIABLES, Version, filled};
 use super::value::{Attribute, Type};
-use super::{ATTRIBUTES, DIMENSIONS, Header, VARIABLES, Version, filled};
 
 /// Gives every variable its place: what is not recorded first, in order, then those of a record. Answers the length of the file
 /// without records.

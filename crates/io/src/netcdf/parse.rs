@@ -1,8 +1,8 @@
 //! Bytes as a header, and the numbers of its variables. Nothing is reserved by what a file promises: what it has not, it cannot ask
 //! for.
 
+use super::format::{ATTRIBUTES, DIMENSIONS, Header, VARIABLES, Variable, Version};
 use super::value::{Attribute, Type, fixed};
-use super::{ATTRIBUTES, DIMENSIONS, Header, VARIABLES, Variable, Version};
 
 /// A file at hand.
 pub struct Reader<'a> {

@@ -1,3 +1,4 @@
+use super::format::DIMENSIONS;
 use super::*;
 use proptest::prelude::*;
 

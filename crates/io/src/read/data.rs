@@ -1,8 +1,9 @@
 //! LAMMPS data files of `atom_style atomic`, `molecular` and `full`.
 
 use super::atoms::{Atoms, Species};
+use super::error::ReadError;
+use super::lammps;
 use super::lammps::{DataFile, Style};
-use super::{ReadError, lammps};
 use std::path::Path;
 
 /// Reads the atoms, in order of the ids; species are named by the comments of `Masses`, else by the number of the type.

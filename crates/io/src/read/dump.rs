@@ -1,7 +1,7 @@
 //! LAMMPS text dumps of atoms: `id`, `type` or `element`, positions (`x`, `xu` or scaled `xs`), velocities, forces.
 
-use super::ReadError;
 use super::atoms::{Atoms, Frame, Names, Tilted};
+use super::error::ReadError;
 use super::number;
 use super::stream::Stream;
 use std::io::BufRead;

@@ -1,7 +1,7 @@
 //! Constants of triples of elements, as LAMMPS's potential files have them (`.sw`, `.tersoff`): three names and so many numbers for
 //! each entry, which begins on a line of its own and may go on over several. `#` starts a comment.
 
-use super::ReadError;
+use super::error::ReadError;
 use super::lines::Lines;
 use super::number::number;
 use std::path::Path;

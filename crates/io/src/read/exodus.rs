@@ -5,10 +5,12 @@
 //! them. A block of SPHERE elements is points with volumes, the second attribute as Peridigm and Sierra have it. A side of an element
 //! is the element, and knows its area. Results that a file has besides are not read.
 
+use super::body::{Points, Sourced};
 use super::cell::{Cell, Kind};
+use super::error::ReadError;
 use super::lines::Lines;
 use super::mesh::{Group, Holds, Mesh};
-use super::{Points, ReadError, Sourced, whole};
+use super::whole;
 use crate::netcdf::Reader;
 
 /// What an element type makes.

@@ -5,8 +5,8 @@
 //! masses. Others are passed over.
 //! Format: libAtoms extended XYZ specification and ASE's documentation of it.
 
-use super::ReadError;
 use super::atoms::{Atoms, Frame, Names, Tilted};
+use super::error::ReadError;
 use super::stream::Stream;
 use std::io::BufRead;
 use std::path::Path;

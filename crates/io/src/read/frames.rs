@@ -1,8 +1,9 @@
 //! All frames of a file of atoms, one after the other: a trajectory does not fit in memory. Text or packed by gzip; boxes may be tilted.
 
 use super::atoms::{Atoms, Tilted};
+use super::error::ReadError;
 use super::stream::{Source, Stream};
-use super::{ReadError, data, dump, extxyz};
+use super::{data, dump, extxyz};
 use std::path::{Path, PathBuf};
 
 /// Kinds of files.

@@ -4,10 +4,11 @@ mod binary;
 mod bytes;
 mod partitioned;
 
+use super::body::Sourced;
 use super::cell::{Cell, Kind};
+use super::error::ReadError;
 use super::lines::Lines;
 use super::mesh::{Group, Mesh};
-use super::{ReadError, Sourced};
 use std::collections::HashMap;
 
 /// The corners and the number of nodes of a gmsh element type.

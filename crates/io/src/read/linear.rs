@@ -1,7 +1,9 @@
 //! Linear bodies: the archives that [`crate::write::linear`] describes.
 
+use super::Cells;
+use super::body::Points;
+use super::error::ReadError;
 use super::npz::Npz;
-use super::{Cells, Points, ReadError};
 use ndarray::{Array1, Array2, Array3};
 use peridyne::spec::{AnyLinearBody, Carriers, Cloud, LinearBody, MassMatrix};
 use std::path::Path;

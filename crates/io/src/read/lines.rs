@@ -1,6 +1,6 @@
 //! Lines of a text file with their numbers, and numbers of a line.
 
-use super::ReadError;
+use super::error::ReadError;
 use super::number::{comma, number};
 use std::str::FromStr;
 

@@ -4,8 +4,8 @@
 //! which some corners coincide. Volume and moments are of third degree along each axis of the cube, for which Simpson's rule is exact.
 //! The Jacobian has one sign at all corners, else the cell is tangled.
 
-use super::ReadError;
 use super::cell::{Cell, Kind, Nodes};
+use super::error::ReadError;
 use super::lines::Lines;
 use peridyne::space::{cross, length};
 

@@ -7,12 +7,13 @@
 //! Sets that stand for a face know its area at each of their points: groups of surfaces (in 2-D of lines), sets of sides, and sets of
 //! nodes that hold whole outer sides of all their cells, and no whole cell.
 
+use super::body::Sourced;
 use super::cell::{Cell, Kind, Nodes};
 use super::cells::Cells;
+use super::error::ReadError;
 use super::lines::Lines;
 use super::measure::measure;
 use super::plane;
-use super::{ReadError, Sourced};
 use peridyne::space::{cross, length};
 use peridyne::spec::Cloud;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};

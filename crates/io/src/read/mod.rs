@@ -7,6 +7,7 @@
 
 mod abaqus;
 mod atoms;
+mod body;
 mod cell;
 mod cells;
 pub mod data;
@@ -14,6 +15,7 @@ pub mod dump;
 pub mod eam;
 pub mod encoding;
 pub mod entries;
+mod error;
 pub mod exodus;
 pub mod extxyz;
 pub mod frames;
@@ -32,81 +34,23 @@ pub(crate) mod spacing;
 pub mod stl;
 mod stream;
 pub mod tag;
+#[cfg(test)]
+mod tests;
 mod text;
 pub mod vtu;
 mod whole;
 
 pub use atoms::{Atoms, Frame, Species};
+use body::Sourced;
+pub use body::{AtomsFile, Points};
 pub use cells::Cells;
+pub use error::ReadError;
 pub use mesh::Holds;
-pub use whole::text_of;
-
-use peridyne::spec::{AnyLinearBody, Cloud};
+use peridyne::spec::Cloud;
 use std::collections::HashMap;
 use std::io::{BufRead, Read};
 use std::path::Path;
-use std::sync::Arc;
-
-/// Points of a file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Points {
-    /// Volumes are lengths in 1-D, areas in 2-D if the file is a mesh, and as written in plain text.
-    pub cloud: Cloud,
-    /// Dimension of a mesh's cells; `None` where the file does not say.
-    pub dimension: Option<usize>,
-    /// Lowest and highest coordinates of a mesh's cells.
-    pub ends: Option<[[f64; 2]; 3]>,
-    /// Shapes of a mesh's cells.
-    pub cells: Cells,
-    /// What files of atoms say besides.
-    pub atoms: Option<AtomsFile>,
-    /// Of a linear body.
-    pub micromoduli: Option<Arc<AnyLinearBody>>,
-    /// What the user should know: what was passed over.
-    pub notes: Vec<String>,
-}
-
-/// Box and mass of a file of atoms.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AtomsFile {
-    /// Lower corner of the box.
-    pub corner: [f64; 3],
-    /// Lengths of the box.
-    pub cell: [f64; 3],
-    /// Periodic axes, where the file says it.
-    pub periodic: Option<[bool; 3]>,
-    /// The kinds of atoms that occur, with their masses where the file says them.
-    pub species: Vec<Species>,
-    /// A kind whose atoms have different masses.
-    pub isotopes: Option<String>,
-    /// Units that the file says it is in, by LAMMPS's names.
-    pub units: Option<String>,
-    /// The velocities are in Å, eV and g/mol.
-    pub from_momenta: bool,
-    /// There are bonds, angles, dihedrals or impropers.
-    pub bonded: bool,
-}
-
-/// What is wrong in a file of points.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{file}{}: {message}", line.map_or(String::new(), |l| format!(":{l}")))]
-pub struct ReadError {
-    pub file: String,
-    /// 1-based; `None` when no line is to blame.
-    pub line: Option<usize>,
-    pub message: String,
-}
-
-impl ReadError {
-    /// Of the file as a whole.
-    pub(crate) fn file(path: &Path, message: String) -> ReadError {
-        ReadError {
-            file: path.display().to_string(),
-            line: None,
-            message,
-        }
-    }
-}
+pub use whole::text_of;
 
 const EXTENSIONS: [&str; 16] = [
     "npz",
@@ -314,17 +258,3 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
         notes: vec![],
     })
 }
-
-/// Points and the line that each came from, where that is known; 0 in a file without lines.
-struct Sourced {
-    cloud: Cloud,
-    dimension: Option<usize>,
-    ends: Option<[[f64; 2]; 3]>,
-    cells: Cells,
-    lines: Vec<usize>,
-    atoms: Option<AtomsFile>,
-    notes: Vec<String>,
-}
-
-#[cfg(test)]
-mod tests;

@@ -3,7 +3,7 @@
 
 mod forms;
 
-use super::ReadError;
+use super::error::ReadError;
 use super::lines::Lines;
 use peridyne::spec::{BondedSpec, BondedTerm, Form};
 use std::collections::HashMap;

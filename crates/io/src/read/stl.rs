@@ -3,7 +3,7 @@
 //!
 //! Normals of the file are passed over: a triangle turns counter-clockwise when it is seen from outside.
 
-use super::ReadError;
+use super::error::ReadError;
 use super::lines::Lines;
 use peridyne::space::Point;
 use peridyne::space::triangles::Triangles;

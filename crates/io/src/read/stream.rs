@@ -1,8 +1,9 @@
 //! Lines of a file one at a time: trajectories do not fit in memory.
 
 use super::encoding::{Bad, next_line};
+use super::error::ReadError;
 use super::number::{comma, number};
-use super::{ReadError, source};
+use super::source;
 use flate2::bufread::MultiGzDecoder;
 use std::io::{BufRead, BufReader};
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! The tag of LAMMPS's files of potentials: `UNITS: real` in a comment at the head says what the numbers are in. Without one they are in
 //! eV, Å and g/mol.
 
-use super::ReadError;
+use super::error::ReadError;
 use std::path::Path;
 
 /// Units of a file (SI); reduced ones have no size.

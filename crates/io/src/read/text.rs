@@ -1,9 +1,11 @@
 //! Plain text: `x y z volume [mark]` per line, `#` starts a comment; a first line of names puts the columns into another order.
 
+use super::Cells;
+use super::body::Sourced;
+use super::error::ReadError;
 use super::lines::Lines;
 use super::number::{comma, decimal_commas, number};
 use super::spacing::Spacing;
-use super::{Cells, ReadError, Sourced};
 use peridyne::spec::Cloud;
 
 /// What a column is, and how it may be called.

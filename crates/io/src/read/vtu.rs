@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::ReadError;
+use super::error::ReadError;
 
 /// A frame: its file, and where the arrays stand in it.
 #[derive(Debug)]

@@ -1,6 +1,8 @@
 //! Small text files, read at once.
 
-use super::{ReadError, encoding, source};
+use super::error::ReadError;
+
+use super::{encoding, source};
 use std::path::Path;
 
 /// Text and name of a file.

@@ -1,12 +1,12 @@
 //! A peridyne model as the engine of a script.
 
-use super::super::atoms::{Column, Members};
-use super::super::domain::SimBox;
-use super::super::host::{
+use crate::atoms::{Column, Members};
+use crate::domain::SimBox;
+use crate::host::{
     BLOCK, Condition, Energies, Engine, HostError, Motion, Particles, Quantity, Reaction, RunStart,
     Style, Wall,
 };
-use super::super::units::Units;
+use crate::units::Units;
 use peridyne::condition::driven::Drive;
 use peridyne::error::RunError;
 use peridyne::observe::Observed;

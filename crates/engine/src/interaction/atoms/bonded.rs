@@ -15,11 +15,9 @@ use crate::law::blocks::Quadratic;
 use crate::law::bonded::{Tangents, special_pairs};
 use crate::spec::BondedSpec;
 use crate::state::Archive;
+pub use kernel::PairEnergy;
 use kernel::{BLOCK, Evaluate, Gather, Says, Term};
 use std::sync::Arc;
-
-/// A pair potential of kinds of atoms: value, first and second derivative by `q = r²`; `None`: nothing, beyond its cut-off.
-pub type PairEnergy = dyn Fn([usize; 2], f64) -> Option<[f64; 3]> + Send + Sync;
 
 /// A potential with the bonded terms of a body.
 pub struct BondedAtoms<const D: usize> {

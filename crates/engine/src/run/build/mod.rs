@@ -60,8 +60,8 @@ pub fn build_in<const D: usize>(
     shelf.resolve(&mut resolved)?;
     let expanding = transfers::expanding(&mut resolved);
     let own = own_horizons::resolve(&mut resolved);
-    let directed = directed(&mut resolved)?;
-    if criteria::remembering(&mut resolved)? || expanding || own || directed {
+    let directed = directed(&mut resolved);
+    if criteria::remembering(&mut resolved) || expanding || own || directed {
         shelf.resolve(&mut resolved)?;
     }
     consistent(&resolved, shelf)?;

@@ -16,52 +16,17 @@ fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
 
 /// Where bonds break by more than the stretch of now, `pmb` is `thermoelastic` and `lps` `thermoelastic_solid`: their own kernels know no more. Were
 /// laws changed?
-///
-/// # Errors
-/// Laws whose bonds cannot remember.
-pub(in crate::run) fn remembering(spec: &mut Spec) -> Result<bool, BuildError> {
+pub(in crate::run) fn remembering(spec: &mut Spec) -> bool {
     let remembers = |m: &MaterialSpec| m.fracture.is_some_and(|f| f.remembers());
     if !spec.materials.iter().any(remembers) {
-        return Ok(false);
+        return false;
     }
-    for (n, m) in spec.materials.iter_mut().enumerate() {
-        match &m.law {
-            LawSpec::Pmb(_) | LawSpec::Lps(_) => {
-                if let Some(law) = general(&m.law) {
-                    m.law = law;
-                }
-            }
-            LawSpec::Named(_) => {}
-            LawSpec::LpsAsTyped { .. } | LawSpec::EamLike { .. } => {
-                return Err(unsupported(
-                    n,
-                    "law",
-                    "bonds of this law remember nothing: they break by their critical stretch alone",
-                )
-                .help("take lps with the same moduli, or give critical_stretch without rate and fatigue"));
-            }
-            LawSpec::Atoms(_) => {
-                let works = |f: FractureSpec| {
-                    matches!(f.criterion, Criterion::BondEnergy(_))
-                        && f.rate.is_none()
-                        && f.fatigue.is_none()
-                };
-                if !m.fracture.is_none_or(works) {
-                    return Err(unsupported(
-                        n,
-                        "fracture",
-                        "the bonds of a potential know how far they are stretched and the work that was done on them, and no stress, rate or age",
-                    )
-                    .help("give critical_stretch, or energy with criterion = \"bond_energy\""));
-                }
-            }
-            LawSpec::Springs(_) | LawSpec::Micromoduli(_) => {
-                return Err(unsupported(n, "law", "bonds of this law never break")
-                    .help("remove fracture, or take pmb or lps"));
-            }
+    for m in &mut spec.materials {
+        if let (LawSpec::Pmb(_) | LawSpec::Lps(_), Some(law)) = (&m.law, general(&m.law)) {
+            m.law = law;
         }
     }
-    Ok(true)
+    true
 }
 
 /// Of all materials of a body.
@@ -80,15 +45,6 @@ pub(super) fn criteria<const D: usize>(
                 "strengthening under compression (alpha) is of critical stretches alone",
             )
             .help("leave alpha out"));
-        }
-        if let LawSpec::Named(law) = &spec.materials[n].law
-            && (shelf.ends(&law.name) || shelf.kinds(&law.name))
-        {
-            let message = format!(
-                "the law {} has a critical stretch among its constants: its bonds break by nothing else",
-                law.name
-            );
-            return Err(unsupported(n, "fracture", message));
         }
     }
     let kind = |f: &FractureSpec| match f.criterion {
@@ -175,46 +131,23 @@ fn across_known<const D: usize>(
     }
 }
 
-/// What criteria and the way in which a body moves have to do with each other.
-///
-/// # Errors
-/// Rates without time, cycles without bonds that wear, and the other way round.
+/// Are there cycles where bonds wear, and bonds that wear where there are cycles?
 pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
-    let find = |has: &dyn Fn(&FractureSpec) -> bool| {
-        let mut all = spec.materials.iter();
-        all.position(|m| m.fracture.as_ref().is_some_and(has))
-    };
-    let statics = spec.schedule.statics();
-    if spec
-        .preload
-        .as_ref()
-        .is_some_and(|p| p.statics.cycles.is_some())
-    {
-        return Err(BuildError::unsupported(
-            "preload.statics.cycles",
-            "cycles of load are statics alone, no motion follows",
+    let mut all = spec.materials.iter();
+    let wears = all.position(|m| m.fracture.is_some_and(|f| f.fatigue.is_some()));
+    let cycles = spec.schedule.statics().and_then(|s| s.cycles);
+    match (wears, cycles) {
+        (None, None) | (Some(_), Some(_)) => Ok(()),
+        (Some(n), None) => Err(unsupported(
+            n,
+            "fracture.fatigue",
+            "bonds wear in cycles of load, and this run has none",
         )
-        .help("leave [run] or cycles out"));
+        .help("write [statics] with method = \"newton\", increments and cycles = { load_ratio = 0.1 }")),
+        (None, Some(_)) => Err(BuildError::unsupported(
+            "statics.cycles",
+            "no material wears in cycles of load",
+        )
+        .help("give a material fracture.fatigue")),
     }
-    let cycles = statics.and_then(|s| s.cycles);
-    match (find(&|f| f.fatigue.is_some()), cycles) {
-        (None, None) => return Ok(()),
-        (Some(n), None) => {
-            return Err(unsupported(
-                n,
-                "fracture.fatigue",
-                "bonds wear in cycles of load, and this run has none",
-            )
-            .help("write [statics] with method = \"newton\", increments and cycles = { load_ratio = 0.1 }"));
-        }
-        (None, Some(_)) => {
-            return Err(BuildError::unsupported(
-                "statics.cycles",
-                "no material wears in cycles of load",
-            )
-            .help("give a material fracture.fatigue"));
-        }
-        (Some(_), Some(_)) => {}
-    }
-    Ok(())
 }

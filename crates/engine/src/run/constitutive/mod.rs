@@ -21,7 +21,7 @@ use crate::law::micromodulus::Moments;
 use crate::spec::{Calibration, FamilyChoice, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
-pub(super) use general::{directed, general};
+pub(super) use general::{directed, general, knows_directions};
 pub(super) use pairs::contact_stiffness;
 pub use shelf::Shelf;
 pub(super) use shelf::{AnyPotentials, Softens};

@@ -13,7 +13,7 @@ use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Statics, Stepper as Kind};
+use crate::spec::{CrackKind, Method, PreloadSpec, Spec, Statics, Stepper as Kind};
 use crate::statics::Solved;
 use std::collections::{HashMap, VecDeque};
 
@@ -60,13 +60,6 @@ impl<const D: usize> System<D> {
             timed: preload.duration.is_some(),
             ..preload.statics
         };
-        if statics.control != Control::Load {
-            return Err(BuildError::unsupported(
-                "preload.statics.control",
-                "statics whose load is what the body bears ends anywhere, not where motion could begin",
-            )
-            .help("leave control out"));
-        }
         let linear = |l: &Laws| matches!(l, Laws::Springs(_) | Laws::Micromoduli(_));
         if statics.method == Method::Linear && !self.constitutive.all().all(|m| linear(&m.laws)) {
             return Err(BuildError::unsupported(
@@ -76,13 +69,6 @@ impl<const D: usize> System<D> {
             .help("leave method out, or write method = \"newton\""));
         }
         let cuts = preload.cuts.iter().enumerate().map(|(n, cut)| {
-            if cut.kind == CrackKind::Absent {
-                return Err(BuildError::unsupported(
-                    format!("preload.cuts[{n}]"),
-                    "bonds that are loaded cannot be made never to have been",
-                )
-                .help("write kind = \"broken\", or leave it out"));
-            }
             Crack::new(&cut.shape, self.body.period).map_err(|e| e.at(format!("preload.cuts[{n}]")))
         });
         let cuts = cuts.collect::<Result<Vec<_>, _>>()?;

@@ -1,19 +1,22 @@
 //! What the parts of a spec have not.
 
 use super::{Lack, Property};
+use crate::law::solid::eam_like::Solid;
 use crate::run::constitutive::Shelf;
 use crate::spec::{
-    BodySpec, CrackKind, Criterion, FractureSpec, IndenterMotion, LawSpec, MaterialSpec, Method,
-    Quantity, Release, Solver, Spec, Stepper, ToughnessFactor, TransferMethod, TransferSpec,
+    BodySpec, Control, CrackKind, Criterion, FractureSpec, IndenterMotion, LawSpec, MaterialSpec,
+    Method, PreloadSpec, Quantity, Release, Solver, Spec, Stepper, ToughnessFactor, TransferMethod,
+    TransferSpec,
 };
 
 pub(super) fn of(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     let mut all = of_bodies(spec);
     all.extend(of_transfers(spec));
     all.extend(of_statics(spec));
+    all.extend(of_atoms(spec));
     all.extend(of_strength(spec));
     for (n, m) in spec.materials.iter().enumerate() {
-        all.extend(of_material(n, m, shelf));
+        all.extend(of_material(n, m, spec, shelf));
     }
     all
 }
@@ -37,6 +40,9 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
         all.push(Lack::new(Property::SideBySide, says, "leave surface out").at("surface"));
     }
     if spec.own_horizon.is_some() {
+        let says = "points with horizons of their own are those of one cloud";
+        let lack = Lack::new(Property::SideBySide, says, "leave own_horizon out");
+        all.push(lack.at("own_horizon"));
         let says = "points have horizons of their own";
         all.push(Lack::new(Property::OneHorizon, says, "leave own_horizon out").at("own_horizon"));
     }
@@ -112,6 +118,7 @@ fn of_transfers(spec: &Spec) -> Vec<Lack> {
 fn of_statics(spec: &Spec) -> Vec<Lack> {
     let mut all = vec![];
     if let Some(preload) = &spec.preload {
+        all.extend(of_preload(preload));
         let free = |motion: &IndenterMotion| matches!(motion, IndenterMotion::Free(_));
         if let Some(n) = (preload.indenters.iter()).position(|i| free(&i.motion)) {
             let says = "an indenter with a mass goes where forces push it";
@@ -159,6 +166,60 @@ fn of_statics(spec: &Spec) -> Vec<Lack> {
     all
 }
 
+/// Of statics that motion follows.
+fn of_preload(preload: &PreloadSpec) -> Vec<Lack> {
+    let mut all = vec![];
+    if preload.statics.control != Control::Load {
+        let says = "statics whose load is what the body bears ends anywhere";
+        let lack = Lack::new(Property::TwoStages, says, "leave control out");
+        all.push(lack.at("preload.statics.control"));
+    }
+    if preload.statics.cycles.is_some() {
+        let says = "cycles of load wear a body out that stays where it is";
+        let lack = Lack::new(Property::TwoStages, says, "leave cycles out");
+        all.push(lack.at("preload.statics.cycles"));
+    }
+    if let Some(n) = (preload.cuts.iter()).position(|c| c.kind == CrackKind::Absent) {
+        let says = "bonds that are loaded cannot be made never to have been";
+        let instead = "write kind = \"broken\", or leave it out";
+        let lack = Lack::new(Property::TwoStages, says, instead);
+        all.push(lack.at(format!("preload.cuts[{n}]")));
+    }
+    all
+}
+
+/// Of atoms that nodes carry along.
+fn of_atoms(spec: &Spec) -> Vec<Lack> {
+    let mut all = vec![];
+    if spec.materials.len() > 1 {
+        let says = "several materials have no nodes in common";
+        all.push(Lack::new(
+            Property::Carried,
+            says,
+            "give the atoms one material",
+        ));
+    }
+    if spec.thermal.is_some() {
+        let says = "atoms that are carried along have no thermal motion of their own";
+        all.push(Lack::new(Property::Carried, says, "remove thermal").at("thermal"));
+    }
+    let says = "what breaks are bonds between the atoms, and points are nodes";
+    for (path, there) in [
+        ("toughness[0]", !spec.toughness.is_empty()),
+        ("healing", spec.healing.is_some()),
+    ] {
+        if there {
+            all.push(Lack::new(Property::Carried, says, "leave it out").at(path));
+        }
+    }
+    if matches!(&spec.body, BodySpec::Cloud(cloud) if !cloud.velocity.is_empty()) {
+        let says = "the file has velocities of atoms";
+        let instead = "give the places alone; velocities of nodes are those of [[initial]]";
+        all.push(Lack::new(Property::Carried, says, instead));
+    }
+    all
+}
+
 /// Of what bonds bear, in all materials alike.
 fn of_strength(spec: &Spec) -> Vec<Lack> {
     let mut all = vec![];
@@ -195,13 +256,16 @@ fn of_strength(spec: &Spec) -> Vec<Lack> {
     all
 }
 
-fn of_material(n: usize, m: &MaterialSpec, shelf: &Shelf) -> Vec<Lack> {
+fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     let mut all = vec![];
     let name = match &m.law {
         LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
             let says = "atoms, and given micromoduli, are a body of their own";
             let lack = Lack::new(Property::SideBySide, says, "take pmb, lps or springs");
             all.push(lack.at(format!("materials[{n}].law")));
+            let says = "atoms and given micromoduli conduct nothing: their bonds are not those of a continuum";
+            let instead = "take a law of solids (pmb, lps, …)";
+            all.push(Lack::new(Property::Continuum, says, instead));
             ""
         }
         LawSpec::Named(law) => law.name.as_str(),
@@ -211,6 +275,18 @@ fn of_material(n: usize, m: &MaterialSpec, shelf: &Shelf) -> Vec<Lack> {
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_) => "",
     };
+    all.extend(of_linear_laws(n, m, spec));
+    if m.fracture.is_some_and(|f| f.remembers()) && (shelf.ends(name) || shelf.kinds(name)) {
+        let says = format!(
+            "the law {name} has a critical stretch among its constants: its bonds break by nothing else"
+        );
+        let lack = Lack::new(
+            Property::OtherMeasures,
+            says,
+            "leave criterion, rate and fatigue out",
+        );
+        all.push(lack.at(format!("materials[{n}].fracture")));
+    }
     if shelf.ends(name) {
         let says = format!("the law {name} has its critical stretch among its constants");
         all.push(Lack::new(Property::StrengthOfPoints, says, ""));
@@ -229,6 +305,56 @@ fn of_material(n: usize, m: &MaterialSpec, shelf: &Shelf) -> Vec<Lack> {
             let instead = "take a law whose bonds soften to nothing, or control = \"breaking\", which follows linear bodies bond after bond";
             all.push(Lack::new(Property::Fades, says, instead).at(path));
         }
+    }
+    all
+}
+
+/// Of laws with kernels of their own, and of potentials.
+fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
+    let mut all = vec![];
+    let path = format!("materials[{n}].law");
+    if Solid::of_law(spec.dimension, spec.plane, &m.law).is_some() {
+        let says = "in a state-based law a bond also acts through the pressure of its ends";
+        let instead = "write law = { pmb = ... } or springs, or give parts of the body materials of their own";
+        all.push(Lack::new(Property::BondByBond, says, instead));
+    }
+    match &m.law {
+        LawSpec::LpsAsTyped { .. } | LawSpec::EamLike { .. } => {
+            let says =
+                "bonds of this law remember nothing: they break by their critical stretch alone";
+            let instead =
+                "take lps with the same moduli, or give critical_stretch without rate and fatigue";
+            all.push(Lack::new(Property::OtherMeasures, says, instead).at(&path));
+            let says = "this law weighs a bond alike at both ends";
+            let instead = "take lps, or an influence function of r and delta";
+            all.push(Lack::new(Property::Directed, says, instead).at(path));
+        }
+        LawSpec::Springs(_) | LawSpec::Micromoduli(_) => {
+            let says =
+                "springs and micromoduli have no bonds that break and no contact of their own";
+            let instead = "remove fracture, contact and pre-cracks, or take pmb or lps";
+            for property in [Property::Separates, Property::OtherMeasures] {
+                all.push(Lack::new(property, says, instead).at(&path));
+            }
+        }
+        LawSpec::Atoms(_) => {
+            let works = |f: FractureSpec| {
+                let plain = f.rate.is_none() && f.fatigue.is_none();
+                plain && matches!(f.criterion, Criterion::BondEnergy(_))
+            };
+            if !m.fracture.is_none_or(works) {
+                let says = "the bonds of a potential know how far they are stretched and the work that was done on them, and no stress, rate or age";
+                let instead = "give critical_stretch, or energy with criterion = \"bond_energy\"";
+                let lack = Lack::new(Property::OtherMeasures, says, instead);
+                all.push(lack.at(format!("materials[{n}].fracture")));
+            }
+            if spec.contact.is_some() {
+                let says = "how atoms repel each other is what their potential says, and no stiffness of contact follows from it";
+                let instead = "remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps";
+                all.push(Lack::new(Property::Separates, says, instead).at(path));
+            }
+        }
+        LawSpec::Pmb(_) | LawSpec::Lps(_) | LawSpec::Named(_) => {}
     }
     all
 }

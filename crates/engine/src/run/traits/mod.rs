@@ -56,14 +56,26 @@ pub(super) enum Property {
     PresentStretch,
     /// What bonds bear is known whatever the horizon.
     StretchAtEveryHorizon,
+    /// Bonds may break by more than their stretch of now.
+    OtherMeasures,
+    /// Bonds may break, or be cut, and points touch.
+    Separates,
+    /// Its bonds may weigh otherwise in another direction.
+    Directed,
+    /// What a bond pulls is its own.
+    BondByBond,
     /// What bonds bear may be another one at every point.
     StrengthOfPoints,
     /// What bonds bear may be multiplied.
     StrengthTimesFactor,
     /// Ends within the step in which it is found.
     EndsAtOnce,
-    /// A t that begins again where the next stage does.
+    /// May be part of statics that motion follows.
     TwoStages,
+    /// May be carried along by nodes.
+    Carried,
+    /// Bonds are those of a continuum.
+    Continuum,
     /// All points have the horizon of the body.
     OneHorizon,
     /// Bonds are those of their points, not of a table of pairs.
@@ -147,7 +159,7 @@ impl Need {
 ///
 /// # Errors
 /// The first need that somebody does not meet: both, and what to write in place of either.
-pub(super) fn met(needs: Vec<Need>, lacks: Vec<Lack>) -> Result<(), BuildError> {
+pub(super) fn met(needs: Vec<Need>, lacks: &[Lack]) -> Result<(), BuildError> {
     for need in needs {
         if let Some(lack) = lacks.iter().find(|l| l.property == need.property) {
             let path = lack.path.clone().unwrap_or(need.path);
@@ -162,5 +174,5 @@ pub(super) fn met(needs: Vec<Need>, lacks: Vec<Lack>) -> Result<(), BuildError> 
 
 /// Do the parts of a spec go together?
 pub(super) fn agree(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
-    met(needs::of(spec), lacks::of(spec, shelf))
+    met(needs::of(spec), &lacks::of(spec, shelf))
 }

@@ -1,6 +1,7 @@
 //! What the parts of a spec ask for.
 
 use super::{Need, Property};
+use crate::run::constitutive::{breaks, knows_directions};
 use crate::spec::{BodySpec, Control, Method, Spec, Statics, Stepper, ToughnessFactor};
 
 pub(super) fn of(spec: &Spec) -> Vec<Need> {
@@ -20,6 +21,34 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
         let why = ", and several bodies have bonds of their own each";
         all.push(Need::new(Property::SideBySide, "body", why, ""));
         all.push(Need::new(Property::ConstantsOfPoints, "pairs", why, ""));
+    }
+    if !spec.bonds.is_empty() {
+        let why = ", and factors of bonds need a bond-based law";
+        all.push(Need::new(Property::BondByBond, "bonds[0]", why, ""));
+        let why = ", and factors of bonds are those of one";
+        let instead = "give the interface the stiffness that it shall have";
+        all.push(Need::new(Property::Unbonded, "interface[0]", why, instead));
+    }
+    if knows_directions(spec) {
+        let why = ": its influence function knows no directions";
+        all.push(Need::new(Property::Directed, "influence", why, ""));
+    }
+    if spec.contact.is_some() || breaks(spec) {
+        all.push(Need::new(Property::Separates, "materials", "", ""));
+    }
+    for transfer in &spec.transfers {
+        let why = ", through which heat and species go";
+        let name = transfer.quantity.name();
+        all.push(Need::new(Property::Continuum, name, why, ""));
+    }
+    if spec.smooth.is_some() {
+        let why = ", and these are carried along by nodes";
+        all.push(Need::new(
+            Property::Carried,
+            "smooth",
+            why,
+            "leave smooth out",
+        ));
     }
     if let Some(heat) = spec.transfers.iter().find(|t| t.deformation) {
         all.push(Need::new(
@@ -85,9 +114,12 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
     let mut all = vec![];
     if let Some(n) = (spec.materials.iter()).position(|m| m.fracture.is_some_and(|f| f.remembers()))
     {
+        let path = format!("materials[{n}].fracture");
+        let why = ", and more than the stretch of now is asked for";
+        all.push(Need::new(Property::OtherMeasures, path.as_str(), why, ""));
         all.push(Need::new(
             Property::ConstantsOfPoints,
-            format!("materials[{n}].fracture"),
+            path,
             ", with critical stretches and no other measure",
             "give critical_stretch or energy alone",
         ));
@@ -128,7 +160,7 @@ fn of_stages(spec: &Spec) -> Vec<Need> {
         all.push(Need::new(
             Property::TwoStages,
             "preload.statics",
-            ", and t begins again where statics ends and motion begins",
+            ", and in motion, which begins where statics ends, t begins again",
             "leave [statics] out and load the body in time",
         ));
         all.push(Need::new(

@@ -14,15 +14,12 @@ pub(in crate::run) fn of_statics<const D: usize>(
     system: &System<D>,
     options: Statics,
 ) -> Result<(), BuildError> {
-    let rest = |path| {
-        Need::new(
-            Property::Rest,
-            path,
-            ", and in equilibrium nothing moves",
-            "",
-        )
-    };
-    let mut needs = vec![rest("statics")];
+    let mut needs = vec![Need::new(
+        Property::Rest,
+        "statics",
+        ", and in equilibrium nothing moves",
+        "",
+    )];
     if !options.timed {
         needs.push(Need::new(
             Property::Timeless,
@@ -80,7 +77,7 @@ pub(in crate::run) fn of_statics<const D: usize>(
         )),
     }
     needs.extend(of_solver(options.solver, "statics.solver"));
-    met(needs, lacks(system))
+    met(needs, &lacks(system))
 }
 
 /// What implicit steps ask for.
@@ -103,7 +100,7 @@ pub(in crate::run) fn of_implicit_steps<const D: usize>(
         ),
     ];
     needs.extend(of_solver(solver, "schedule.solver"));
-    met(needs, lacks(system))
+    met(needs, &lacks(system))
 }
 
 /// What a load asks for whose factor is sought.
@@ -131,7 +128,7 @@ pub(in crate::run) fn of_control<const D: usize>(
             "",
         ),
     ];
-    met(needs, lacks)
+    met(needs, &lacks)
 }
 
 fn of_solver(solver: Solver, path: &str) -> Option<Need> {

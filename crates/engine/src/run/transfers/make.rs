@@ -115,13 +115,6 @@ impl<const D: usize> Maker<'_, D> {
     ) -> Result<Transfer, BuildError> {
         let name = t.quantity.name();
         let (body, interaction) = (&self.system.body, self.system.interaction.as_ref());
-        if interaction.is_potential() || spec.micromoduli().is_some() {
-            return Err(BuildError::unsupported(
-                name,
-                "atoms and given micromoduli conduct nothing: their bonds are not those of a continuum",
-            )
-            .help("take a law of solids (pmb, lps, …)"));
-        }
         let of = |slot: usize| &t.materials[body.material_of(slot)];
         let weight = |slot: usize, xi: &[f64], r: f64| {
             let model = self.system.constitutive.at(slot).0;

@@ -1,6 +1,6 @@
 //! What is done to a body: contact, initial values, conditions.
 
-use super::{Cohesion, Convection, Force, Radiation, Shape, SpeciesExchange, StageName};
+use super::{Cohesion, Convection, Force, Friction, Radiation, Shape, SpeciesExchange, StageName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Components, Number, Or, Written};
 use schemars::JsonSchema;
@@ -28,22 +28,6 @@ pub struct Contact {
     /// conducts nothing when left out.
     #[schemars(extend("dimension" = Dim::HEAT_TRANSFER.name()))]
     pub conductance: Option<Number>,
-}
-
-/// Friction that falls from rest to sliding, `μ = kinetic + (static − kinetic) exp(−v/speed)` at a sliding speed v.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Friction {
-    /// Coefficient of fast sliding, a number or an expression of t.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub kinetic: Number,
-    /// Coefficient at rest, a number or an expression of t; kinetic when left out.
-    #[serde(rename = "static")]
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub at_rest: Option<Number>,
-    /// Speed at which the difference is 1/e of that at rest; goes with static.
-    #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
-    pub speed: Option<Number>,
 }
 
 /// Values at t = 0, expressions of x, y, z.

@@ -1,6 +1,6 @@
 //! Rigid bodies that push points.
 
-use super::{Friction, StageName};
+use super::{Cohesion, Friction, StageName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Vector, Written};
 use schemars::JsonSchema;
@@ -114,18 +114,4 @@ pub struct Rotation {
     /// Radians, a number or an expression of t; counter-clockwise when the axis points at you.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub angle: Number,
-}
-
-/// What pulls points that are near. Of a rigid surface a traction of `27/4 strength s (1 − s)²` at a gap of s times its range 16 energy/(9 strength);
-/// between bodies of points central forces that fall to nothing over a range of about 4 energy/strength.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Cohesion {
-    /// Work of adhesion: energy per area that pulling off takes.
-    #[schemars(extend("dimension" = Dim::FRACTURE_ENERGY.name()))]
-    pub energy: Number,
-    /// Greatest traction of a rigid surface, whose range is then at most the spacing of the points; of bodies that of faces that touch, whose range is
-    /// then 2 to 20 times their distance.
-    #[schemars(extend("dimension" = Dim::PRESSURE.name()))]
-    pub strength: Number,
 }

@@ -5,8 +5,10 @@
 //! bare number times a number (`0.1*sin(2*pi*x/L)`) is what the key wants. Beside a quantity, as a factor, it is a pure number.
 //! Expressions without any unit are plain numbers, and not checked.
 
+use super::Dim;
+use super::dimension::{example, place};
 use super::parse::prefix;
-use super::{Dim, UnitSystem, example, place};
+use super::system::UnitSystem;
 use peridyne::expression::{Measure, Misfit, Rule};
 use std::ops::Range;
 

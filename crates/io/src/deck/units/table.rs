@@ -1,6 +1,8 @@
 //! The units that are known.
 
-use super::{AVOGADRO, Dim};
+use super::system::AVOGADRO;
+
+use super::Dim;
 
 /// A unit: `scale · 10^ten` in SI. Powers of ten are kept apart so that "0.5 mm" is the number 0.0005 and not its
 /// neighbour.

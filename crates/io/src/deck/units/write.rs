@@ -2,7 +2,9 @@
 
 use peridyne::quantity::{Message, rounded};
 
-use super::{AVOGADRO, Dim, UnitSystem};
+use super::system::{AVOGADRO, UnitSystem};
+
+use super::Dim;
 
 impl UnitSystem {
     /// A computed value as text with its unit.
@@ -172,7 +174,7 @@ pub fn counted(n: u64, one: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::deck::units::Constants;
+    use crate::deck::units::system::Constants;
 
     #[test]
     fn numbers_for_readers_have_units_and_four_digits() {

@@ -1,27 +1,16 @@
 //! What an Exodus file says of a model: blocks by material and body, the deck's sets, rows of the history.
 
+use crate::drive::options::ExodusPlan;
 use std::path::PathBuf;
 
 use peridyne::observe::Values;
 use peridyne::run::Simulation;
 use peridyne::state::{Archive, Owner};
 
-use super::{Made, Now, Writer};
-use crate::drive::DriveError;
+use super::writer::{Made, Now, Writer};
+use crate::drive::plan::DriveError;
 use crate::write::exodus::{Exodus, Layout};
 use crate::write::history::Column;
-
-/// An Exodus file of all frames.
-#[derive(Debug, Clone, Default)]
-pub struct ExodusPlan {
-    /// In the folder of the results.
-    pub path: PathBuf,
-    pub materials: Vec<String>,
-    /// Names of several bodies; none of one.
-    pub bodies: Vec<String>,
-    /// Sets that become node sets.
-    pub sets: Vec<String>,
-}
 
 /// Frames of a run.
 pub struct ExodusFrames {

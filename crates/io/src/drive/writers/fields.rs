@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use peridyne::state::{Archive, Owner};
 
-use super::{Made, Now, Writer};
+use super::writer::{Made, Now, Writer};
 use crate::continuum::run::RunningFields;
-use crate::drive::DriveError;
+use crate::drive::plan::DriveError;
 
 #[derive(Default)]
 pub struct LiveFields {

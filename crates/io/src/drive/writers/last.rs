@@ -3,8 +3,10 @@
 use peridyne::spec::AnyLinearBody;
 use peridyne::state::{Archive, Owner};
 
-use super::{Made, Now, Writer, inside};
-use crate::drive::DriveError;
+use super::writer::{Made, Now, Writer};
+
+use super::inside;
+use crate::drive::plan::DriveError;
 use crate::write::data::write_data;
 use crate::write::linear::write_linear;
 

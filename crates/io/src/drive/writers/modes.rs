@@ -1,8 +1,8 @@
 //! Modes of vibration as files.
 
-use super::{Made, Now, Writer};
+use super::writer::{Made, Now, Writer};
 use crate::deck::Dim;
-use crate::drive::{DriveError, Plan};
+use crate::drive::plan::{DriveError, Plan};
 use crate::write::earlier::sweep_frames;
 use crate::write::picture::{self, shown::About};
 use crate::write::table::Table;

@@ -2,8 +2,9 @@
 
 use peridyne::state::{Archive, Owner};
 
-use super::{Made, Now, Writer};
-use crate::drive::{DriveError, frame_time};
+use super::writer::{Made, Now, Writer};
+use crate::drive::frame_time;
+use crate::drive::plan::DriveError;
 use crate::write::run_json::RigidNote;
 
 #[derive(Debug, Default)]

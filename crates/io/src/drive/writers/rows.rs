@@ -3,9 +3,11 @@
 use peridyne::spec::Stepper;
 use peridyne::state::{Archive, Owner};
 
-use super::{Made, Now, Writer, inside};
+use super::writer::{Made, Now, Writer};
+
+use super::inside;
 use crate::balance::BalanceWatch;
-use crate::drive::DriveError;
+use crate::drive::plan::DriveError;
 use crate::write::WriteError;
 use crate::write::history::{Column, History};
 

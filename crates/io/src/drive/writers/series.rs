@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use peridyne::state::{Archive, Owner};
 
-use super::{Made, Now, Writer};
-use crate::drive::DriveError;
+use super::writer::{Made, Now, Writer};
+use crate::drive::plan::DriveError;
 use crate::write::Series;
 use crate::write::picture::film::HURRY;
 

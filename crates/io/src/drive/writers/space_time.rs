@@ -1,29 +1,17 @@
 //! Fields of a body on a line over place and time: recorded while it moves, drawn at the end.
 
+use crate::drive::options::SpaceTimeOptions;
 use peridyne::run::Simulation;
 use peridyne::state::{Archive, Owner};
 use std::time::Instant;
 
-use super::{Made, Now, Writer};
+use super::writer::{Made, Now, Writer};
 use crate::deck::Dim;
-use crate::drive::{DriveError, Plan};
+use crate::drive::plan::{DriveError, Plan};
 use crate::write::WriteError;
 use crate::write::folder::SPACE_TIME;
 use crate::write::picture::shown::Shown;
-use crate::write::space_time::{DENSITY, Line, SpaceTime, Window};
-
-/// A field over place and time.
-#[derive(Debug, Clone)]
-pub struct SpaceTimeOptions {
-    /// [`DENSITY`] or a field of points.
-    pub field: String,
-    pub component: Option<String>,
-    /// Ends of the colours.
-    pub range: Option<[f64; 2]>,
-    pub window: Window,
-    /// After which the body repeats.
-    pub period: Option<f64>,
-}
+use crate::write::space_time::{DENSITY, Line, SpaceTime};
 
 struct One {
     options: SpaceTimeOptions,

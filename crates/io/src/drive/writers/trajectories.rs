@@ -2,8 +2,8 @@
 
 use peridyne::state::{Archive, Owner};
 
-use super::{Made, Now, Writer};
-use crate::drive::DriveError;
+use super::writer::{Made, Now, Writer};
+use crate::drive::plan::DriveError;
 use crate::write::trajectory::Trajectory;
 
 #[derive(Default)]

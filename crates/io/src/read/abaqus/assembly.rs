@@ -1,6 +1,6 @@
 //! Parts, and their instances in the assembly.
 
-use super::super::ReadError;
+use super::super::error::ReadError;
 use super::generate::shift;
 use super::input::Block;
 use super::keyword::Label;

@@ -1,7 +1,7 @@
 //! `*ELEMENT`, and elements from elements: `*ELGEN`, `*ELCOPY`.
 
-use super::super::ReadError;
 use super::super::cell::Kind;
+use super::super::error::ReadError;
 use super::input::{Block, Rows};
 use super::keyword::Label;
 use super::model::{Element, ITEM, Model, Of, Place, Shape};

@@ -1,6 +1,6 @@
 //! Nodes from nodes: `*NGEN`, `*NFILL`, `*NCOPY`.
 
-use super::super::ReadError;
+use super::super::error::ReadError;
 use super::input::{Block, Rows};
 use super::keyword::Label;
 use super::model::{Frame, ITEM, Model, Of};

@@ -1,6 +1,8 @@
 //! The lines of a file and of those that it includes, as blocks of a keyword and its data.
 
-use super::super::{ReadError, text_of};
+use super::super::error::ReadError;
+
+use super::super::text_of;
 use super::keyword::{Keyword, Label, split};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};

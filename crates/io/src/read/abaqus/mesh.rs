@@ -1,7 +1,7 @@
 //! The model as a mesh: cells of all instances, sets under their names.
 
-use super::super::ReadError;
 use super::super::cell::Cell;
+use super::super::error::ReadError;
 use super::super::mesh::{Group, Mesh};
 use super::input::Deck;
 use super::model::{Element, Model, Of, Place, Scope, Set, Shape, Surface, of_scope, split_number};

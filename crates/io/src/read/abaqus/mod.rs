@@ -18,8 +18,10 @@ mod node;
 mod set;
 mod silent;
 
+use super::body::Sourced;
+use super::error::ReadError;
 use super::lines::Lines;
-use super::{ReadError, Sourced, text_of};
+use super::text_of;
 use input::{Block, Deck};
 use model::{Model, Of};
 use std::path::Path;

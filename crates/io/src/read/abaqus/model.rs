@@ -1,7 +1,7 @@
 //! What a file says of its mesh: nodes, elements and sets of the model, of its parts and of their instances.
 
-use super::super::ReadError;
 use super::super::cell::{Kind, Nodes};
+use super::super::error::ReadError;
 use super::input::{LARGEST, Rows};
 use super::keyword::{Label, split};
 use peridyne::execute::memory::afford;

@@ -1,6 +1,6 @@
 //! `*NODE` and `*SYSTEM`.
 
-use super::super::ReadError;
+use super::super::error::ReadError;
 use super::input::{Block, Rows};
 use super::model::{Frame, Model, Of};
 use peridyne::space::{cross, length};

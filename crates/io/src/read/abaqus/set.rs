@@ -1,6 +1,6 @@
 //! `*NSET`, `*ELSET` and `*SURFACE`.
 
-use super::super::ReadError;
+use super::super::error::ReadError;
 use super::input::{Block, Rows};
 use super::keyword::Label;
 use super::model::{MEMBER, Model, Of, Place, Surface, of_scope};

@@ -5,11 +5,12 @@
 //! on one grid: the largest steps, and as many knots as steps fit in the longest table, one fewer than the table has
 //! knots; in between, cubics through four knots. The same is done here, so that the tables are LAMMPS's.
 
-use super::super::ReadError;
+use super::super::error::ReadError;
+use super::file::{EamElement, EamFile};
 use super::setfl::{Grid, described};
 use super::symbol::symbol;
+use super::titled;
 use super::values::Values;
-use super::{EamElement, EamFile, titled};
 use std::path::Path;
 
 /// Hartree (eV) times Bohr radius (Å), with the digits that LAMMPS takes.
@@ -44,7 +45,7 @@ pub fn parse_funcfl(files: &[(&str, &str)]) -> Result<EamFile, ReadError> {
                 "a second file for {}: give one per element",
                 part.element.name
             );
-            return Err(super::failure(name, None, message));
+            return Err(super::file::failure(name, None, message));
         }
         parts.push(part);
     }

@@ -2,9 +2,10 @@
 //! `number mass lattice_constant lattice` with its tables F and ρ; then r φ of every pair, lower triangle. `eam/fs` files have a
 //! table ρ at an atom of each element instead of one (Finnis & Sinclair 1984).
 
-use super::super::ReadError;
+use super::super::error::ReadError;
+use super::file::{EamElement, EamFile, failure};
+use super::titled;
 use super::values::Values;
-use super::{EamElement, EamFile, failure, titled};
 use std::path::Path;
 
 /// Reads an `eam/alloy` file.

@@ -1,6 +1,6 @@
 //! Numbers of a table, any number of them per line, with exponents as Fortran writes them.
 
-use super::super::ReadError;
+use super::super::error::ReadError;
 use super::super::lines::Lines;
 use super::super::number::number;
 

@@ -4,8 +4,9 @@
 
 use super::bytes::Bytes;
 use super::{Gmsh, element, partitioned, physical_name, unknown, version};
+use crate::read::body::Sourced;
+use crate::read::error::ReadError;
 use crate::read::lines::Lines;
-use crate::read::{ReadError, Sourced};
 
 pub(super) fn parse(bytes: &[u8], name: &str) -> Result<Sourced, ReadError> {
     let mut file = Bytes {

@@ -1,6 +1,6 @@
 //! Bytes of a binary file of gmsh: numbers, lines, sections.
 
-use crate::read::ReadError;
+use crate::read::error::ReadError;
 use crate::read::lines::Lines;
 
 pub(super) struct Bytes<'a> {

@@ -2,7 +2,7 @@
 
 use super::bytes::Bytes;
 use super::{Gmsh, end};
-use crate::read::ReadError;
+use crate::read::error::ReadError;
 use crate::read::lines::Lines;
 use std::collections::BTreeSet;
 

@@ -3,8 +3,9 @@
 mod file;
 mod lines;
 
+use super::body::Sourced;
+use super::error::ReadError;
 use super::spacing::Spacing;
-use super::{ReadError, Sourced};
 pub use file::{DataAtoms, DataFile, Masses, Style, read_data};
 pub use lines::{FileError, Lines, Result, finite};
 use peridyne::spec::Cloud;

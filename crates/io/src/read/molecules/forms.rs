@@ -1,6 +1,6 @@
 //! Coefficients of LAMMPS's styles.
 
-use crate::read::ReadError;
+use crate::read::error::ReadError;
 use crate::read::lines::Lines;
 use peridyne::law::bonded::{Wave, cosine_powers};
 use peridyne::spec::Form;

@@ -1,7 +1,7 @@
 //! `fields.npz`: an array for each quantity by its short name, `points`, and the standard errors of means as `NAME_error`. Of a grid the
 //! first indices are those of z, y, x; then come the components, for tensors `[a][b]` with the index of the divergence first.
 
-use super::Table;
+use super::columns::Table;
 use crate::write::atomic::{WriteError, write_file};
 use ndarray::{ArrayD, IxDyn};
 use ndarray_npy::NpzWriter;

@@ -1,8 +1,9 @@
 //! What comes of fields frame by frame: a file for each if asked for, means over all, and at the end everything else.
 
+use super::columns::Table;
 use super::describe::{About, Frame, describe};
 use super::slice::SliceFilm;
-use super::{Table, write_arrays, write_image, write_profiles, write_slice, write_table};
+use super::{write_arrays, write_image, write_profiles, write_slice, write_table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, create_directory, write_file};
 use crate::write::pvd::Pvd;

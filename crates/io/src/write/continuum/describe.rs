@@ -1,7 +1,7 @@
 //! `fields.json`: what every quantity is, how it was made, and how well the balance laws hold.
 
-use super::Table;
-use super::components;
+use super::columns::Table;
+use super::columns::components;
 use crate::continuum::Units;
 use peridyne::state::{Archive, Owner};
 use peridyne_fields::fields::Totals;

@@ -1,7 +1,7 @@
 //! A grid as VTK cells, each with the fields at its centre: an image (`.vti`) where the cell is along the axes, else a structured grid
 //! (`.vts`). Raw appended binary, little-endian, 64-bit headers; every block is its length in bytes and its numbers.
 
-use super::Table;
+use super::columns::Table;
 use crate::write::atomic::WriteError;
 use crate::write::grown::{Seal, write_sealed};
 use peridyne_fields::Cell;

@@ -1,6 +1,6 @@
 //! Pictures of a grid that is a line: profiles of density, temperature, the normal stresses and the heat flux along it.
 
-use super::Table;
+use super::columns::Table;
 use crate::continuum::Units;
 use crate::write::atomic::WriteError;
 use crate::write::plot::Plot;

@@ -1,7 +1,7 @@
 //! Pictures of the slice through the middle of a grid: the mean of the normal stresses, and the kinetic temperature where there is one;
 //! of one table, or of all frames as a film.
 
-use super::{Column, Table};
+use super::columns::{Column, Table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, write_file};
 use crate::write::picture::film::{HURRY, animate, stride};

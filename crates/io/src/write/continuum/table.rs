@@ -1,7 +1,7 @@
 //! `points.csv`: one row for each point. A quantity that the frame does not allow, or that is not defined at a point, is an empty field;
 //! where one is missing altogether, a last column without values says why.
 
-use super::{Column, Table, components};
+use super::columns::{Column, Table, components};
 use crate::write::atomic::{WriteError, write_file};
 use std::io::{self, Write};
 use std::path::Path;

@@ -8,7 +8,8 @@ use super::super::picture::image::{Align, Color, GREY, INK, WHITE};
 use super::axis::Scale;
 use super::canvas::{Drawing, Outline, Shape};
 use super::frame::{Frame, TICK, axes};
-use super::{WriteError, invalid, titled};
+use super::save::titled;
+use super::{WriteError, invalid};
 
 /// Between a legend and what stands beside it.
 const GAP: f64 = 10.0;
@@ -207,7 +208,7 @@ impl Plot {
     /// The operating system's; `InvalidInput` for x and y of unequal lengths, an empty range, and when nothing can be
     /// plotted.
     pub fn save(&self, dir: &Path, name: &str) -> Result<[PathBuf; 2], WriteError> {
-        super::save(dir, name, self.draw())
+        super::save::save(dir, name, self.draw())
     }
 
     fn scale(&self, axis: usize) -> io::Result<Scale> {

@@ -9,7 +9,8 @@ use super::super::picture::image::{Align, Color, INK, Image};
 use super::axis::Scale;
 use super::canvas::{Drawing, Shape};
 use super::frame::{Frame, LABEL, TICK, axes, beside};
-use super::{SCALE, WriteError, invalid, titled};
+use super::save::{SCALE, titled};
+use super::{WriteError, invalid};
 
 /// Where a value is missing.
 const MISSING: Color = [214, 216, 220];
@@ -185,7 +186,7 @@ impl Map {
     /// # Errors
     /// The operating system's; `InvalidInput` for data that is no rectangle, empty or nowhere finite, or an empty range.
     pub fn save(&self, dir: &Path, name: &str) -> Result<[PathBuf; 2], WriteError> {
-        super::save(dir, name, self.draw())
+        super::save::save(dir, name, self.draw())
     }
 
     /// The picture itself.
@@ -193,7 +194,7 @@ impl Map {
     /// # Errors
     /// As [`Map::save`].
     pub fn image(&self) -> io::Result<Image> {
-        Ok(super::raster::draw(&self.draw()?, super::SCALE))
+        Ok(super::raster::draw(&self.draw()?, super::save::SCALE))
     }
 
     fn check(&self) -> io::Result<&[f64]> {

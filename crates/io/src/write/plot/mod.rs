@@ -17,41 +17,12 @@ mod frame;
 mod lines;
 mod map;
 mod raster;
+mod save;
 mod svg;
-
-pub use lines::{Mark, Plot, Stroke};
-pub use map::{ColorMap, Map};
-
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-
-use super::atomic::{WriteError, create_directory, write_file};
-use super::fields::invalid;
-use canvas::Drawing;
-
-/// Pixels of the PNG per unit of the drawing.
-const SCALE: f64 = 2.0;
-
-/// Writes `name.png` and `name.svg`, each all or nothing.
-fn save(dir: &Path, name: &str, drawing: io::Result<Drawing>) -> Result<[PathBuf; 2], WriteError> {
-    create_directory(dir)?;
-    let paths = ["png", "svg"].map(|e| dir.join(format!("{name}.{e}")));
-    let drawing = drawing.map_err(WriteError::at("draw", &paths[0]))?;
-    write_file(&paths[0], |w| raster::draw(&drawing, SCALE).write_png(w))?;
-    write_file(&paths[1], |w| {
-        let text = svg::draw(&drawing)?;
-        w.write_all(text.as_bytes())
-    })?;
-    Ok(paths)
-}
-
-/// `name (unit)`.
-fn titled(name: &str, unit: &str) -> String {
-    match unit {
-        "" => name.to_string(),
-        unit => format!("{name} ({unit})"),
-    }
-}
-
 #[cfg(test)]
 mod tests;
+
+use super::atomic::WriteError;
+use super::fields::invalid;
+pub use lines::{Mark, Plot, Stroke};
+pub use map::{ColorMap, Map};

@@ -9,6 +9,9 @@ use crate::interaction::VIRIAL;
 use crate::law::bonded::{Pulls, Tangents};
 use crate::spec::Form;
 
+/// A pair potential of kinds of atoms: value, first and second derivative by `q = r²`; `None`: nothing, beyond its cut-off.
+pub type PairEnergy = dyn Fn([usize; 2], f64) -> Option<[f64; 3]> + Send + Sync;
+
 /// Terms, or atoms, per block of work.
 pub(super) const BLOCK: usize = 256;
 
@@ -91,7 +94,7 @@ fn taken(factor: f64, [value, first, second]: [f64; 3]) -> Tangents {
 /// What is taken of the pair of a term, by ξ.
 pub(super) fn left_out<const D: usize>(
     body: &Body<D>,
-    pair: &super::PairEnergy,
+    pair: &PairEnergy,
     term: &Term,
     factor: f64,
     xi: f64,
@@ -104,7 +107,7 @@ pub(super) struct Evaluate<'a, const D: usize> {
     pub body: &'a Body<D>,
     pub u: &'a Field<D>,
     pub forms: &'a [Form],
-    pub pair: &'a super::PairEnergy,
+    pub pair: &'a PairEnergy,
     pub terms: &'a [Term],
     /// Where forces on the particles go, if anywhere.
     pub force: Shared<[[f64; D]; 4]>,

@@ -1,6 +1,8 @@
 //! Right values are sums of boxes, of flat-sided sectors and of faces, by hand.
 
-use crate::read::{Points, parse};
+use crate::read::body::Points;
+
+use crate::read::parse;
 
 mod assembly;
 mod generated;

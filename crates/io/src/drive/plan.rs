@@ -1,0 +1,155 @@
+//! What a run is to write, whom it tells, and what it dies of.
+
+use super::atoms::AtomsPlan;
+use super::options::{ExodusPlan, SpaceTimeOptions};
+use super::rigid::RigidBodies;
+
+use crate::continuum::run::FieldsPlan;
+use crate::deck::UnitSystem;
+use crate::write::checkpoint::{Asked, CheckpointSchedule, ResumeError};
+use crate::write::picture::rigid::Placed;
+use crate::write::picture::shown::About;
+use crate::write::report::ReportError;
+use crate::write::run_json::MarkNotes;
+use crate::write::{SeriesOptions, WriteError};
+use peridyne::error::{RunError, SolveError};
+use peridyne::observe::{Ledger, Snapshot};
+use peridyne::run::Simulation;
+use peridyne_fields::FieldsError;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What to do and what to write.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    pub title: String,
+    /// File name of the deck and its text, for the report.
+    pub deck: String,
+    pub deck_text: String,
+    pub dir: PathBuf,
+    /// What makes the same run again, what was understood, and where the laws come from: for the report.
+    pub command: String,
+    pub understood: String,
+    pub sources: Vec<String>,
+    /// What looks wrong in the deck; the model's own are added.
+    pub warnings: Vec<String>,
+    /// What pictures and the report show beside the points.
+    pub rigid: RigidBodies,
+    /// What is done to the body, for the report.
+    pub marks: MarkNotes,
+    /// Write `report.html` at the end.
+    pub report: bool,
+    /// May files that the deck names lie outside `dir`?
+    pub allow_outside: bool,
+    pub steps: u64,
+    /// Of these, increments of statics before motion.
+    pub increments: u64,
+    /// Steps between frames; `None`: first and last.
+    pub every: Option<u64>,
+    /// Steps between rows of `history.csv`.
+    pub history: u64,
+    /// Modes of vibration about the last state.
+    pub modes: usize,
+    /// Write `linear_body.npz` about the last state.
+    pub linear_body: bool,
+    pub series: SeriesOptions,
+    /// Fields of a body on a line over place and time.
+    pub space_time: Vec<SpaceTimeOptions>,
+    /// Frames in an Exodus file.
+    pub exodus: Option<ExodusPlan>,
+    /// Columns of a frame.
+    pub fields: Vec<String>,
+    /// Of the numbers that are computed, for headers of probes.
+    pub units: UnitSystem,
+    /// Units of time and energy, for headers.
+    pub time_unit: String,
+    pub energy_unit: String,
+    pub threads: usize,
+    /// What atoms have besides.
+    pub atoms: Option<AtomsPlan>,
+    /// Continuum fields, where any are asked for.
+    pub continuum: Option<FieldsPlan>,
+    /// When states to go on from are written; `None`: only where the run is ended early, or somebody asks.
+    pub checkpoints: Option<CheckpointSchedule>,
+    /// What such a state says of how the run was asked for.
+    pub asked: Asked,
+}
+
+impl Plan {
+    /// What a frame shows.
+    pub(super) fn look(&self, sim: &mut dyn Simulation) -> Snapshot {
+        let mut fields: Vec<&str> = self.fields.iter().map(String::as_str).collect();
+        for picture in &self.series.pictures {
+            let shown = match &picture.field {
+                Some(field) => vec![field.as_str()],
+                // what a run is about is known in the end
+                None => {
+                    let spread = { sim.transfers().into_iter() }.map(|(q, _)| q.column());
+                    let others = [About::Fracture.field(), About::Motion.field()];
+                    spread.chain(others).collect()
+                }
+            };
+            for field in shown.into_iter().chain(picture.arrows.as_deref()) {
+                if !fields.contains(&field) {
+                    fields.push(field);
+                }
+            }
+        }
+        sim.snapshot(&fields, self.series.bonds)
+    }
+
+    /// Has motion begun? It does with the first step after those of statics.
+    pub(super) fn begun(&self, sim: &dyn Simulation) -> bool {
+        self.increments == 0 || sim.step_number() > self.increments
+    }
+
+    /// Rigid bodies where they are now.
+    pub(super) fn placed(&self, sim: &mut dyn Simulation) -> Vec<Placed> {
+        let begun = self.begun(sim);
+        self.rigid.placed(sim, begun)
+    }
+}
+
+/// Listens to a run.
+pub trait Progress {
+    /// Called often; `stepping` is the time spent in steps alone.
+    fn step(&mut self, done: u64, total: u64, stepping: Duration);
+    /// A row of the history.
+    fn row(&mut self, step: u64, time: f64, ledger: &Ledger, broken: u64);
+    /// Something else than steps begins: fields, pictures, the report.
+    fn phase(&mut self, _what: &str) {}
+    /// Something that the user should know now.
+    fn warning(&mut self, message: &str);
+    /// Asked before each step: shall the run end here, and who says so? What it has done is then written as at its end.
+    /// ([`Simulation::stop_when`] asks within a long increment of statics.)
+    fn ended(&mut self) -> Option<String> {
+        None
+    }
+    /// Asked before each step: shall a state to go on from be written now?
+    fn wants_checkpoint(&mut self) -> bool {
+        false
+    }
+}
+
+/// Why a run did not end well.
+#[derive(Debug, thiserror::Error)]
+pub enum DriveError {
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    #[error("{told}\nthe last good state, step {step}, is in {}", dir.display())]
+    Run {
+        error: RunError,
+        /// The error with units.
+        told: String,
+        step: u64,
+        dir: PathBuf,
+    },
+    #[error(transparent)]
+    Resume(#[from] ResumeError),
+    #[error("[[fields]]: {0}")]
+    Fields(#[from] FieldsError),
+    #[error("report.html: {0}")]
+    Report(#[from] ReportError),
+    #[error("the modes were not found: {error}\nthe last state is in {}", dir.display())]
+    Modes { error: SolveError, dir: PathBuf },
+}
