@@ -139,7 +139,7 @@ pub fn cut(context: &Context, bench: &mut Bench, found: &mut Findings) -> Result
     let whole = bench.sim.snapshot(&["damage"], false);
     let shown = layer(&whole, (2, 0.0), [0, 1]);
     let spec = &bench.deck.spec;
-    let bodies: Vec<Placed> = { spec.indenters.iter().zip(bench.sim.indenters()) }
+    let bodies: Vec<Placed> = { spec.loading.indenters.iter().zip(bench.sim.indenters()) }
         .map(|(body, center)| Placed {
             center,
             ..Placed::at(body, 2, shown.time)

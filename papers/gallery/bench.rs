@@ -104,10 +104,10 @@ impl Bench {
         };
         let shown = self.sim.snapshot(&[field], false);
         let spec = &self.deck.spec;
-        let centers = spec.indenters.iter().zip(self.sim.indenters());
+        let centers = spec.loading.indenters.iter().zip(self.sim.indenters());
         let bodies = centers.map(|(body, center)| Placed {
             center,
-            ..Placed::at(body, spec.dimension, shown.time)
+            ..Placed::at(body, spec.space.dimension, shown.time)
         });
         let bodies: Vec<Placed> = bodies.collect();
         picture::write(&path, &shown, &bodies, &options, about)?;

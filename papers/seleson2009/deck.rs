@@ -78,7 +78,7 @@ mod tests {
                         let info = model(&deck).unwrap().info().clone();
                         // a deck that goes to the limit on purpose is told so
                         let warned = !info.warnings.is_empty();
-                        let allowed = deck.spec.schedule.force_unstable;
+                        let allowed = deck.spec.run.schedule.force_unstable;
                         assert!(!warned || allowed, "{run}: {:?}", info.warnings);
                     }
                 }

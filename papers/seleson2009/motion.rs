@@ -99,8 +99,8 @@ pub fn run(
     context.part(part, || {
         let deck = deck::deck(text, name, changes)?;
         let sim = deck::model(&deck)?;
-        let steps = deck.spec.schedule.steps;
-        let Horizon::Ratio(neighbours) = deck.spec.horizon else {
+        let steps = deck.spec.run.schedule.steps;
+        let Horizon::Ratio(neighbours) = deck.spec.bonds.horizon else {
             return Err(Failure::new(format!(
                 "{name}: write the horizon as m_ratio"
             )));

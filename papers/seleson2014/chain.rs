@@ -119,7 +119,7 @@ pub fn seconds(h: f64, family: Family, runs: usize) -> Result<f64, Failure> {
         let mut sim = model(&deck, false)?;
         sim.start(true);
         let begin = Instant::now();
-        for _ in 0..deck.spec.schedule.steps {
+        for _ in 0..deck.spec.run.schedule.steps {
             sim.step().map_err(|e| Failure::new(e.to_string()))?;
         }
         best = best.min(begin.elapsed().as_secs_f64());
@@ -135,7 +135,9 @@ mod tests {
     #[test]
     fn the_deck_begins_with_the_profile() {
         let deck = parsed(1.0, Family::Chain).unwrap();
-        let u = deck.spec.initial[0].displacement[0].as_ref().unwrap();
+        let u = deck.spec.loading.initial[0].displacement[0]
+            .as_ref()
+            .unwrap();
         for x in 0..=1000 {
             let x = f64::from(x);
             let exact = pulse(x, 500.0, 200.0, 7.0);

@@ -39,8 +39,8 @@ pub struct Crystal<const D: usize> {
 impl<const D: usize> Crystal<D> {
     pub fn of(deck: &Deck) -> Result<Self, Failure> {
         let mut spec = deck.spec.clone();
-        spec.conditions.clear();
-        spec.schedule.stepper = Stepper::Verlet;
+        spec.loading.conditions.clear();
+        spec.run.schedule.stepper = Stepper::Verlet;
         let options = Options {
             trust_time_step: true,
             ..Options::default()

@@ -90,7 +90,7 @@ impl Findings<'_> {
     /// Along which axes is the body thinner than the horizon?
     fn thin(&self) -> [bool; 3] {
         std::array::from_fn(|a| {
-            self.spec.periodic[a].is_none() && self.long(a) < self.info.horizon * (1.0 - 1e-9)
+            self.spec.space.periodic[a].is_none() && self.long(a) < self.info.horizon * (1.0 - 1e-9)
         })
     }
 
@@ -259,7 +259,7 @@ fn report(
             found.thin(),
         );
     }
-    let what = match (subject.increments > 0, subject.spec.schedule.statics()) {
+    let what = match (subject.increments > 0, subject.spec.run.schedule.statics()) {
         (false, None) => "a trial step",
         _ => "a trial increment of load",
     };
@@ -338,6 +338,7 @@ fn find<'a>(
 /// whose surface is exact ends at its points.
 fn half(spec: &Spec, spacing: f64) -> [f64; 3] {
     let exact = spec
+        .bonds
         .surface
         .as_ref()
         .is_some_and(|f| f.part.iter().any(|p| *p != 1.0));
@@ -363,7 +364,7 @@ fn half(spec: &Spec, spacing: f64) -> [f64; 3] {
 fn mean(found: &Findings, stiffness: &Stiffness) -> Moduli {
     let d = stiffness.dimension;
     match d == 1 || stiffness.is_even() {
-        true => stiffness.hill().solid(d, found.spec.plane),
+        true => stiffness.hill().solid(d, found.spec.space.plane),
         false => Moduli {
             young: f64::NAN,
             poisson: f64::NAN,
@@ -393,17 +394,17 @@ fn materials(
 ) -> Vec<Material> {
     let d = info.dimension;
     let each = spec.materials.iter().enumerate().map(|(n, m)| {
-        let of_all = (info.horizon, spec.influence);
+        let of_all = (info.horizon, spec.bonds.influence);
         let (horizon, influence) = info.families.get(n).copied().unwrap_or(of_all);
-        let moments = Moments::continuum(d, horizon, spec.section, influence);
+        let moments = Moments::continuum(d, horizon, spec.space.section, influence);
         let body = Body {
             dimension: d,
-            plane: spec.plane,
+            plane: spec.space.plane,
             horizon,
             influence,
             moments,
         };
-        let nominal = nominal_moduli(&m.law, d, spec.plane, moments);
+        let nominal = nominal_moduli(&m.law, d, spec.space.plane, moments);
         let s00 = info.critical_stretch.get(n).copied();
         let (pressure, shear) = match patch.and_then(|p| p.best(n)) {
             Some(class) => waves(&class.stiffness, thin),

@@ -39,11 +39,11 @@ pub fn coarsen(arguments: &CoarsenArguments) -> Result<(), Failure> {
 fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
     let mut spec = deck.spec.clone();
     // motion, conditions and steps play no part in the linear body
-    spec.initial.clear();
-    spec.thermal = None;
-    spec.conditions.clear();
-    spec.schedule.stepper = Stepper::Verlet;
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.loading.initial.clear();
+    spec.loading.thermal = None;
+    spec.loading.conditions.clear();
+    spec.run.schedule.stepper = Stepper::Verlet;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     let options = Options {
         trust_time_step: true,
         simd: deck::simd(&arguments.input)?,
@@ -149,7 +149,7 @@ fn kept(
 /// Loads as in the paper are forces per volume.
 fn no_faces(deck: &Deck, way: Way) -> Result<(), Failure> {
     let traction = |c: &&ConditionSpec| matches!(c.kind, ConditionKind::Traction { .. });
-    match deck.spec.conditions.iter().find(traction) {
+    match deck.spec.loading.conditions.iter().find(traction) {
         Some(c) if !way.condensed => Err(Failure::input(format!(
             "--loads silling: a body force density acts on retained points, and the traction on `{}` acts on a face, whose points are removed: write body_force in its place, or leave --loads out",
             c.set
@@ -165,7 +165,7 @@ fn marked(
     act: fn(&ConditionKind) -> bool,
 ) -> Result<Vec<bool>, Failure> {
     let mut marked = vec![false; sim.info().points as usize];
-    for c in deck.spec.conditions.iter().filter(|c| act(&c.kind)) {
+    for c in deck.spec.loading.conditions.iter().filter(|c| act(&c.kind)) {
         let members = sim
             .members(&c.set)
             .ok_or_else(|| Failure::input(format!("{} has no set `{}`", deck.file(), c.set)))?;

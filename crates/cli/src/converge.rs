@@ -118,7 +118,7 @@ pub fn converge(arguments: &ConvergeArguments) -> Result<(), Failure> {
     }
     let deck = deck::read(&arguments.input)?;
     deck::is_plain(&deck, "converge")?;
-    let exact = expressions(&arguments.exact, deck.spec.dimension)?;
+    let exact = expressions(&arguments.exact, deck.spec.space.dimension)?;
     let threads = arguments.threads.or(deck.threads);
     with_threads(threads, |_| all(arguments, &deck, &exact))
 }

@@ -146,9 +146,14 @@ pub fn model_of(deck: &Deck, spec: &Spec, input: &Input) -> Result<Box<dyn Simul
 /// Columns of a frame.
 pub fn fields(deck: &Deck) -> Vec<String> {
     let usual = || USUAL.map(String::from).to_vec();
-    let spread = deck.spec.transfers.iter().map(|t| t.quantity.column());
+    let spread = deck
+        .spec
+        .interactions
+        .transfers
+        .iter()
+        .map(|t| t.quantity.column());
     let spread = || spread.map(str::to_string).chain(usual()).collect();
-    deck.spec.fields.clone().unwrap_or_else(spread)
+    deck.spec.run.fields.clone().unwrap_or_else(spread)
 }
 
 /// What looks wrong in a deck of which this was built.
@@ -166,7 +171,7 @@ pub fn remarks(notes: &[String], warnings: &[String]) -> String {
 
 /// Decks of two stages, and points with horizons of their own, which `verb` does not know.
 pub fn is_plain(deck: &Deck, verb: &str) -> Result<(), Failure> {
-    let what = match (&deck.spec.preload, &deck.spec.own_horizon) {
+    let what = match (&deck.spec.run.preload, &deck.spec.bonds.own_horizon) {
         (Some(_), _) => "a deck of [run] or of [statics], and this one has both",
         (_, Some(_)) => "one horizon, and the points of this deck have their own (own_horizon)",
         (None, None) => return Ok(()),

@@ -198,7 +198,7 @@ pub fn run_deck(
         "threads   {threads}\nrunning {left}, results in {}",
         plan.dir.display()
     ));
-    let statics = counts_load(&deck.spec.schedule);
+    let statics = counts_load(&deck.spec.run.schedule);
     let times = (!statics).then_some(deck.units);
     let bonds = sim.info().directed_bonds;
     let mut progress = Terminal::new(steps, bonds, times).ending(arguments.early.clone(), done);
@@ -267,7 +267,7 @@ fn has_steps(asked: &Asked, steps: u64) -> Result<(), Failure> {
 /// # Errors
 /// There is no such field, or it has no such component.
 pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOptions>, Failure> {
-    let still = deck.spec.schedule.statics().is_some();
+    let still = deck.spec.run.schedule.statics().is_some();
     let step = sim.info().time_step;
     let end = until(&deck.spec, deck.steps(step) - deck.increments(), step);
     let marks = Marks::of(&deck.spec, sim, end);
@@ -282,8 +282,8 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
         };
         // a film is begun before it is known what the run was about
         let about = match (breaks, still) {
-            _ if deck.spec.schedule.stepper == Stepper::Still
-                && let Some(t) = deck.spec.transfers.first() =>
+            _ if deck.spec.run.schedule.stepper == Stepper::Still
+                && let Some(t) = deck.spec.interactions.transfers.first() =>
             {
                 About::Spread(t.quantity.column())
             }
@@ -385,7 +385,7 @@ pub fn space_time(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<SpaceTime
             component: asked.component.clone(),
             range: asked.range.map(|r| r.map(|x| x * factor)),
             window: asked.window,
-            period: deck.spec.periodic[0],
+            period: deck.spec.space.periodic[0],
         })
     };
     deck.output.space_time.iter().map(one).collect()
@@ -402,7 +402,7 @@ fn units(deck: &Deck) -> [&'static str; 3] {
 
 /// The last t of so many steps.
 pub fn until(spec: &Spec, steps: u64, step: f64) -> f64 {
-    match counts_load(&spec.schedule) {
+    match counts_load(&spec.run.schedule) {
         true => 1.0,
         false => steps as f64 * step,
     }
@@ -466,7 +466,7 @@ fn plan(
             cells: deck.cells.clone(),
             bonds: output.bonds,
             dump: output.dump.as_ref().map(|name| {
-                let cell = DumpBox::periodic(deck.corner, deck.spec.periodic);
+                let cell = DumpBox::periodic(deck.corner, deck.spec.space.periodic);
                 (name.clone(), cell)
             }),
             pictures,
@@ -497,7 +497,7 @@ fn plan(
                 ase_velocity: deck.units.ase_velocity(),
                 mass_scale: 1.0 / deck.units.plain_factor(Dim::MASS),
                 corner: deck.corner,
-                periodic: deck.spec.periodic,
+                periodic: deck.spec.space.periodic,
             }
         }),
         title,

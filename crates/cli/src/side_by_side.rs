@@ -73,7 +73,7 @@ pub fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
         .map_err(|e| Failure::Input(deck.explain(&e).into()))?;
     let mut steps = deck.steps(sim.info().time_step);
     if let Some(until) = until
-        && deck.spec.schedule.statics().is_none()
+        && deck.spec.run.schedule.statics().is_none()
         && deck.increments() == 0
     {
         steps = (until / sim.info().time_step - 1e-6).ceil().max(1.0) as u64;
@@ -122,7 +122,7 @@ fn at_rest(deck: &Deck) -> Result<f64, Box<dyn std::error::Error>> {
         return Ok(0.0);
     }
     let mut spec = deck.spec.clone();
-    spec.initial.clear();
+    spec.loading.initial.clear();
     let mut sim = build(&spec, Options::default())?;
     sim.start(false);
     Ok(sim.ledger()?.strain)

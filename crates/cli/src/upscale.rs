@@ -208,7 +208,7 @@ fn table(rows: &[[String; 7]]) -> String {
 
 /// When a deck ends that counts steps which the program finds: those of the coarse model are others, and it is to end then, too.
 fn end(deck: &Deck) -> Result<Option<f64>, Failure> {
-    let schedule = &deck.spec.schedule;
+    let schedule = &deck.spec.run.schedule;
     let found = match schedule.time_step {
         TimeStep::Auto | TimeStep::Fraction(_) => true,
         TimeStep::Fixed(_) => false,

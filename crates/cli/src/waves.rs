@@ -73,17 +73,17 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
     if deck.spec.materials.len() != 1 && deck.spec.potential().is_none() {
         return Err(told(UpscaleError::SeveralMaterials));
     }
-    if let Stepper::Newmark(_) = deck.spec.schedule.stepper {
+    if let Stepper::Newmark(_) = deck.spec.run.schedule.stepper {
         return Err(Failure::input(format!(
             "{}: waves are told as velocity Verlet steps through them, and this deck has integrator = \"newmark\": leave it out",
             deck.file()
         )));
     }
-    let (time_step, estimate) = match deck.spec.schedule.time_step {
+    let (time_step, estimate) = match deck.spec.run.schedule.time_step {
         TimeStep::Fixed(dt) => (dt, None),
         TimeStep::Fraction(_) | TimeStep::Auto => {
             let mut trusting = deck.clone();
-            trusting.spec.schedule.force_unstable = true;
+            trusting.spec.run.schedule.force_unstable = true;
             let sim = deck::model(&trusting, &arguments.input)?;
             (sim.info().time_step, Some(sim.info().stable_step))
         }

@@ -78,13 +78,13 @@ fn time(potential: PotentialSpec, edge: f64) -> f64 {
     };
     let law = LawSpec::Atoms(potential);
     let mut spec = Spec::new(3, BodySpec::Cloud(cloud), MASS / volume, law);
-    spec.periodic = [Some(edge * f64::from(CELLS)); 3];
-    spec.thermal = Some(ThermalSpec {
+    spec.space.periodic = [Some(edge * f64::from(CELLS)); 3];
+    spec.loading.thermal = Some(ThermalSpec {
         energy: Expression::constant(1000.0 * KELVIN),
         seed: 376847,
     });
-    spec.schedule.time_step = TimeStep::Fixed(0.001);
-    spec.schedule.force_unstable = true;
+    spec.run.schedule.time_step = TimeStep::Fixed(0.001);
+    spec.run.schedule.force_unstable = true;
     let mut best = f64::INFINITY;
     for _ in 0..3 {
         let mut sim = build(&spec, Options::default()).unwrap_or_else(|e| panic!("{e}"));

@@ -20,15 +20,8 @@ fn main() {
     }
     let e = |s: &str| Expression::parse(s, &[]).unwrap();
     let spec = Spec {
-        bonded: None,
-        boltzmann: 1.0,
-        thermal: None,
-        fields: None,
-        probes: vec![],
         title: "impact".into(),
-        dimension: 3,
-        plane: Plane::Stress,
-        section: 1.0,
+        space: SpaceSpec::default(),
         body: BodySpec::Sites {
             kind: LatticeKind::Cubic,
             spacing: 0.0005,
@@ -56,51 +49,47 @@ fn main() {
                 fatigue: None,
             }),
         }],
-        interface: InterfaceRule::Series,
-        interfaces: vec![],
-        pairs: vec![],
-        potentials: vec![],
-        mixing: None,
-        toughness: vec![],
-        healing: None,
-        release: Release::AfterForce,
-        horizon: Horizon::Length(0.0015001),
-        volume_scaling: true,
-        calibration: Calibration::Continuum,
-        influence: if lps {
-            Influence::Inverse
-        } else {
-            Influence::Constant
+        bonds: BondsSpec {
+            horizon: Horizon::Length(0.0015001),
+            volume_scaling: true,
+            calibration: Calibration::Continuum,
+            influence: if lps {
+                Influence::Inverse
+            } else {
+                Influence::Constant
+            },
+            ..BondsSpec::default()
         },
-        periodic: [None; 3],
-        surface: None,
-        bonds: vec![],
-        precracks: vec![],
-        contact: Some(ContactSpec {
-            bonded: 0.9,
-            free: 1.35,
-            stiffness: ContactStiffness::Laws,
-            friction: None,
-            cohesion: None,
-            conductance: None,
-        }),
-        initial: vec![],
-        conditions: vec![],
-        indenters: vec![IndenterSpec::sphere(
-            1e17,
-            0.005,
-            IndenterMotion::Kinematic([e("0"), e("0.0051-100*t"), e("0")]),
-        )],
-        transfers: vec![],
-        family: FamilyChoice::Auto,
-        smooth: None,
-        preload: None,
-        own_horizon: None,
-        schedule: Schedule {
-            steps,
-            time_step: TimeStep::Fixed(1e-7),
-            force_unstable: false,
-            stepper: Stepper::Verlet,
+        interactions: InteractionsSpec {
+            contact: Some(ContactSpec {
+                bonded: 0.9,
+                free: 1.35,
+                stiffness: ContactStiffness::Laws,
+                friction: None,
+                cohesion: None,
+                conductance: None,
+            }),
+            ..InteractionsSpec::default()
+        },
+        damage: DamageSpec {
+            release: Release::AfterForce,
+            ..DamageSpec::default()
+        },
+        loading: LoadingSpec {
+            indenters: vec![IndenterSpec::sphere(
+                1e17,
+                0.005,
+                IndenterMotion::Kinematic([e("0"), e("0.0051-100*t"), e("0")]),
+            )],
+            ..LoadingSpec::default()
+        },
+        run: RunSpec {
+            schedule: Schedule {
+                steps,
+                time_step: TimeStep::Fixed(1e-7),
+                ..Schedule::default()
+            },
+            ..RunSpec::default()
         },
     };
     let t = std::time::Instant::now();

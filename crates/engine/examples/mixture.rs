@@ -75,15 +75,15 @@ fn melt(kinds: usize) -> Spec {
                 fracture: None,
             });
         }
-        spec.mixing = Some(Mixing::Arithmetic);
+        spec.interactions.mixing = Some(Mixing::Arithmetic);
     }
-    spec.periodic = [Some(EDGE * f64::from(CELLS)); 3];
-    spec.thermal = Some(ThermalSpec {
+    spec.space.periodic = [Some(EDGE * f64::from(CELLS)); 3];
+    spec.loading.thermal = Some(ThermalSpec {
         energy: Expression::constant(1.44),
         seed: 87287,
     });
-    spec.schedule.time_step = TimeStep::Fixed(0.005);
-    spec.schedule.force_unstable = true;
+    spec.run.schedule.time_step = TimeStep::Fixed(0.005);
+    spec.run.schedule.force_unstable = true;
     spec
 }
 

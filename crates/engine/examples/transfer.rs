@@ -26,10 +26,10 @@ fn main() {
     };
     let pmb = LawSpec::Pmb(PmbStiffness::Young(1.0));
     let mut spec = Spec::new(3, body, 1.0, pmb);
-    spec.horizon = Horizon::Ratio(3);
-    spec.schedule.stepper = Stepper::Still;
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.run.schedule.stepper = Stepper::Still;
     let wave = Expression::parse("sin(x) * cos(2*y + z)", &[]).expect("an expression");
-    spec.transfers = vec![TransferSpec {
+    spec.interactions.transfers = vec![TransferSpec {
         quantity: Quantity::Heat,
         method: TransferMethod::Explicit { safety: 0.9 },
         reference: 0.0,

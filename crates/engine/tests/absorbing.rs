@@ -43,7 +43,7 @@ fn left(layer: &Layer, stepper: Stepper, step: f64) -> f64 {
     ];
     let toward = Parameter::Word("x+".into());
     let constants = Parameters::numbers(&numbers).with("toward", toward);
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "layer".into(),
         kind: ConditionKind::force("absorbing_layer", constants),
     }];
@@ -52,7 +52,7 @@ fn left(layer: &Layer, stepper: Stepper, step: f64) -> f64 {
     let speed = 2.0 * (0.5 * k).sin() / k;
     let text = |e: String| Some(Expression::parse(&e, &[]).unwrap());
     let shape = format!("exp(-((x-500)/{WIDTH})^2)");
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [text(format!("{shape}*cos({k}*(x-500))")), None, None],
         velocity: [
@@ -63,8 +63,8 @@ fn left(layer: &Layer, stepper: Stepper, step: f64) -> f64 {
             None,
         ],
     }];
-    spec.schedule.stepper = stepper;
-    spec.schedule.time_step = TimeStep::Fixed(step);
+    spec.run.schedule.stepper = stepper;
+    spec.run.schedule.time_step = TimeStep::Fixed(step);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let start = sim.ledger().unwrap();
@@ -187,7 +187,7 @@ fn a_layer_says_what_does_not_fit() {
         ),
     ];
     for (constants, key, message) in tries {
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: "all".into(),
             kind: ConditionKind::force("absorbing_layer", constants),
         }];

@@ -31,21 +31,21 @@ fn block(kind: LatticeKind, size: [f64; 3], law: LawSpec) -> Spec {
 /// A chain of 100 springs between the ends 0 and 0.5.
 fn stretched(bonds: Vec<BondFactorSpec>, rule: InterfaceRule) -> Box<dyn Simulation> {
     let mut spec = block(LatticeKind::Chain, [100.0; 3], LawSpec::Springs(ONE));
-    spec.bonds = bonds;
-    spec.interface = rule;
+    spec.bonds.factors = bonds;
+    spec.interactions.interface = rule;
     for (set, place, u) in [("low", "x < 0.5", "0"), ("high", "x > 99.5", "0.5")] {
         spec.sets.push(SetSpec {
             name: set.into(),
             members: Members::Where(text(place)),
         });
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: set.into(),
             kind: ConditionKind::Displacement([Some(text(u)), None, None]),
         });
     }
-    spec.schedule.steps = 1;
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
-    spec.schedule.stepper = Stepper::Statics(Statics::default());
+    spec.run.schedule.steps = 1;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.stepper = Stepper::Statics(Statics::default());
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     sim.step().unwrap();
@@ -104,14 +104,14 @@ fn factors_multiply_and_a_weak_plane_opens() {
 fn moved(spec: &Spec) -> (Vec<[f64; 3]>, f64, f64) {
     let mut spec = spec.clone();
     let bump = "0.01*exp(-((x-4)^2 + (y-4)^2 + (z-4)^2)/4)";
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: std::array::from_fn(|_| Some(text(bump))),
         velocity: [None, None, None],
     }];
-    let unused = &mut spec.initial[0].displacement[spec.dimension..];
+    let unused = &mut spec.loading.initial[0].displacement[spec.space.dimension..];
     unused.iter_mut().for_each(|c| *c = None);
-    spec.schedule.time_step = TimeStep::Fixed(0.05);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.05);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     for _ in 0..20 {
@@ -127,10 +127,10 @@ fn a_factor_of_two_is_a_law_twice_as_stiff() {
     for kind in [Chain, Square, Triangular, Cubic, Bcc, Fcc, Diamond] {
         for law in [LawSpec::Pmb, LawSpec::Springs] {
             let mut stiff = block(kind, [9.0; 3], law(PmbStiffness::Micromodulus(2.0)));
-            stiff.horizon = Horizon::Length(1.5);
+            stiff.bonds.horizon = Horizon::Length(1.5);
             let mut scaled = stiff.clone();
             scaled.materials[0].law = law(ONE);
-            scaled.bonds = vec![BondFactorSpec::Field(text("2"))];
+            scaled.bonds.factors = vec![BondFactorSpec::Field(text("2"))];
             assert_eq!(moved(&scaled), moved(&stiff), "{kind:?}");
         }
     }
@@ -140,20 +140,20 @@ fn a_factor_of_two_is_a_law_twice_as_stiff() {
 fn a_periodic_field_moves_with_the_body() {
     let shifted = |cells: i32| {
         let mut spec = block(LatticeKind::Square, [15.0, 7.0, 0.0], LawSpec::Springs(ONE));
-        spec.horizon = Horizon::Ratio(2);
-        spec.periodic = [Some(16.0), None, None];
+        spec.bonds.horizon = Horizon::Ratio(2);
+        spec.space.periodic = [Some(16.0), None, None];
         let place = format!("(x - {cells} + 32)");
         // a random factor per point, by a whole number that the shift keeps
         let wrapped = format!("({place}) - 16*floor(({place})/16)");
         let field = format!("1 + random({wrapped} + 0.5, y + 0.5, 0)");
-        spec.bonds = vec![BondFactorSpec::Field(text(&field))];
+        spec.bonds.factors = vec![BondFactorSpec::Field(text(&field))];
         let u = format!("0.01*sin(pi/8*(x - {cells}) + y)");
-        spec.initial = vec![InitialSpec {
+        spec.loading.initial = vec![InitialSpec {
             set: "all".into(),
             displacement: [None, Some(text(&u)), None],
             velocity: [None, None, None],
         }];
-        spec.schedule.time_step = TimeStep::Fixed(0.05);
+        spec.run.schedule.time_step = TimeStep::Fixed(0.05);
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);
         for _ in 0..50 {
@@ -184,7 +184,7 @@ fn a_periodic_field_moves_with_the_body() {
 fn wrong_factors_are_refused() {
     let refused = |law: LawSpec, factor: BondFactorSpec| {
         let mut spec = block(LatticeKind::Square, [9.0; 3], law);
-        spec.bonds = vec![factor];
+        spec.bonds.factors = vec![factor];
         build(&spec, Options::default()).err().unwrap()
     };
     let negative = refused(
@@ -206,7 +206,7 @@ fn wrong_factors_are_refused() {
             .contains("bond-based")
     );
     let mut spec = block(LatticeKind::Square, [9.0; 3], LawSpec::Springs(ONE));
-    spec.bonds = vec![BondFactorSpec::Crossing {
+    spec.bonds.factors = vec![BondFactorSpec::Crossing {
         shape: CrackShape::Segment {
             from: [20.0, 0.0, 0.0],
             to: [20.0, 9.0, 0.0],

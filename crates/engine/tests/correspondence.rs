@@ -59,9 +59,9 @@ fn block(d: usize, cells: i32, law: LawSpec) -> Spec {
         volume: None,
     };
     let mut spec = Spec::new(d, body, RHO, law);
-    spec.plane = Plane::Strain;
-    spec.horizon = Horizon::Ratio(RATIO as u32);
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.space.plane = Plane::Strain;
+    spec.bonds.horizon = Horizon::Ratio(RATIO as u32);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     spec
 }
 
@@ -179,9 +179,9 @@ fn a_checkerboard_swings_and_decays_under_control_only() {
     for kind in 0..3 {
         let run = |control: f64, damping: f64, steps: u32, time: f64| {
             let mut spec = block(d, cells, laws(control)[kind].clone());
-            spec.periodic = [Some(f64::from(cells)), Some(f64::from(cells)), None];
-            spec.schedule.time_step = TimeStep::Fixed(time / f64::from(steps));
-            spec.conditions.push(ConditionSpec {
+            spec.space.periodic = [Some(f64::from(cells)), Some(f64::from(cells)), None];
+            spec.run.schedule.time_step = TimeStep::Fixed(time / f64::from(steps));
+            spec.loading.conditions.push(ConditionSpec {
                 set: "all".into(),
                 kind: ConditionKind::Damping(Expression::constant(damping)),
             });
@@ -308,7 +308,7 @@ fn patches_are_homogeneous() {
                 spacing: Some(1.0),
                 ..Cloud::default()
             };
-            spec.horizon = Horizon::Length(f64::from(RATIO) + 0.01);
+            spec.bonds.horizon = Horizon::Length(f64::from(RATIO) + 0.01);
             spec.body = BodySpec::Cloud(cloud);
             spec.sets = vec![SetSpec {
                 name: "rim".into(),
@@ -322,12 +322,12 @@ fn patches_are_homogeneous() {
                 "0.01*x + 0.03*y - 0.03*z",
             ];
             let axis = |a: usize| (a < d).then(|| Expression::parse(text[a], &[]).unwrap());
-            spec.conditions = vec![ConditionSpec {
+            spec.loading.conditions = vec![ConditionSpec {
                 set: "rim".into(),
                 kind: ConditionKind::Displacement([axis(0), axis(1), axis(2)]),
             }];
-            spec.schedule.time_step = TimeStep::Fixed(1.0);
-            spec.schedule.stepper = Stepper::Statics(Statics {
+            spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+            spec.run.schedule.stepper = Stepper::Statics(Statics {
                 method: Method::Newton,
                 tolerance: 1e-12,
                 ..Statics::default()
@@ -389,9 +389,9 @@ fn membrane(n: usize, control: Option<f64>) -> f64 {
     };
     let law = LawSpec::named("correspondence", parameters);
     let mut spec = Spec::new(2, BodySpec::Cloud(cloud), 1.0, law);
-    spec.plane = Plane::Strain;
-    spec.horizon = Horizon::Length(2.01 * 48.0 / n as f64);
-    spec.calibration = Calibration::Continuum;
+    spec.space.plane = Plane::Strain;
+    spec.bonds.horizon = Horizon::Length(2.01 * 48.0 / n as f64);
+    spec.bonds.calibration = Calibration::Continuum;
     let set = |name: &str, ids: &[u32]| SetSpec {
         name: name.into(),
         members: Members::Points(Arc::from(ids)),
@@ -402,7 +402,7 @@ fn membrane(n: usize, control: Option<f64>) -> f64 {
         set: set.into(),
         kind,
     };
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         on(
             "foot",
             ConditionKind::Displacement([text("0"), text("0"), None]),
@@ -412,8 +412,8 @@ fn membrane(n: usize, control: Option<f64>) -> f64 {
             ConditionKind::BodyForce([None, text(&format!("{}*t", 100.0 / area)), None]),
         ),
     ];
-    spec.schedule.time_step = TimeStep::Fixed(0.25);
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.time_step = TimeStep::Fixed(0.25);
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-8,
         ..Statics::default()

@@ -527,7 +527,7 @@ fn held_bar(key: &str, value: Parameter) {
     ])
     .with(key, value);
     let mut spec = Spec::new(3, body, 1.0, LawSpec::named("hypoelastic_plastic", metal));
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     for (name, at, sign) in [("low", 1.5, 1.0), ("high", 12.5, -1.0)] {
         spec.sets.push(SetSpec {
             name: name.into(),
@@ -537,12 +537,12 @@ fn held_bar(key: &str, value: Parameter) {
             }),
         });
         let speed = Expression::parse(if sign > 0.0 { "-0.1" } else { "0.1" }, &[]).unwrap();
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: name.into(),
             kind: ConditionKind::Velocity([Some(speed), None, None]),
         });
     }
-    spec.schedule.time_step = TimeStep::Fixed(0.02);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.02);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     // 5 of 15 spacings

@@ -67,8 +67,8 @@ fn sliding(friction: FrictionSpec) -> Spec {
     let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
     let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, law);
     spec.sets = sets(&["block", "plate"]);
-    spec.horizon = Horizon::Length(2.5);
-    spec.contact = Some(ContactSpec {
+    spec.bonds.horizon = Horizon::Length(2.5);
+    spec.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: 2.4,
         stiffness: ContactStiffness::Laws,
@@ -76,7 +76,7 @@ fn sliding(friction: FrictionSpec) -> Spec {
         cohesion: None,
         conductance: None,
     });
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         ConditionSpec {
             set: "plate".into(),
             kind: ConditionKind::Displacement([text("0"), text("0"), None]),
@@ -86,8 +86,8 @@ fn sliding(friction: FrictionSpec) -> Spec {
             kind: ConditionKind::BodyForce([None, text("-0.02"), None]),
         },
     ];
-    spec.initial = vec![thrown("block", ["1", "0"])];
-    spec.schedule.time_step = TimeStep::Fraction(0.2);
+    spec.loading.initial = vec![thrown("block", ["1", "0"])];
+    spec.run.schedule.time_step = TimeStep::Fraction(0.2);
     spec
 }
 
@@ -114,7 +114,8 @@ fn a_block_slides_with_mu_times_its_weight() {
             renewed = true;
             let members = |name: &str| (name.to_string(), sim.members(name).unwrap());
             let sets = ["block", "plate"].map(members);
-            sim.set_conditions(&spec.conditions, &sets, &[]).unwrap();
+            sim.set_conditions(&spec.loading.conditions, &sets, &[])
+                .unwrap();
             // what was rubbed off before counts once
             let after = sim.ledger().unwrap();
             assert!(l.dissipated > 0.0);
@@ -200,9 +201,9 @@ fn friction_that_falls_with_speed_and_friction_that_ends() {
 #[test]
 fn a_block_comes_to_rest_and_stays() {
     let mut spec = sliding(FrictionSpec::constant(0.9));
-    spec.initial = vec![thrown("block", ["0.3", "0"])];
+    spec.loading.initial = vec![thrown("block", ["0.3", "0"])];
     // what bounces would slip a little at every bounce
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "block".into(),
         kind: ConditionKind::Damping(text("t > 20 && t < 80 ? 0.2 : 0").unwrap()),
     });
@@ -231,13 +232,13 @@ fn a_block_comes_to_rest_and_stays() {
 #[test]
 fn what_sticks_holds_a_force_without_creeping() {
     let mut spec = sliding(FrictionSpec::constant(0.9));
-    spec.initial = vec![];
-    let ConditionKind::BodyForce(force) = &mut spec.conditions[1].kind else {
+    spec.loading.initial = vec![];
+    let ConditionKind::BodyForce(force) = &mut spec.loading.conditions[1].kind else {
         panic!()
     };
     force[0] = text("0.006");
     // what bounces would slip a little at every bounce
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "block".into(),
         kind: ConditionKind::Damping(text("t < 80 ? 0.2 : 0").unwrap()),
     });
@@ -267,8 +268,8 @@ fn glancing() -> Spec {
     let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
     let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, law);
     spec.sets = sets(&["one", "block"]);
-    spec.horizon = Horizon::Length(2.2);
-    spec.contact = Some(ContactSpec {
+    spec.bonds.horizon = Horizon::Length(2.2);
+    spec.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
@@ -276,8 +277,8 @@ fn glancing() -> Spec {
         cohesion: None,
         conductance: None,
     });
-    spec.initial = vec![thrown("block", ["1.5", "-1"])];
-    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    spec.loading.initial = vec![thrown("block", ["1.5", "-1"])];
+    spec.run.schedule.time_step = TimeStep::Fraction(0.1);
     spec
 }
 
@@ -351,8 +352,8 @@ fn points(
     let law = LawSpec::Pmb(PmbStiffness::Young(1.0));
     let mut spec = Spec::new(3, BodySpec::Several(pieces), density, law);
     spec.sets = sets(&["first", "second"]);
-    spec.horizon = Horizon::Length(2.5 * reach);
-    spec.contact = Some(ContactSpec {
+    spec.bonds.horizon = Horizon::Length(2.5 * reach);
+    spec.interactions.contact = Some(ContactSpec {
         bonded: 100.0,
         free: 1.0,
         stiffness: ContactStiffness::Same(18.0 * spring / (PI * horizon.powi(5))),
@@ -360,7 +361,7 @@ fn points(
         cohesion: None,
         conductance: None,
     });
-    spec.schedule.force_unstable = true;
+    spec.run.schedule.force_unstable = true;
     spec
 }
 
@@ -368,8 +369,8 @@ fn points(
 fn peridigm_contact_2x1x1() {
     let at = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
     let mut spec = points(at, 2.0, 0.0078, 2.0, [1950000.0, 1.0]);
-    spec.initial = vec![thrown("first", ["1", "0"]), thrown("second", ["-1", "0"])];
-    spec.schedule.time_step = TimeStep::Fixed(4.150386640644e-08);
+    spec.loading.initial = vec![thrown("first", ["1", "0"]), thrown("second", ["-1", "0"])];
+    spec.run.schedule.time_step = TimeStep::Fixed(4.150386640644e-08);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let gold = [
@@ -400,9 +401,9 @@ fn peridigm_contact_friction() {
     let at = [[0.0; 3], [0.0, 0.18999999999999995, 0.0]];
     let volume = 0.004188852927999996;
     let mut spec = points(at, volume, 8960.0, 0.2, [1e12, 0.6]);
-    spec.contact.as_mut().unwrap().friction = Some(FrictionSpec::constant(0.3));
-    spec.initial = vec![thrown("first", ["10", "0"]), thrown("second", ["-10", "0"])];
-    spec.schedule.time_step = TimeStep::Fixed(1e-5);
+    spec.interactions.contact.as_mut().unwrap().friction = Some(FrictionSpec::constant(0.3));
+    spec.loading.initial = vec![thrown("first", ["10", "0"]), thrown("second", ["-10", "0"])];
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-5);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let close = |found: f64, gold: f64, bound: f64, what: &str| {
@@ -451,12 +452,12 @@ fn peridigm_contact_friction() {
 fn peridigm_contact_friction_that_ends() {
     let at = [[0.0; 3], [0.0, 0.18999999999999995, 0.0]];
     let mut spec = points(at, 0.004188852927999996, 8960.0, 0.2, [1e12, 0.6]);
-    spec.contact.as_mut().unwrap().friction = Some(FrictionSpec {
+    spec.interactions.contact.as_mut().unwrap().friction = Some(FrictionSpec {
         kinetic: Expression::parse("t <= 4.00e-5 ? 1 : 0", &[]).unwrap(),
         at_rest: None,
     });
-    spec.initial = vec![thrown("first", ["10", "0"]), thrown("second", ["-10", "0"])];
-    spec.schedule.time_step = TimeStep::Fixed(1e-5);
+    spec.loading.initial = vec![thrown("first", ["10", "0"]), thrown("second", ["-10", "0"])];
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-5);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let close = |found: f64, gold: f64| {

@@ -36,7 +36,7 @@ fn block(size: [f64; 3], d: usize, law: LawSpec, ratio: u32) -> Spec {
         perturb: None,
     };
     let mut spec = Spec::new(d, body, 1.0, law);
-    spec.horizon = Horizon::Ratio(ratio);
+    spec.bonds.horizon = Horizon::Ratio(ratio);
     let end = |name: &str, sign: f64, x: f64| SetSpec {
         name: name.into(),
         members: Members::Region(Region::HalfSpace {
@@ -49,8 +49,8 @@ fn block(size: [f64; 3], d: usize, law: LawSpec, ratio: u32) -> Spec {
 }
 
 fn newmark(spec: &mut Spec, step: f64) {
-    spec.schedule.stepper = Stepper::Newmark(Newmark::default());
-    spec.schedule.time_step = TimeStep::Fixed(step);
+    spec.run.schedule.stepper = Stepper::Newmark(Newmark::default());
+    spec.run.schedule.time_step = TimeStep::Fixed(step);
 }
 
 fn built(spec: &Spec) -> Box<dyn Simulation> {
@@ -60,7 +60,7 @@ fn built(spec: &Spec) -> Box<dyn Simulation> {
 }
 
 fn start(spec: &mut Spec, displacement: &str, velocity: [&str; 2]) {
-    spec.initial.push(InitialSpec {
+    spec.loading.initial.push(InitialSpec {
         set: "all".into(),
         displacement: [text(displacement), None, None],
         velocity: [text(velocity[0]), text(velocity[1]), None],
@@ -111,12 +111,12 @@ fn a_linear_body_keeps_its_energy_to_round_off_at_any_step() {
         let mut spec = block([11.0, 6.0, 0.0], 2, SPRINGS, 2);
         let v = "0.01*sin(3*x+y)";
         start(&mut spec, "0.02*sin(2*x*y)", [v, "0.02*cos(x-2*y)"]);
-        spec.schedule.stepper = Stepper::Newmark(Newmark {
+        spec.run.schedule.stepper = Stepper::Newmark(Newmark {
             solver,
             tolerance: 1e-13,
             ..Newmark::default()
         });
-        spec.schedule.time_step = TimeStep::Fraction(12.5);
+        spec.run.schedule.time_step = TimeStep::Fraction(12.5);
         let mut sim = built(&spec);
         assert!(sim.info().time_step > 12.0 * sim.info().stable_step);
         let first = sim.ledger().unwrap();
@@ -138,8 +138,8 @@ fn a_linear_body_keeps_its_energy_to_round_off_at_any_step() {
 fn thrown(law: LawSpec, stepper: Stepper, steps: u64, duration: f64) -> (Vec<[f64; 3]>, f64) {
     let mut spec = block([7.0, 3.0, 0.0], 2, law, 2);
     start(&mut spec, "0", ["0.02*sin(x)", "0.03*cos(0.5*x)"]);
-    spec.schedule.stepper = stepper;
-    spec.schedule.time_step = TimeStep::Fixed(duration / steps as f64);
+    spec.run.schedule.stepper = stepper;
+    spec.run.schedule.time_step = TimeStep::Fixed(duration / steps as f64);
     let mut sim = built(&spec);
     let initial = sim.ledger().unwrap().initial;
     for _ in 0..steps {
@@ -175,7 +175,7 @@ fn small_steps_go_the_same_way_as_explicit_ones() {
 fn work_damping_and_prescribed_motion_balance() {
     let mut spec = block([14.0, 4.0, 0.0], 2, SPRINGS, 2);
     let mut condition = |set: &str, kind| {
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: set.into(),
             kind,
         })
@@ -208,7 +208,7 @@ fn work_damping_and_prescribed_motion_balance() {
 #[test]
 fn a_damped_body_comes_to_rest_in_equilibrium() {
     let mut spec = block([10.0, 3.0, 0.0], 2, LPS, 2);
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         ConditionSpec {
             set: "low".into(),
             kind: ConditionKind::Displacement([text("0"), text("0"), None]),
@@ -219,9 +219,9 @@ fn a_damped_body_comes_to_rest_in_equilibrium() {
         },
     ];
     let mut at_rest = spec.clone();
-    at_rest.schedule.steps = 1;
-    at_rest.schedule.time_step = TimeStep::Fixed(1.0);
-    at_rest.schedule.stepper = Stepper::Statics(Statics {
+    at_rest.run.schedule.steps = 1;
+    at_rest.run.schedule.time_step = TimeStep::Fixed(1.0);
+    at_rest.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-12,
         ..Statics::default()
@@ -229,13 +229,13 @@ fn a_damped_body_comes_to_rest_in_equilibrium() {
     let mut sim = built(&at_rest);
     sim.step().unwrap();
     let equilibrium = sim.displacements();
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Damping(text("0.03").unwrap()),
     });
     newmark(&mut spec, 5.0);
     // the trapezoidal rule hardly damps modes that are fast beside the step; this one does
-    spec.schedule.stepper = Stepper::Newmark(Newmark {
+    spec.run.schedule.stepper = Stepper::Newmark(Newmark {
         beta: 0.3025,
         gamma: 0.6,
         ..Newmark::default()
@@ -281,10 +281,10 @@ fn what_has_no_tangent_is_refused() {
         fatigue: None,
     });
     assert!(build(&late, Options::default()).is_ok());
-    late.release = Release::AfterForce;
+    late.damage.release = Release::AfterForce;
     assert_eq!(said(&late).path, "materials[0].fracture");
     let mut touching = spec.clone();
-    touching.contact = Some(ContactSpec {
+    touching.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
@@ -295,26 +295,28 @@ fn what_has_no_tangent_is_refused() {
     assert!(build(&touching, Options::default()).is_ok());
     let mut free = spec.clone();
     let motion = IndenterMotion::Free(FreeSpec::new(1.0, [0.0, 9.0, 0.0], [0.0; 3]));
-    free.indenters.push(IndenterSpec::sphere(1.0, 1.0, motion));
+    free.loading
+        .indenters
+        .push(IndenterSpec::sphere(1.0, 1.0, motion));
     assert!(build(&free, Options::default()).is_ok());
-    free.conditions.push(ConditionSpec {
+    free.loading.conditions.push(ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement([text("0"), text("0"), None]),
     });
     assert_eq!(said(&free).path, "indenters");
     for alpha in [-0.4, 0.1, f64::NAN] {
         let mut wrong = spec.clone();
-        wrong.schedule.stepper = Stepper::Newmark(Newmark::hht(alpha));
+        wrong.run.schedule.stepper = Stepper::Newmark(Newmark::hht(alpha));
         assert_eq!(said(&wrong).path, "schedule.alpha", "{alpha}");
     }
     let mut wrong = spec.clone();
-    wrong.schedule.stepper = Stepper::Newmark(Newmark {
+    wrong.run.schedule.stepper = Stepper::Newmark(Newmark {
         alpha: -0.1,
         ..Newmark::default()
     });
     assert_eq!(said(&wrong).path, "schedule.alpha");
     let mut auto = spec.clone();
-    auto.schedule.time_step = TimeStep::Auto;
+    auto.run.schedule.time_step = TimeStep::Auto;
     assert_eq!(said(&auto).path, "schedule.time_step");
     for (beta, gamma, path) in [
         (0.0, 0.5, "schedule.beta"),
@@ -323,7 +325,7 @@ fn what_has_no_tangent_is_refused() {
         (f64::NAN, 0.5, "schedule.beta"),
     ] {
         let mut wrong = spec.clone();
-        wrong.schedule.stepper = Stepper::Newmark(Newmark {
+        wrong.run.schedule.stepper = Stepper::Newmark(Newmark {
             beta,
             gamma,
             ..Newmark::default()
@@ -343,7 +345,7 @@ fn peridigm(initial: [f64; 2]) -> Spec {
     };
     let solid = LawSpec::Lps(Moduli::from_bulk_shear(130e9, 78e9));
     let mut spec = Spec::new(3, BodySpec::Cloud(cloud), 7800.0, solid);
-    spec.horizon = Horizon::Length(2.5);
+    spec.bonds.horizon = Horizon::Length(2.5);
     spec.sets = [("low", 0), ("high", 1)]
         .map(|(name, id)| SetSpec {
             name: name.into(),
@@ -351,7 +353,7 @@ fn peridigm(initial: [f64; 2]) -> Spec {
         })
         .into();
     for (set, v) in ["low", "high"].iter().zip(initial) {
-        spec.initial.push(InitialSpec {
+        spec.loading.initial.push(InitialSpec {
             set: (*set).into(),
             displacement: [None, None, None],
             velocity: [text(&format!("{v:?}")), None, None],
@@ -428,7 +430,7 @@ fn peridigm_compression_implicit_essential_bc_2x1x1() {
     let mut spec = peridigm([0.0, -1.0]);
     // its first acceleration is 0, though its first point is already displaced: the force at the start is not evaluated. That
     // is a body at rest whose end is displaced just after the start.
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "low".into(),
         kind: ConditionKind::Displacement([text("0.1*(t>0)"), text("0"), text("0")]),
     });

@@ -61,9 +61,9 @@ fn glue(law: LawSpec, horizon: Horizon) -> InterfaceSpec {
 fn bars(d: usize, law: &LawSpec) -> [Spec; 2] {
     let common = |body: BodySpec| {
         let mut spec = Spec::new(d, body, 2.0, law.clone());
-        spec.horizon = Horizon::Ratio(3);
-        spec.volume_scaling = true;
-        spec.schedule.time_step = TimeStep::Fraction(0.5);
+        spec.bonds.horizon = Horizon::Ratio(3);
+        spec.bonds.volume_scaling = true;
+        spec.run.schedule.time_step = TimeStep::Fraction(0.5);
         spec
     };
     let whole = common(block(d, 0.5, [0.0; 3], [5.5, 1.5, 1.5]));
@@ -72,7 +72,7 @@ fn bars(d: usize, law: &LawSpec) -> [Spec; 2] {
     let pieces = vec![PieceSpec::new("left", left), PieceSpec::new("right", right)];
     let mut glued = common(BodySpec::Several(pieces));
     glued.sets = vec![within("left"), within("right")];
-    glued.interfaces = vec![glue(law.clone(), Horizon::Ratio(3))];
+    glued.interactions.interfaces = vec![glue(law.clone(), Horizon::Ratio(3))];
     [whole, glued]
 }
 
@@ -158,7 +158,7 @@ fn glued_bodies_hang_in_equilibrium_like_the_whole() {
                 name: "wall".into(),
                 members: Members::Where(text("x < 0.6").unwrap()),
             });
-            spec.conditions = vec![
+            spec.loading.conditions = vec![
                 ConditionSpec {
                     set: "wall".into(),
                     kind: ConditionKind::Displacement([text("0"), text("0"), None]),
@@ -168,9 +168,9 @@ fn glued_bodies_hang_in_equilibrium_like_the_whole() {
                     kind: ConditionKind::BodyForce([text("0.1*t"), text("-0.02*t"), None]),
                 },
             ];
-            spec.schedule.steps = 1;
-            spec.schedule.time_step = TimeStep::Fixed(1.0);
-            spec.schedule.stepper = Stepper::Statics(Statics {
+            spec.run.schedule.steps = 1;
+            spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+            spec.run.schedule.stepper = Stepper::Statics(Statics {
                 method: Method::Newton,
                 solver,
                 tolerance: 1e-11,
@@ -210,8 +210,8 @@ fn pulled() -> Spec {
         })
     };
     spec.materials[0].fracture = breaks(0.05);
-    spec.interfaces[0].fracture = breaks(0.005);
-    spec.contact = Some(ContactSpec {
+    spec.interactions.interfaces[0].fracture = breaks(0.005);
+    spec.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
@@ -220,13 +220,13 @@ fn pulled() -> Spec {
         conductance: None,
     });
     for (set, v) in [("left", "-0.02*(3-x)"), ("right", "0.02*(x-2.5)")] {
-        spec.initial.push(InitialSpec {
+        spec.loading.initial.push(InitialSpec {
             set: set.into(),
             displacement: [None, None, None],
             velocity: [text(v), None, None],
         });
     }
-    spec.schedule.time_step = TimeStep::Fraction(0.05);
+    spec.run.schedule.time_step = TimeStep::Fraction(0.05);
     spec
 }
 
@@ -234,7 +234,7 @@ fn pulled() -> Spec {
 fn a_weaker_interface_breaks_first_and_the_energy_balances() {
     let mut spec = pulled();
     // no faster than what breaks the glue alone
-    for i in &mut spec.initial {
+    for i in &mut spec.loading.initial {
         let v = i.velocity[0]
             .as_ref()
             .unwrap()
@@ -256,7 +256,7 @@ fn a_weaker_interface_breaks_first_and_the_energy_balances() {
     // broken are the bonds of the interface, all of them
     let [_, free] = bars(2, &PMB);
     let mut apart = free.clone();
-    apart.interfaces.clear();
+    apart.interactions.interfaces.clear();
     let own = build(&apart, Options::default()).unwrap();
     assert_eq!(sim.broken(), bonds - own.info().directed_bonds);
     // their volume over that of all
@@ -311,9 +311,9 @@ fn unlike() -> Spec {
         poisson: 0.2,
     });
     spec.materials = vec![material("ball", 2.0, solid), material("plate", 1.0, PMB)];
-    spec.horizon = Horizon::Ratio(3);
-    spec.volume_scaling = true;
-    spec.contact = Some(ContactSpec {
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.bonds.volume_scaling = true;
+    spec.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
@@ -321,7 +321,7 @@ fn unlike() -> Spec {
         cohesion: None,
         conductance: None,
     });
-    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    spec.run.schedule.time_step = TimeStep::Fraction(0.1);
     spec
 }
 
@@ -341,12 +341,13 @@ fn bodies_of_unlike_laws_and_horizons_are_what_each_is_alone() {
     for (piece, m) in pieces.iter().zip(&spec.materials) {
         let mut alone = Spec {
             body: piece.body.clone(),
-            horizon: piece.horizon.unwrap_or(spec.horizon),
-            influence: piece.influence.unwrap_or(spec.influence),
-            family: piece.family.unwrap_or(spec.family),
             sets: vec![],
             ..spec.clone()
         };
+        let bonds = &mut alone.bonds;
+        bonds.horizon = piece.horizon.unwrap_or(bonds.horizon);
+        bonds.influence = piece.influence.unwrap_or(bonds.influence);
+        bonds.family = piece.family.unwrap_or(bonds.family);
         alone.materials = vec![MaterialSpec {
             set: "all".into(),
             ..m.clone()
@@ -368,7 +369,7 @@ fn bodies_of_unlike_laws_and_horizons_are_what_each_is_alone() {
 #[test]
 fn unlike_bodies_collide_with_momentum_and_energy() {
     let mut spec = unlike();
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "ball".into(),
         displacement: [None, None, None],
         velocity: [text("0.3"), text("-2"), None],
@@ -412,19 +413,23 @@ fn what_joins_nothing_is_refused() {
         poisson: 0.2,
     });
     refused(
-        &|s| s.interfaces[0].law = solid.clone(),
+        &|s| s.interactions.interfaces[0].law = solid.clone(),
         "acts through its points",
     );
     refused(
-        &|s| s.interfaces[0].bodies[1] = "cat".into(),
+        &|s| s.interactions.interfaces[0].bodies[1] = "cat".into(),
         "there is no body `cat`",
     );
     refused(
-        &|s| s.interfaces[0].bodies[1] = "left".into(),
+        &|s| s.interactions.interfaces[0].bodies[1] = "left".into(),
         "joins a body with itself",
     );
     refused(
-        &|s| s.interfaces.push(s.interfaces[0].clone()),
+        &|s| {
+            s.interactions
+                .interfaces
+                .push(s.interactions.interfaces[0].clone())
+        },
         "two interfaces join",
     );
     let far = |s: &mut Spec| {
@@ -436,7 +441,7 @@ fn what_joins_nothing_is_refused() {
     refused(&far, "no point of `left` is within");
     // of one body there is nothing to join
     let [mut whole, _] = bars(2, &PMB);
-    whole.interfaces = glued.interfaces.clone();
+    whole.interactions.interfaces = glued.interactions.interfaces.clone();
     assert!(build(&whole, Options::default()).is_err());
 }
 
@@ -459,11 +464,11 @@ fn glue_breaks_in_turn_at_its_own_stretch() {
     };
     let [_, mut spec] = bars(2, &PMB);
     spec.sets = vec![end("left", -0.1, 0.1), end("right", 5.4, 5.6)];
-    spec.conditions = vec![held("left", "0"), held("right", "t")];
-    spec.interfaces[0].fracture = Some(FractureSpec::new(Criterion::Stretch(1e-3)));
-    spec.schedule.steps = 3;
+    spec.loading.conditions = vec![held("left", "0"), held("right", "t")];
+    spec.interactions.interfaces[0].fracture = Some(FractureSpec::new(Criterion::Stretch(1e-3)));
+    spec.run.schedule.steps = 3;
     // an increment of load
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     let statics = |control: Control| {
         Stepper::Statics(Statics {
             control,
@@ -474,8 +479,8 @@ fn glue_breaks_in_turn_at_its_own_stretch() {
         let mut spec = spec.clone();
         let at = |s: f64| FractureSpec::new(Criterion::Stretch(s));
         spec.materials[0].fracture = halves.map(at);
-        spec.interfaces[0].fracture = glue.map(at);
-        spec.schedule.stepper = statics(Control::Breaking);
+        spec.interactions.interfaces[0].fracture = glue.map(at);
+        spec.run.schedule.stepper = statics(Control::Breaking);
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);
         sim.step().unwrap();
@@ -496,9 +501,9 @@ fn glue_breaks_in_turn_at_its_own_stretch() {
     // the load at which it breaks where the load is given
     for (part, breaks) in [(0.99, false), (1.01, true)] {
         let mut told = spec.clone();
-        told.conditions[1] = held("right", &format!("{:e}*t", part * t));
-        told.schedule.steps = 1;
-        told.schedule.stepper = statics(Control::Load);
+        told.loading.conditions[1] = held("right", &format!("{:e}*t", part * t));
+        told.run.schedule.steps = 1;
+        told.run.schedule.stepper = statics(Control::Load);
         let mut sim = build(&told, Options::default()).unwrap();
         sim.start(true);
         let _ = sim.step();
@@ -513,20 +518,20 @@ fn an_interface_heals() {
         let [_, glued] = bars(d, &PMB);
         let run = |cut: bool| {
             let mut spec = glued.clone();
-            spec.initial = vec![InitialSpec {
+            spec.loading.initial = vec![InitialSpec {
                 set: "all".into(),
                 displacement: [None, None, None],
                 velocity: [text("0.02*sin(x)"), text("0.01*cos(x + y)"), None],
             }];
             if cut {
-                spec.precracks = vec![PrecrackSpec {
+                spec.damage.precracks = vec![PrecrackSpec {
                     shape: CrackShape::Segment {
                         from: [2.75, -1.0, 0.0],
                         to: [2.75, 3.0, 0.0],
                     },
                     kind: CrackKind::Broken,
                 }];
-                spec.healing = Some(HealingSpec {
+                spec.damage.healing = Some(HealingSpec {
                     set: "all".into(),
                     below: Expression::parse("0.1", &[]).unwrap(),
                 });

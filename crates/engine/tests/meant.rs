@@ -23,7 +23,7 @@ fn plate(region: Region) -> Spec {
         perturb: None,
     };
     let mut spec = Spec::new(2, body, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-    spec.horizon = Horizon::Ratio(3);
+    spec.bonds.horizon = Horizon::Ratio(3);
     spec
 }
 
@@ -49,7 +49,7 @@ fn silent(spec: &Spec) {
 
 fn cracked(y: f64) -> Spec {
     let mut spec = whole();
-    spec.precracks.push(PrecrackSpec {
+    spec.damage.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {
             from: [-1.0, y, 0.0],
             to: [8.0, y, 0.0],
@@ -68,7 +68,7 @@ fn a_crack_through_points() {
     );
     // it meets two points of rows that it crosses
     let mut spec = cracked(5.0);
-    spec.precracks[0].shape = CrackShape::Segment {
+    spec.damage.precracks[0].shape = CrackShape::Segment {
         from: [9.5, 4.5, 0.0],
         to: [10.5, 5.5, 0.0],
     };
@@ -81,7 +81,7 @@ fn pulled(low: f64, area: Option<f64>) -> Spec {
         name: "top".into(),
         members: Members::Region(block([0.0, low], [20.0, 10.0])),
     });
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "top".into(),
         kind: ConditionKind::Traction {
             value: [None, Some(Expression::parse("1e-3", &[]).unwrap()), None],
@@ -149,7 +149,7 @@ fn a_traction_acts_on_the_face_whatever_the_depth_of_its_set() {
     assert!((area - 40.0).abs() < 1e-12, "{area}");
     // and of different depths
     spec.sets[0].members = Members::Where(Expression::parse("y < 1 || y > 7", &[]).unwrap());
-    spec.conditions[0].kind = ConditionKind::Traction {
+    spec.loading.conditions[0].kind = ConditionKind::Traction {
         value: [
             None,
             Some(Expression::parse("if(y > 5, 1, 0)", &[]).unwrap()),
@@ -177,7 +177,7 @@ fn topped(kind: LatticeKind, depth: f64) -> Spec {
         perturb: None,
     };
     let mut spec = Spec::new(d, body, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     let axis = ["x", "y", "z"][d - 1];
     let on = format!("{axis} > {}", high[d - 1] - depth);
     spec.sets.push(SetSpec {
@@ -185,7 +185,7 @@ fn topped(kind: LatticeKind, depth: f64) -> Spec {
         members: Members::Where(Expression::parse(&on, &[]).unwrap()),
     });
     let one = || Some(Expression::parse("1", &[]).unwrap());
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "top".into(),
         kind: ConditionKind::Traction {
             value: std::array::from_fn(|a| if a + 1 == d { one() } else { None }),
@@ -219,7 +219,7 @@ fn faces_of_every_lattice_carry_the_whole_traction() {
             };
             near(&spec);
             // as a list, and moved off its sites
-            spec.family = FamilyChoice::List;
+            spec.bonds.family = FamilyChoice::List;
             near(&spec);
             let BodySpec::Lattice { perturb, .. } = &mut spec.body else {
                 unreachable!("it is one")
@@ -251,7 +251,7 @@ fn points_of_a_file_know_no_faces_unless_they_lie_on_a_lattice() {
             position,
             ..Cloud::default()
         });
-        spec.horizon = Horizon::Length(3.1);
+        spec.bonds.horizon = Horizon::Length(3.1);
         spec
     };
     assert!((load(&cloud(1.0, 1.0)).0 - 20.0).abs() < 1e-12);
@@ -301,8 +301,8 @@ fn strip(period: f64) -> Spec {
         position,
         ..Cloud::default()
     });
-    spec.horizon = Horizon::Length(3.1);
-    spec.periodic[0] = Some(period);
+    spec.bonds.horizon = Horizon::Length(3.1);
+    spec.space.periodic[0] = Some(period);
     spec
 }
 
@@ -315,7 +315,7 @@ fn periods_are_as_long_as_the_body() {
         refused(&strip(period), "the body lies in its own image");
     }
     let mut short = strip(19.1);
-    short.horizon = Horizon::Length(3.3);
+    short.bonds.horizon = Horizon::Length(3.3);
     warns(&short, "its last cells lie in those of its image");
     warns(
         &strip(23.5),
@@ -343,7 +343,7 @@ fn a_condition_that_every_point_meets() {
 #[test]
 fn a_crack_that_cuts_everything() {
     let mut spec = plate(block([0.0; 2], [1.0, 2.0]));
-    spec.precracks.push(PrecrackSpec {
+    spec.damage.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {
             from: [-5.0, 1.0, 0.0],
             to: [5.0, 1.0, 0.0],
@@ -351,7 +351,7 @@ fn a_crack_that_cuts_everything() {
         kind: CrackKind::Absent,
     });
     for kind in [CrackKind::Absent, CrackKind::Broken] {
-        spec.precracks[0].kind = kind;
+        spec.damage.precracks[0].kind = kind;
         refused(
             &spec,
             "the pre-crack cuts all bonds: none of the 1 between 2 points is left",
@@ -371,7 +371,7 @@ fn a_slot_that_bonds_bridge() {
     let mut slot = without(block([8.0, 5.0], [21.0, 6.0]));
     warns(&slot, "bonds reach across a gap in the body");
     // cut in its middle
-    slot.precracks.push(PrecrackSpec {
+    slot.damage.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {
             from: [8.0, 5.5, 0.0],
             to: [21.0, 5.5, 0.0],
@@ -394,7 +394,7 @@ fn a_corner_that_a_traction_tears_off() {
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.01)));
     silent(&spec);
     let pull = |spec: &mut Spec, traction: &str| {
-        spec.conditions[0].kind = ConditionKind::Traction {
+        spec.loading.conditions[0].kind = ConditionKind::Traction {
             value: [None, Some(Expression::parse(traction, &[]).unwrap()), None],
             area: None,
         };

@@ -57,9 +57,9 @@ fn square(cells: f64, law: LawSpec) -> Spec {
     };
     let body = BodySpec::lattice(LatticeKind::Square, 1.0, plate);
     let mut spec = Spec::new(2, body, 1.5, law);
-    spec.horizon = Horizon::Ratio(2);
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
-    spec.schedule.force_unstable = true;
+    spec.bonds.horizon = Horizon::Ratio(2);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.force_unstable = true;
     spec
 }
 
@@ -77,7 +77,7 @@ fn a_potential_from_outside_runs_on_fixed_and_current_neighbours() {
     for law in [LawSpec::Atoms(ended), named] {
         for family in [FamilyChoice::Stencil, FamilyChoice::Neighbours] {
             let mut spec = square(4.0, law.clone());
-            spec.family = family;
+            spec.bonds.family = family;
             assert!(
                 build(&spec, Options::default()).is_err(),
                 "the engine knows it"
@@ -135,7 +135,7 @@ fn a_potential_without_a_shelf_has_no_place() {
 /// A foundation of springs and a force in time, whose work is known.
 fn founded(shelf: &Shelf) -> Box<dyn Simulation> {
     let mut spec = solid();
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::force("foundation", Parameters::default()),
     }];
@@ -208,7 +208,7 @@ fn a_force_from_outside_sees_place_motion_and_time() {
 #[test]
 fn forces_from_outside_are_refused_where_they_cannot_be() {
     let mut spec = solid();
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::force("wind", Parameters::default()),
     }];
@@ -233,13 +233,13 @@ fn forces_from_outside_are_refused_where_they_cannot_be() {
             high: [1.5, 9.0, 1.0],
         }),
     }];
-    spec.conditions.extend([clamped(0), clamped(1)]);
-    spec.schedule.steps = 1;
+    spec.loading.conditions.extend([clamped(0), clamped(1)]);
+    spec.run.schedule.steps = 1;
     for stepper in [
         Stepper::Statics(Statics::default()),
         Stepper::Newmark(Newmark::default()),
     ] {
-        spec.schedule.stepper = stepper;
+        spec.run.schedule.stepper = stepper;
         let built = build_with(&spec, Options::default(), &shelf);
         let error = match built {
             Err(error) => error.to_string(),
@@ -264,8 +264,8 @@ static SQUARE: Observable = Observable::new(
 fn an_observable_from_outside_is_a_column_like_others() {
     let shelf = Shelf::standard().with_observable(&SQUARE);
     let mut spec = solid();
-    spec.fields = Some(vec!["square".into()]);
-    spec.probes = vec![ProbeSpec {
+    spec.run.fields = Some(vec!["square".into()]);
+    spec.run.probes = vec![ProbeSpec {
         name: "most".into(),
         set: "all".into(),
         measure: Measure::Over {

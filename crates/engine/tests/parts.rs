@@ -36,7 +36,7 @@ fn squeezed(law: &str, gradient: &str, depth: f64) -> Spec {
         _ => numbers.set("yield_stress", Parameter::Number(0.05)),
     }
     let mut spec = Spec::new(3, body, 1.0, LawSpec::named(law, numbers));
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     spec.sets = [("foot", rows(-0.5, 0.5)), ("lid", rows(3.5, 4.5))]
         .map(|(name, members)| SetSpec {
             name: name.into(),
@@ -47,7 +47,7 @@ fn squeezed(law: &str, gradient: &str, depth: f64) -> Spec {
         set: set.into(),
         kind: ConditionKind::Displacement([None, None, Some(text(u))]),
     };
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         held("foot", "0"),
         held("lid", &format!("-{depth}*min(t/40, 1)^2")),
     ];
@@ -90,7 +90,7 @@ fn a_block_that_is_squeezed_keeps_its_balance() {
         assert!(parts >= 2, "{law} {gradient}: {parts}");
         let mut short = spec.clone();
         // whole numbers of short steps: both end at the same time
-        short.schedule.time_step = TimeStep::Fixed(sim.info().time_step / 8.0);
+        short.run.schedule.time_step = TimeStep::Fixed(sim.info().time_step / 8.0);
         let (fine, whole, mut reference) = end(&short, sim.time() - 1e-9);
         assert_eq!(whole, 1);
         assert!(
@@ -111,7 +111,7 @@ fn a_block_that_is_squeezed_keeps_its_balance() {
 fn any_fraction_of_the_stable_step_holds() {
     let missed = [0.8, 0.4, 0.2].map(|fraction| {
         let mut spec = squeezed("correspondence", "bond", 3.0);
-        spec.schedule.time_step = TimeStep::Fraction(fraction);
+        spec.run.schedule.time_step = TimeStep::Fraction(fraction);
         let (missed, parts, sim) = end(&spec, LATE);
         println!(
             "{fraction}: {parts} parts, misses {missed:.2e} at {}",
@@ -131,7 +131,7 @@ fn parts_are_seen_where_they_are_needed_alone() {
     let mut given = little.clone();
     let (_, parts, mut sim) = end(&little, LATE);
     assert_eq!(parts, 1);
-    given.schedule.time_step = TimeStep::Fixed(sim.info().time_step);
+    given.run.schedule.time_step = TimeStep::Fixed(sim.info().time_step);
     assert_eq!(sim.displacements(), end(&given, LATE).2.displacements());
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new();

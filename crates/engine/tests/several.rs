@@ -68,15 +68,15 @@ fn collision(fraction: f64) -> Spec {
     let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, SPRINGS);
     spec.sets = vec![within("ball"), within("plate")];
     spec.materials = vec![material("ball", 2.0, 300.0), material("plate", 1.0, 100.0)];
-    spec.horizon = Horizon::Length(2.5);
-    spec.volume_scaling = true;
-    spec.contact = Some(CONTACT);
-    spec.initial = vec![InitialSpec {
+    spec.bonds.horizon = Horizon::Length(2.5);
+    spec.bonds.volume_scaling = true;
+    spec.interactions.contact = Some(CONTACT);
+    spec.loading.initial = vec![InitialSpec {
         set: "ball".into(),
         displacement: [None, None, None],
         velocity: [text("0.3"), text("-2"), None],
     }];
-    spec.schedule.time_step = TimeStep::Fraction(fraction);
+    spec.run.schedule.time_step = TimeStep::Fraction(fraction);
     spec
 }
 
@@ -151,10 +151,10 @@ fn one_of_several_is_the_body_itself() {
             rate: None,
             fatigue: None,
         });
-        spec.horizon = Horizon::Ratio(2);
-        spec.contact = Some(CONTACT);
-        spec.family = family;
-        spec.initial = vec![InitialSpec {
+        spec.bonds.horizon = Horizon::Ratio(2);
+        spec.interactions.contact = Some(CONTACT);
+        spec.bonds.family = family;
+        spec.loading.initial = vec![InitialSpec {
             set: "all".into(),
             displacement: [text("0.01*x"), text("0.02*sin(x+y)"), text("-0.3*z*(z>2)")],
             velocity: [text("0.1*y"), None, text("0.2*(x>3) - 0.1")],
@@ -217,8 +217,8 @@ fn bodies_a_spacing_apart_are_not_bonded() {
             1.0,
             material("all", 1.0, 1.0).law,
         );
-        spec.horizon = Horizon::Ratio(3);
-        spec.contact = Some(CONTACT);
+        spec.bonds.horizon = Horizon::Ratio(3);
+        spec.interactions.contact = Some(CONTACT);
         spec
     };
     let sim = build(&several(2.0), Options::default()).unwrap();
@@ -299,15 +299,15 @@ fn powder_bounces_on_a_plate() {
         material("all", 1.0, 100.0).law,
     );
     spec.sets = vec![within("powder"), within("stone")];
-    spec.horizon = Horizon::Ratio(3);
-    spec.contact = Some(CONTACT);
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.interactions.contact = Some(CONTACT);
     let fall = |set: &str, v: &str| InitialSpec {
         set: set.into(),
         displacement: [None, None, None],
         velocity: [None, text(v), None],
     };
-    spec.initial = vec![fall("powder", "-1"), fall("stone", "-3")];
-    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    spec.loading.initial = vec![fall("powder", "-1"), fall("stone", "-3")];
+    spec.run.schedule.time_step = TimeStep::Fraction(0.1);
     let mut sim = build(&spec, Options::default()).unwrap();
     assert_eq!(sim.families().size[0], 0);
     assert_eq!(sim.fragments(), 24 + 1 + 1);
@@ -344,20 +344,20 @@ fn the_step_of_contact_is_that_of_a_chain_in_touch() {
             3.0,
             material("all", 3.0, 1.0).law,
         );
-        spec.contact = Some(ContactSpec {
+        spec.interactions.contact = Some(ContactSpec {
             stiffness: ContactStiffness::Same(7.0),
             ..CONTACT
         });
-        spec.horizon = Horizon::Ratio(2);
+        spec.bonds.horizon = Horizon::Ratio(2);
         spec.sets = vec![SetSpec {
             name: "ends".into(),
             members: Members::Where(text("x < 0.5 || x > 39.5").unwrap()),
         }];
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: "ends".into(),
             kind: ConditionKind::Displacement([text("-0.2*x"), None, None]),
         }];
-        spec.initial = vec![InitialSpec {
+        spec.loading.initial = vec![InitialSpec {
             set: "all".into(),
             displacement: [
                 text("-0.2*x + 1e-6*(random(x, 0, 0) - 0.5)*(x > 0.5)*(x < 39.5)"),
@@ -366,8 +366,8 @@ fn the_step_of_contact_is_that_of_a_chain_in_touch() {
             ],
             velocity: [None, None, None],
         }];
-        spec.schedule.time_step = TimeStep::Fraction(fraction);
-        spec.schedule.force_unstable = true;
+        spec.run.schedule.time_step = TimeStep::Fraction(fraction);
+        spec.run.schedule.force_unstable = true;
         build(&spec, Options::default()).unwrap()
     };
     let limit = 2.0 / (4.0f64 * 7.0 / 3.0).sqrt();
@@ -407,7 +407,7 @@ fn steel_on_epoxy_runs_at_the_default_step() {
     }
     assert!(touched > 1e-4 && most < 0.05, "{touched} {most}");
     // contact as stiff as the steel, at the step of the bonds: refused to be trusted, and named when it dies
-    spec.contact = Some(ContactSpec {
+    spec.interactions.contact = Some(ContactSpec {
         stiffness: ContactStiffness::Same(1e26),
         ..CONTACT
     });
@@ -421,7 +421,7 @@ fn steel_on_epoxy_runs_at_the_default_step() {
         "{} {expected}",
         limited.time_step
     );
-    spec.schedule.time_step = TimeStep::Fixed(free);
+    spec.run.schedule.time_step = TimeStep::Fixed(free);
     let mut sim = build(&spec, Options::default()).unwrap();
     let told = &sim.info().warnings;
     assert!(
@@ -465,10 +465,10 @@ fn steel_on_epoxy() -> Spec {
             fatigue: None,
         });
     }
-    spec.horizon = Horizon::Ratio(3);
-    spec.volume_scaling = true;
-    spec.contact = Some(CONTACT);
-    spec.initial = vec![InitialSpec {
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.bonds.volume_scaling = true;
+    spec.interactions.contact = Some(CONTACT);
+    spec.loading.initial = vec![InitialSpec {
         set: "steel".into(),
         displacement: [None, None, None],
         velocity: [None, None, text("-100")],
@@ -534,7 +534,7 @@ fn traction_takes_the_faces_of_the_body_it_acts_on() {
             members: Box::new(Members::Where(text("y < 0.5").unwrap())),
         },
     });
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "foot".into(),
         kind: ConditionKind::Traction {
             value: [text("7"), None, None],

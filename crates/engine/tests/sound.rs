@@ -211,9 +211,9 @@ proptest! {
         let linear = AnyLinearBody::new(body).unwrap();
         let law = LawSpec::Micromoduli(std::sync::Arc::new(linear));
         let mut spec = Spec::new(1, BodySpec::Cloud(cloud), 1.0, law);
-        spec.horizon = Horizon::Length(1.5);
-        spec.schedule.time_step = TimeStep::Fixed(1e-3);
-        spec.schedule.force_unstable = true;
+        spec.bonds.horizon = Horizon::Length(1.5);
+        spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
+        spec.run.schedule.force_unstable = true;
         match (build(&spec, Options::default()), fits) {
             (Ok(mut sim), Ok(())) => {
                 sim.start(true);
@@ -257,8 +257,8 @@ fn plate() -> Spec {
         volume: None,
     };
     let mut spec = Spec::new(2, body, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-    spec.horizon = Horizon::Ratio(2);
-    spec.schedule.time_step = TimeStep::Fixed(1e-2);
+    spec.bonds.horizon = Horizon::Ratio(2);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-2);
     spec
 }
 

@@ -49,7 +49,7 @@ fn block(size: [f64; 3], d: usize, law: LawSpec) -> Spec {
         }),
     };
     spec.sets = vec![end("low", 1.0, 0.1), end("high", -1.0, size[0] - 0.1)];
-    spec.schedule = Schedule {
+    spec.run.schedule = Schedule {
         steps: 1,
         time_step: TimeStep::Fixed(1.0),
         force_unstable: false,
@@ -59,7 +59,7 @@ fn block(size: [f64; 3], d: usize, law: LawSpec) -> Spec {
 }
 
 fn hold(spec: &mut Spec, set: &str, u: [Option<Expression>; 3]) {
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: set.into(),
         kind: ConditionKind::Displacement(u),
     });
@@ -68,7 +68,7 @@ fn hold(spec: &mut Spec, set: &str, u: [Option<Expression>; 3]) {
 fn solved(spec: &Spec) -> Box<dyn Simulation> {
     let mut sim = build(spec, Options::default()).unwrap();
     sim.start(true);
-    for _ in 0..spec.schedule.steps {
+    for _ in 0..spec.run.schedule.steps {
         sim.step().unwrap();
     }
     sim
@@ -76,7 +76,7 @@ fn solved(spec: &Spec) -> Box<dyn Simulation> {
 
 fn with(spec: &Spec, method: Method, solver: Solver, tolerance: f64) -> Spec {
     let mut spec = spec.clone();
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method,
         solver,
         tolerance,
@@ -113,12 +113,12 @@ fn springs_in_series_stretch_evenly() {
 fn a_hanging_chain_is_a_parabola() {
     let mut spec = block([50.0, 0.0, 0.0], 1, SPRINGS);
     hold(&mut spec, "low", [number(0.0), None, None]);
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::BodyForce([text("1e-6*t"), None, None]),
     });
-    spec.schedule.steps = 4;
-    spec.schedule.time_step = TimeStep::Fixed(0.25);
+    spec.run.schedule.steps = 4;
+    spec.run.schedule.time_step = TimeStep::Fixed(0.25);
     let mut sim = solved(&spec);
     // the k-th spring carries all points from k on
     let mut exact = 0.0;
@@ -137,7 +137,7 @@ fn a_hanging_chain_is_a_parabola() {
 /// A clamped plate or block that is sheared and stretched.
 fn clamped(d: usize, law: LawSpec, size: f64) -> Spec {
     let mut spec = block([9.0, 5.0, 4.0], d, law);
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     hold(&mut spec, "low", [number(0.0), number(0.0), number(0.0)]);
     let wave = format!("{size}*(1+0.3*y)");
     hold(&mut spec, "high", [number(2.0 * size), text(&wave), None]);
@@ -233,9 +233,9 @@ fn newton_converges_in_any_units() {
             point[0] = x;
         }
     }
-    spec.section = 1e-3;
-    spec.horizon = Horizon::Ratio(3);
-    spec.influence = Influence::Inverse;
+    spec.space.section = 1e-3;
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.bonds.influence = Influence::Inverse;
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
     hold(&mut spec, "high", [number(1e-5), number(4e-4), None]);
     let mut sim = solved(&with(&spec, Method::Newton, Solver::Direct, 1e-10));
@@ -252,7 +252,7 @@ fn modes_of_a_chain_are_the_closed_form() {
     let n = 40;
     let mut spec = block([n as f64, 0.0, 0.0], 1, SPRINGS);
     hold(&mut spec, "low", [number(0.0), None, None]);
-    spec.schedule.steps = 0;
+    spec.run.schedule.steps = 0;
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let modes = sim.modes(6).unwrap();
@@ -272,8 +272,8 @@ fn modes_of_a_chain_are_the_closed_form() {
 #[test]
 fn a_free_block_has_six_rigid_modes() {
     let mut spec = block([4.0, 3.0, 3.0], 3, LawSpec::Pmb(PmbStiffness::Young(2.0)));
-    spec.horizon = Horizon::Ratio(2);
-    spec.schedule.steps = 0;
+    spec.bonds.horizon = Horizon::Ratio(2);
+    spec.run.schedule.steps = 0;
     let mut sim = build(&spec, Options::default()).unwrap();
     let modes = sim.modes(8).unwrap();
     let elastic = modes[6].square;
@@ -296,7 +296,7 @@ fn a_body_that_is_not_held_is_refused_with_the_motion() {
         "{}",
         told(&spec)
     );
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "high".into(),
         kind: ConditionKind::Velocity([None, number(0.0), None]),
     });
@@ -306,9 +306,9 @@ fn a_body_that_is_not_held_is_refused_with_the_motion() {
 #[test]
 fn a_notched_plate_breaks_increment_by_increment() {
     let mut spec = block([12.0, 12.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(2.0)));
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.02)));
-    spec.precracks.push(PrecrackSpec {
+    spec.damage.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {
             from: [5.5, -1.0, 0.0],
             to: [5.5, 3.5, 0.0],
@@ -317,8 +317,8 @@ fn a_notched_plate_breaks_increment_by_increment() {
     });
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
     hold(&mut spec, "high", [text("0.3*t"), number(0.0), None]);
-    spec.schedule.steps = 6;
-    spec.schedule.time_step = TimeStep::Fixed(1.0 / 6.0);
+    spec.run.schedule.steps = 6;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0 / 6.0);
     for method in [Method::Newton, Method::Relaxation] {
         let mut sim = build(&with(&spec, method, Solver::Auto, 1e-7), Options::default()).unwrap();
         sim.start(true);
@@ -352,10 +352,10 @@ fn the_ledger_of_statics_closes_through_breaks() {
         for (method, tolerance) in [(Method::Newton, 1e-9), (Method::Relaxation, 1e-7)] {
             for release in [Release::AtOnce, Release::AfterForce] {
                 let mut spec = block([12.0, 12.0, 0.0], 2, law.clone());
-                spec.horizon = Horizon::Ratio(2);
-                spec.release = release;
+                spec.bonds.horizon = Horizon::Ratio(2);
+                spec.damage.release = release;
                 spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(2e-5)));
-                spec.precracks.push(PrecrackSpec {
+                spec.damage.precracks.push(PrecrackSpec {
                     shape: CrackShape::Segment {
                         from: [5.5, -1.0, 0.0],
                         to: [5.5, 3.5, 0.0],
@@ -364,8 +364,8 @@ fn the_ledger_of_statics_closes_through_breaks() {
                 });
                 hold(&mut spec, "low", [number(0.0), number(0.0), None]);
                 hold(&mut spec, "high", [text("1.6e-4*t"), number(0.0), None]);
-                spec.schedule.steps = 4;
-                spec.schedule.time_step = TimeStep::Fixed(0.25);
+                spec.run.schedule.steps = 4;
+                spec.run.schedule.time_step = TimeStep::Fixed(0.25);
                 let case = format!("{law:?} {method:?} {release:?}");
                 let spec = with(&spec, method, Solver::Auto, tolerance);
                 let mut sim = build(&spec, Options::default()).unwrap();
@@ -398,8 +398,8 @@ fn the_ledger_of_statics_closes_through_breaks_by_stretch_and_by_work() {
             poisson: 0.3,
         });
         let mut spec = block([10.0, 13.0, 0.0], 2, law);
-        spec.plane = Plane::Strain;
-        spec.horizon = Horizon::Ratio(3);
+        spec.space.plane = Plane::Strain;
+        spec.bonds.horizon = Horizon::Ratio(3);
         spec.materials[0].fracture = Some(FractureSpec::new(criterion));
         // grips as thick as the horizon
         let grip = |name: &str, sign: f64, x: f64| SetSpec {
@@ -412,8 +412,8 @@ fn the_ledger_of_statics_closes_through_breaks_by_stretch_and_by_work() {
         spec.sets = vec![grip("low", 1.0, 2.5), grip("high", -1.0, 7.5)];
         hold(&mut spec, "low", [number(0.0), number(0.0), None]);
         hold(&mut spec, "high", [text("6e-5*t"), number(0.0), None]);
-        spec.schedule.steps = increments;
-        spec.schedule.time_step = TimeStep::Fixed(1.0 / increments as f64);
+        spec.run.schedule.steps = increments;
+        spec.run.schedule.time_step = TimeStep::Fixed(1.0 / increments as f64);
         let spec = with(&spec, Method::Newton, Solver::Auto, 1e-9);
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);
@@ -452,11 +452,11 @@ fn a_start_out_of_equilibrium_is_accounted_for() {
             (Method::Linear, 1e-9),
         ] {
             let mut spec = block([12.0, 7.0, 0.0], 2, law.clone());
-            spec.horizon = Horizon::Ratio(3);
+            spec.bonds.horizon = Horizon::Ratio(3);
             hold(&mut spec, "low", [number(0.0), number(0.0), None]);
             hold(&mut spec, "high", [text("1e-6*t"), number(0.0), None]);
-            spec.schedule.steps = 4;
-            spec.schedule.time_step = TimeStep::Fixed(0.25);
+            spec.run.schedule.steps = 4;
+            spec.run.schedule.time_step = TimeStep::Fixed(0.25);
             let spec = with(&spec, method, Solver::Auto, tolerance);
             let started = |size: f64| {
                 let mut sim = build(&spec, Options::default()).unwrap();
@@ -507,9 +507,9 @@ fn linear_solutions_of_torn_bodies_agree_with_newtons() {
         ),
     ] {
         let mut spec = block([11.0, 11.0, 0.0], 2, law.clone());
-        spec.plane = Plane::Strain;
-        spec.horizon = Horizon::Ratio(3);
-        spec.precracks.push(PrecrackSpec {
+        spec.space.plane = Plane::Strain;
+        spec.bonds.horizon = Horizon::Ratio(3);
+        spec.damage.precracks.push(PrecrackSpec {
             shape: CrackShape::Segment {
                 from: [5.5, -1.0, 0.0],
                 to: [5.8, 5.7, 0.0],
@@ -543,15 +543,15 @@ fn bent(load: f64, steps: u64) -> Spec {
         poisson: 0.4999,
     });
     let mut spec = block([24.0, 6.0, 0.0], 2, law);
-    spec.plane = Plane::Strain;
-    spec.horizon = Horizon::Ratio(3);
+    spec.space.plane = Plane::Strain;
+    spec.bonds.horizon = Horizon::Ratio(3);
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "high".into(),
         kind: ConditionKind::BodyForce([None, text(&format!("{load:e}*t")), None]),
     });
-    spec.schedule.steps = steps;
-    spec.schedule.time_step = TimeStep::Fixed(1.0 / steps as f64);
+    spec.run.schedule.steps = steps;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0 / steps as f64);
     spec
 }
 
@@ -600,7 +600,7 @@ fn statics_has_the_same_bits_on_any_number_of_threads() {
             poisson: 0.3,
         });
         let mut spec = with(&block([60.0, 40.0, 0.0], 2, law), method, solver, 1e-6);
-        spec.horizon = Horizon::Ratio(3);
+        spec.bonds.horizon = Horizon::Ratio(3);
         hold(&mut spec, "low", [number(0.0), number(0.0), None]);
         hold(&mut spec, "high", [number(1e-3), number(2e-3), None]);
         all.push(spec);
@@ -639,14 +639,14 @@ fn a_driven_indenter_pushes_from_where_it_is_told() {
     let end = |sim: &mut dyn Simulation| sim.displacements().last().unwrap()[0];
     // the stiffness of the chain at its end
     let mut pushed = spec.clone();
-    pushed.conditions.push(ConditionSpec {
+    pushed.loading.conditions.push(ConditionSpec {
         set: "high".into(),
         kind: ConditionKind::BodyForce([number(-1e-3), None, None]),
     });
     let stiffness = -1e-3 / end(&mut *solved(&pushed));
     let mut spec = with(&spec, Method::Relaxation, Solver::Auto, 1e-9);
-    spec.schedule.steps = 4;
-    spec.indenters.push(IndenterSpec::sphere(
+    spec.run.schedule.steps = 4;
+    spec.loading.indenters.push(IndenterSpec::sphere(
         0.5,
         5.0,
         IndenterMotion::Kinematic([
@@ -673,8 +673,8 @@ fn a_driven_indenter_pushes_from_where_it_is_told() {
 fn pairs_of_materials_are_springs_in_series() {
     let springs = |c: f64| LawSpec::Pmb(PmbStiffness::Micromodulus(c));
     let mut spec = block([20.0, 0.0, 0.0], 1, springs(1.0));
-    spec.horizon = Horizon::Length(1.5);
-    spec.family = FamilyChoice::List;
+    spec.bonds.horizon = Horizon::Length(1.5);
+    spec.bonds.family = FamilyChoice::List;
     let parts = [("left", "x < 10.5"), ("right", "x > 10.5")];
     for (name, of) in parts {
         spec.sets.push(SetSpec {
@@ -689,7 +689,7 @@ fn pairs_of_materials_are_springs_in_series() {
             ..spec.materials[0].clone()
         })
         .to_vec();
-    spec.pairs = [1.0, 3.0, 3.0, 2.0]
+    spec.interactions.pairs = [1.0, 3.0, 3.0, 2.0]
         .map(|c| PairSpec {
             horizon: 1.5,
             law: springs(c),
@@ -716,13 +716,13 @@ fn pairs_of_materials_are_springs_in_series() {
         assert!((l.strain / (0.005 * force) - 1.0).abs() < 1e-7, "{l:?}");
     }
     // unlike both ways round there is no energy, and no equilibrium of one
-    spec.pairs[1].law = springs(4.0);
+    spec.interactions.pairs[1].law = springs(4.0);
     let error = build(&spec, Options::default()).err().unwrap();
     assert_eq!(error.path, "pairs");
     assert!(error.message.contains("action is not reaction"), "{error}");
-    spec.conditions.clear();
-    spec.schedule.time_step = TimeStep::Fraction(0.5);
-    spec.schedule.stepper = Stepper::Verlet;
+    spec.loading.conditions.clear();
+    spec.run.schedule.time_step = TimeStep::Fraction(0.5);
+    spec.run.schedule.stepper = Stepper::Verlet;
     assert!(build(&spec, Options::default()).is_ok());
 }
 
@@ -731,18 +731,18 @@ fn pairs_of_materials_are_springs_in_series() {
 fn alike_pairs_move_implicitly_as_one_material() {
     let law = LawSpec::Pmb(PmbStiffness::Micromodulus(2.0));
     let mut one = block([12.0, 5.0, 0.0], 2, law.clone());
-    one.horizon = Horizon::Length(2.3);
-    one.family = FamilyChoice::List;
-    one.schedule.stepper = Stepper::Newmark(Newmark::default());
-    one.schedule.time_step = TimeStep::Fixed(0.3);
-    one.schedule.steps = 20;
-    one.initial = vec![InitialSpec {
+    one.bonds.horizon = Horizon::Length(2.3);
+    one.bonds.family = FamilyChoice::List;
+    one.run.schedule.stepper = Stepper::Newmark(Newmark::default());
+    one.run.schedule.time_step = TimeStep::Fixed(0.3);
+    one.run.schedule.steps = 20;
+    one.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [None, None, None],
         velocity: [text("0.02*sin(0.5*x)"), text("0.01*cos(0.4*x + y)"), None],
     }];
     let mut pairs = one.clone();
-    pairs.pairs = vec![PairSpec {
+    pairs.interactions.pairs = vec![PairSpec {
         horizon: 2.3,
         law,
         critical_stretch: f64::INFINITY,

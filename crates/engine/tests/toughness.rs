@@ -31,9 +31,9 @@ fn plate(law: LawSpec, family: FamilyChoice) -> Spec {
         perturb: None,
     };
     let mut spec = Spec::new(2, body, 1.0, law);
-    spec.plane = Plane::Strain;
-    spec.family = family;
-    spec.horizon = Horizon::Ratio(2);
+    spec.space.plane = Plane::Strain;
+    spec.bonds.family = family;
+    spec.bonds.horizon = Horizon::Ratio(2);
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.02),
         alpha: 0.0,
@@ -51,12 +51,12 @@ fn plate(law: LawSpec, family: FamilyChoice) -> Spec {
     })
     .to_vec();
     for (set, v) in [("left", "-0.02"), ("right", "0.02")] {
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: set.into(),
             kind: ConditionKind::Velocity([Some(text(v)), None, None]),
         });
     }
-    spec.schedule.time_step = TimeStep::Fraction(0.3);
+    spec.run.schedule.time_step = TimeStep::Fraction(0.3);
     spec
 }
 
@@ -103,7 +103,7 @@ fn bonds_of_a_set_that_never_fails_hold() {
         let run = |spared: bool| {
             let mut spec = plate(law.clone(), family);
             if spared {
-                spec.toughness = vec![toughness("middle", ToughnessFactor::NoFailure)];
+                spec.damage.toughness = vec![toughness("middle", ToughnessFactor::NoFailure)];
             }
             let mut sim = started(&spec);
             let whole = sim.snapshot(&[], true).bonds.unwrap();
@@ -142,7 +142,7 @@ fn factors_are_those_of_the_critical_stretch() {
             (sim.broken(), sim.displacements())
         };
         let with = |factor: ToughnessFactor| {
-            state(&|s: &mut Spec| s.toughness = vec![toughness("all", factor.clone())])
+            state(&|s: &mut Spec| s.damage.toughness = vec![toughness("all", factor.clone())])
         };
         let plain = state(&|_| {});
         assert!(plain.0 > 0, "{law:?} {family:?}");
@@ -173,7 +173,7 @@ fn factors_are_those_of_the_critical_stretch() {
         );
         // two factors are multiplied
         let two = state(&|s: &mut Spec| {
-            s.toughness = vec![
+            s.damage.toughness = vec![
                 toughness("all", ToughnessFactor::Stretch(text("3"))),
                 toughness("all", ToughnessFactor::Stretch(text("0.5"))),
             ];
@@ -192,20 +192,20 @@ fn a_bond_breaks_at_the_stretch_of_its_time() {
         ..Cloud::default()
     });
     let mut spec = Spec::new(1, body, 1.0, LawSpec::Pmb(PmbStiffness::Young(1e-9)));
-    spec.horizon = Horizon::Length(1.5);
+    spec.bonds.horizon = Horizon::Length(1.5);
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.5),
         alpha: 0.0,
         rate: None,
         fatigue: None,
     });
-    spec.toughness = vec![toughness("all", ToughnessFactor::Stretch(text("1 - t")))];
-    spec.initial = vec![InitialSpec {
+    spec.damage.toughness = vec![toughness("all", ToughnessFactor::Stretch(text("1 - t")))];
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [None, None, None],
         velocity: [Some(text("x > 0.5 ? 0.25 : -0.25")), None, None],
     }];
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let mut sim = started(&spec);
     while sim.broken() == 0 {
         sim.step().unwrap();
@@ -223,7 +223,7 @@ fn random_toughness_has_the_same_bits_on_any_number_of_threads() {
         pool.install(|| {
             let mut spec = plate(law, family);
             let noise = text("(0.7 + 0.6*random(x, y, 3)) * (1 + 0.01*t)");
-            spec.toughness = vec![toughness("all", ToughnessFactor::Energy(noise))];
+            spec.damage.toughness = vec![toughness("all", ToughnessFactor::Energy(noise))];
             let mut sim = started(&spec);
             while sim.time() < 40.0 {
                 sim.step().unwrap();
@@ -245,20 +245,20 @@ fn statics_spares_sets() {
         LawSpec::Pmb(PmbStiffness::Young(1.0)),
         FamilyChoice::Stencil,
     );
-    spec.conditions.clear();
+    spec.loading.conditions.clear();
     for (set, u) in [("left", "-0.03*t"), ("right", "0.03*t")] {
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: set.into(),
             kind: ConditionKind::Displacement([Some(text(u)), Some(text("0")), None]),
         });
     }
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
-    spec.schedule.stepper = Stepper::Statics(Statics::default());
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.stepper = Stepper::Statics(Statics::default());
     let mut torn = vec![];
     for spared in [vec![], vec!["left", "right", "middle"]] {
         let mut spec = spec.clone();
         let never = |set: &&str| toughness(set, ToughnessFactor::NoFailure);
-        spec.toughness = spared.iter().map(never).collect();
+        spec.damage.toughness = spared.iter().map(never).collect();
         let mut sim = started(&spec);
         // until the plate is torn in two, which statics refuses
         for _ in 0..6 {
@@ -279,7 +279,7 @@ fn statics_spares_sets() {
 fn what_cannot_be_is_refused() {
     let refused = |change: &dyn Fn(&mut Spec)| -> BuildError {
         let mut spec = plate(LawSpec::Pmb(PmbStiffness::Young(1.0)), FamilyChoice::Auto);
-        spec.toughness = vec![toughness("all", ToughnessFactor::Stretch(text("2")))];
+        spec.damage.toughness = vec![toughness("all", ToughnessFactor::Stretch(text("2")))];
         change(&mut spec);
         build(&spec, Options::default())
             .err()
@@ -294,15 +294,15 @@ fn what_cannot_be_is_refused() {
         "no material of this body breaks",
     );
     told(
-        &|s| s.toughness[0].set = "nowhere".into(),
+        &|s| s.damage.toughness[0].set = "nowhere".into(),
         "there is no set `nowhere`",
     );
     told(
-        &|s| s.toughness[0].factor = ToughnessFactor::Stretch(text("x - 3")),
+        &|s| s.damage.toughness[0].factor = ToughnessFactor::Stretch(text("x - 3")),
         "the factor is -3",
     );
     told(
-        &|s| s.toughness[0].factor = ToughnessFactor::Energy(text("sqrt(x - 3)")),
+        &|s| s.damage.toughness[0].factor = ToughnessFactor::Energy(text("sqrt(x - 3)")),
         "expected a positive number",
     );
     told(
@@ -322,7 +322,7 @@ fn what_cannot_be_is_refused() {
     );
     // a factor that ends stops the run before the step, and says where
     let mut spec = plate(LawSpec::Pmb(PmbStiffness::Young(1.0)), FamilyChoice::Auto);
-    spec.toughness = vec![toughness("all", ToughnessFactor::Stretch(text("5 - t")))];
+    spec.damage.toughness = vec![toughness("all", ToughnessFactor::Stretch(text("5 - t")))];
     let mut sim = started(&spec);
     let error = loop {
         match sim.step() {

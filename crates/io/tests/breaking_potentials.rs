@@ -259,7 +259,7 @@ fn a_crack_through_the_body_parts_it() {
     for (text, at, horizon) in cases {
         let mut sim = model(&text);
         let reference = sim.vectors("reference");
-        let period = deck(&text).spec.periodic;
+        let period = deck(&text).spec.space.periodic;
         let mut crossed = 0;
         for a in &reference {
             for b in &reference {

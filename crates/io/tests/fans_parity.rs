@@ -109,7 +109,7 @@ fn silicon_carbide_of_tersoff_is_that_of_lammps() {
     };
     let (atoms, velocities) = (after("Atoms # atomic\n\n"), after("Velocities\n\n"));
     let (length, unit) = (3.0 * 4.32, made.units.plain_factor(Dim::MASS));
-    made.spec.periodic = [Some(length); 3];
+    made.spec.space.periodic = [Some(length); 3];
     let BodySpec::Cloud(cloud) = &mut made.spec.body else {
         panic!("atoms of a file are a cloud");
     };

@@ -85,7 +85,7 @@ pub fn lattice_dynamics(
     time_step: f64,
     terms: usize,
 ) -> Result<LatticeDynamics, UpscaleError> {
-    match spec.dimension {
+    match spec.space.dimension {
         1 => dynamics_in::<1>(spec, time_step, terms),
         2 => dynamics_in::<2>(spec, time_step, terms),
         _ => dynamics_in::<3>(spec, time_step, terms),
@@ -107,17 +107,17 @@ fn dynamics_in<const D: usize>(
     let limit = largest(&crystal, spec, per_axis);
     let scale = limit.squared.abs();
     let relaxed = crystal.elastic_constants();
-    let section = spec.section;
+    let section = spec.space.section;
     let per_section = |mut s: Stiffness| {
         s.c.iter_mut().flatten().for_each(|c| *c /= section);
         s
     };
     let moments = {
-        let mut solid = LatticeSolid::new(kind, spacing, spec.horizon);
+        let mut solid = LatticeSolid::new(kind, spacing, spec.bonds.horizon);
         solid.section = section;
-        Moments::continuum(D, solid.delta(), section, spec.influence)
+        Moments::continuum(D, solid.delta(), section, spec.bonds.influence)
     };
-    let nominal = nominal_moduli(&spec.materials[0].law, D, spec.plane, moments);
+    let nominal = nominal_moduli(&spec.materials[0].law, D, spec.space.plane, moments);
     let instability = crystal.instability(per_axis);
     let mut growing: Vec<Growing> = vec![];
     if let Some(worst) = &instability {
@@ -172,7 +172,7 @@ fn dynamics_in<const D: usize>(
         relaxed: relaxed.is_some(),
         stiffness: per_section(relaxed.unwrap_or_else(|| crystal.rigid_elastic_constants())),
         stress_strain: crystal.stress_strain().map(per_section),
-        continuum: nominal.map(|m| continuum(D, spec.plane, m)),
+        continuum: nominal.map(|m| continuum(D, spec.space.plane, m)),
         nominal,
         pressure: crystal.pressure() / section,
         residual: crystal.residual(),
@@ -254,8 +254,8 @@ mod tests {
             2.0,
             law,
         );
-        spec.horizon = Horizon::Ratio(m);
-        spec.section = 0.3;
+        spec.bonds.horizon = Horizon::Ratio(m);
+        spec.space.section = 0.3;
         spec
     }
 

@@ -469,11 +469,11 @@ mod tests {
             let end = 1.05 * kind.nearest();
             let law = LawSpec::Atoms(PotentialSpec::of(lj).ended(end, End::Truncated));
             let mut spec = Spec::new(3, body, 1.0, law);
-            spec.schedule.time_step = TimeStep::Fixed(1e-3);
-            spec.schedule.force_unstable = true;
+            spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
+            spec.run.schedule.force_unstable = true;
             for periodic in [true, false] {
-                spec.periodic = [Some(f64::from(cells)), Some(f64::from(cells)), None];
-                spec.periodic[2] = periodic.then_some(f64::from(cells));
+                spec.space.periodic = [Some(f64::from(cells)), Some(f64::from(cells)), None];
+                spec.space.periodic[2] = periodic.then_some(f64::from(cells));
                 let mut sim = build(&spec, Options::default()).unwrap();
                 let found = patch_test(sim.as_mut(), Some((kind, 1.0)));
                 let bulk = found.classes.iter().filter(|c| c.place == Place::Bulk);
@@ -519,9 +519,9 @@ mod tests {
         };
         let law = LawSpec::Atoms(PotentialSpec::of(lj).ended(2.5, End::Truncated));
         let mut spec = Spec::new(3, body, 1.0, law);
-        spec.periodic = [Some(edge * f64::from(cells)); 3];
-        spec.schedule.time_step = TimeStep::Fixed(1e-3);
-        spec.schedule.force_unstable = true;
+        spec.space.periodic = [Some(edge * f64::from(cells)); 3];
+        spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
+        spec.run.schedule.force_unstable = true;
         let mut sim = build(&spec, Options::default()).unwrap();
         let info = sim.info().clone();
         let mut found = classes(sim.as_mut(), &info, None);

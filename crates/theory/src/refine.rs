@@ -65,13 +65,13 @@ impl RefineError {
 
 /// The body of level `level` (0: as it is).
 pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> {
-    if spec.thermal.is_some() {
+    if spec.loading.thermal.is_some() {
         return Err(RefineError::Thermal);
     }
     if spec.potential().is_some() {
         return Err(RefineError::Atoms);
     }
-    if spec.materials.iter().any(|m| m.fracture.is_some()) || !spec.precracks.is_empty() {
+    if spec.materials.iter().any(|m| m.fracture.is_some()) || !spec.damage.precracks.is_empty() {
         return Err(RefineError::Fracture);
     }
     let BodySpec::Lattice {
@@ -93,7 +93,7 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
     let factor = 1u32 << level;
     let root = 2f64.powf(0.5 * f64::from(level));
     let times = |m: u32, by: u32| m.checked_mul(by).ok_or(RefineError::TooFine(level));
-    let horizon = match (kind, spec.horizon) {
+    let horizon = match (kind, spec.bonds.horizon) {
         (Kind::Delta, Horizon::Ratio(m)) => Horizon::Ratio(m),
         (Kind::Delta, Horizon::Length(d)) => Horizon::Length(d / f64::from(factor)),
         (Kind::M, Horizon::Ratio(m)) => Horizon::Ratio(times(m, factor)?),
@@ -106,9 +106,9 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
     let layer: [f64; 3] =
         std::array::from_fn(|a| spacing * lattice.edges()[a] / f64::from(lattice.planes(a)));
     let ends_at_points =
-        { spec.surface.as_ref() }.is_some_and(|f| f.part.iter().any(|p| *p != 1.0));
+        { spec.bonds.surface.as_ref() }.is_some_and(|f| f.part.iter().any(|p| *p != 1.0));
     let divided: [bool; 3] = std::array::from_fn(|a| {
-        a < spec.dimension && spec.periodic[a].is_none() && !ends_at_points
+        a < spec.space.dimension && spec.space.periodic[a].is_none() && !ends_at_points
     });
     let moved = 0.5 * (1.0 / f64::from(factor) - 1.0);
     let fine_origin: [f64; 3] = std::array::from_fn(|a| match divided[a] {
@@ -118,7 +118,7 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
     let region = &match ends(region) {
         Some(block) => {
             let beyond = if ends_at_points { 0.0 } else { 0.5 };
-            let free = |a: usize| a < spec.dimension && spec.periodic[a].is_none();
+            let free = |a: usize| a < spec.space.dimension && spec.space.periodic[a].is_none();
             let beyond = std::array::from_fn(|a| free(a).then_some(beyond));
             hull(block, origin, &layer, beyond)
         }
@@ -127,16 +127,16 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
     let cells = Cells {
         origin: *origin,
         edge: lattice.edges().map(|e| e * spacing),
-        clip: std::array::from_fn(|a| spec.periodic[a].map(|p| low[a] + p)),
+        clip: std::array::from_fn(|a| spec.space.periodic[a].map(|p| low[a] + p)),
         factor: f64::from(factor),
-        dimension: spec.dimension,
+        dimension: spec.space.dimension,
     };
     let region = match region {
         Region::Block { .. } => cells.whole(region)?,
         other => {
             let mut clipped = [false; 3];
             let region = cells.finer(other, &mut clipped);
-            if (0..3).any(|a| spec.periodic[a].is_some() && !clipped[a]) {
+            if (0..3).any(|a| spec.space.periodic[a].is_some() && !clipped[a]) {
                 return Err(RefineError::Periodic);
             }
             region
@@ -150,7 +150,7 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
         region,
         perturb: None,
     };
-    fine.horizon = horizon;
+    fine.bonds.horizon = horizon;
     crate::homogenize::surface::renew(&mut fine)?;
     Ok(fine)
 }
@@ -259,8 +259,8 @@ mod tests {
             1.0,
             LawSpec::Springs(PmbStiffness::Young(1.0)),
         );
-        spec.horizon = Horizon::Ratio(3);
-        spec.periodic[0] = periodic.then_some(0.0);
+        spec.bonds.horizon = Horizon::Ratio(3);
+        spec.space.periodic[0] = periodic.then_some(0.0);
         spec
     }
 
@@ -287,7 +287,7 @@ mod tests {
                 .map(|k| {
                     let fine = refine(&spec, kind, k).unwrap();
                     let m = expected[k as usize];
-                    assert_eq!(fine.horizon, Horizon::Ratio(m));
+                    assert_eq!(fine.bonds.horizon, Horizon::Ratio(m));
                     let [low, high, spacing] = bounds(&fine);
                     // nine cells of 0.5 about points from 0 to 4
                     assert_eq!([low, high], [-0.25, 4.25]);
@@ -327,7 +327,7 @@ mod tests {
                 1.0,
                 LawSpec::Pmb(PmbStiffness::Young(1.0)),
             );
-            spec.horizon = Horizon::Ratio(2);
+            spec.bonds.horizon = Horizon::Ratio(2);
             spec
         };
         // filled, with faces through points, of two sublattices, and as cells
@@ -352,7 +352,7 @@ mod tests {
     #[test]
     fn periods_of_decks_are_cut_just_below_the_next() {
         let mut spec = bar(0.0, 4.0, true);
-        spec.periodic[0] = Some(4.0);
+        spec.space.periodic[0] = Some(4.0);
         let BodySpec::Lattice { region, .. } = &mut spec.body else {
             panic!("no lattice")
         };
@@ -377,10 +377,10 @@ mod tests {
             assert!(error.contains(words), "{error}");
         };
         let mut near = spec.clone();
-        near.horizon = Horizon::Ratio(1);
+        near.bonds.horizon = Horizon::Ratio(1);
         told(&near, Kind::DeltaM, 1, "take 2 or more");
         let mut cracked = spec.clone();
-        cracked.precracks.push(peridyne::spec::PrecrackSpec {
+        cracked.damage.precracks.push(peridyne::spec::PrecrackSpec {
             shape: peridyne::spec::CrackShape::Point { x: 1.0 },
             kind: peridyne::spec::CrackKind::Absent,
         });

@@ -62,7 +62,7 @@ fn check<P: Potential>(
         1.0,
         LawSpec::Atoms(own[0].clone()),
     );
-    spec.periodic = [Some(edge * CELLS as f64); 3];
+    spec.space.periodic = [Some(edge * CELLS as f64); 3];
     spec.materials.clear();
     for (kind, potential) in own.into_iter().enumerate() {
         let name = ["light", "heavy"][kind].to_string();
@@ -78,14 +78,14 @@ fn check<P: Potential>(
             fracture: None,
         });
     }
-    spec.potentials = across
+    spec.interactions.potentials = across
         .into_iter()
         .map(|potential| ActingSpec {
             potential,
             on: Acting::Between([0, 1]),
         })
         .collect();
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let options = Options {
         trust_time_step: true,
         ..Options::default()
@@ -247,7 +247,7 @@ fn diatomic(masses: [f64; 2], potentials: [PotentialSpec; 2], across: PotentialS
     };
     let body = BodySpec::lattice(LatticeKind::Chain, 1.0, low_high);
     let mut spec = Spec::new(1, body, 1.0, LawSpec::Atoms(potentials[0].clone()));
-    spec.periodic[0] = Some(24.0);
+    spec.space.periodic[0] = Some(24.0);
     spec.materials.clear();
     for (n, (density, potential)) in masses.into_iter().zip(potentials).enumerate() {
         let name = ["light", "heavy"][n].to_string();
@@ -264,13 +264,13 @@ fn diatomic(masses: [f64; 2], potentials: [PotentialSpec; 2], across: PotentialS
             fracture: None,
         });
     }
-    spec.potentials = vec![ActingSpec {
+    spec.interactions.potentials = vec![ActingSpec {
         potential: across,
         on: Acting::Between([0, 1]),
     }];
-    spec.family = FamilyChoice::Stencil;
-    spec.horizon = Horizon::Ratio(2);
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.bonds.family = FamilyChoice::Stencil;
+    spec.bonds.horizon = Horizon::Ratio(2);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     spec
 }
 
@@ -361,10 +361,10 @@ fn fixed_neighbours_of_two_kinds_have_a_coarse_model() {
         low: [-0.1; 3],
         high: [7.9; 3],
     };
-    spec.dimension = 3;
+    spec.space.dimension = 3;
     spec.body = BodySpec::lattice(LatticeKind::Bcc, 1.0, cells);
-    spec.periodic = [Some(8.0); 3];
-    spec.horizon = Horizon::Length(1.2);
+    spec.space.periodic = [Some(8.0); 3];
+    spec.bonds.horizon = Horizon::Length(1.2);
     for (n, set) in spec.sets.iter_mut().enumerate() {
         set.members = Members::Basis(vec![n]);
     }
@@ -372,7 +372,10 @@ fn fixed_neighbours_of_two_kinds_have_a_coarse_model() {
     // eight unlike and six like neighbours of both
     assert_eq!(fine.bonds.len(), 28);
     let (coarse, rule) = upscale::upscale(&spec, 2).unwrap();
-    assert_eq!((rule, coarse.family), (Rule::Shells, FamilyChoice::Stencil));
+    assert_eq!(
+        (rule, coarse.bonds.family),
+        (Rule::Shells, FamilyChoice::Stencil)
+    );
     let (large, _) = upscale::crystal::<3>(&coarse).unwrap();
     for wave in [[0.2, 0.0, 0.0], [0.9, 0.4, 2.1]] {
         let half = large.squares(wave.map(|k| 0.5 * k));

@@ -36,8 +36,8 @@ fn layer(potential: PotentialSpec, spacing: f64) -> Spec {
         perturb: None,
     };
     let mut spec = Spec::new(3, lattice, 1.0, LawSpec::Atoms(potential));
-    spec.periodic = [None, Some(2.0 * spacing), Some(2.0 * spacing)];
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.space.periodic = [None, Some(2.0 * spacing), Some(2.0 * spacing)];
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     spec
 }
 

@@ -61,63 +61,21 @@ fn case(
     for a in 0..d {
         periodic[a] = Some(H * kind.edges()[a] * cells[a] as f64);
     }
-    let spec = Spec {
-        bonded: None,
-        boltzmann: 1.0,
-        thermal: None,
-        fields: None,
-        probes: vec![],
-        title: String::new(),
-        dimension: d,
-        plane: Plane::Stress,
-        section,
-        body: BodySpec::Sites {
-            kind,
-            spacing: H,
-            origin: [0.0; 3],
-            quarters,
-            volume: None,
-        },
-        sets: vec![],
-        materials: vec![MaterialSpec {
-            name: "all".into(),
-            set: "all".into(),
-            density: RHO,
-            law,
-            fracture: None,
-        }],
-        interface: InterfaceRule::Series,
-        interfaces: vec![],
-        pairs: vec![],
-        potentials: vec![],
-        mixing: None,
-        toughness: vec![],
-        healing: None,
-        release: Release::AtOnce,
-        horizon: Horizon::Ratio(ratio),
-        volume_scaling: true,
-        calibration: Calibration::Discrete,
-        influence,
-        periodic,
-        surface: None,
-        bonds: vec![],
-        precracks: vec![],
-        contact: None,
-        initial: vec![],
-        conditions: vec![],
-        indenters: vec![],
-        transfers: vec![],
-        family: FamilyChoice::Auto,
-        smooth: None,
-        preload: None,
-        own_horizon: None,
-        schedule: Schedule {
-            steps: 0,
-            time_step: TimeStep::Fraction(0.5),
-            force_unstable: true,
-            stepper: Stepper::Verlet,
-        },
+    let body = BodySpec::Sites {
+        kind,
+        spacing: H,
+        origin: [0.0; 3],
+        quarters,
+        volume: None,
     };
+    let mut spec = Spec::new(d, body, RHO, law);
+    spec.space.section = section;
+    spec.space.periodic = periodic;
+    spec.bonds.horizon = Horizon::Ratio(ratio);
+    spec.bonds.volume_scaling = true;
+    spec.bonds.influence = influence;
+    spec.run.schedule.time_step = TimeStep::Fraction(0.5);
+    spec.run.schedule.force_unstable = true;
     let mut solid = LatticeSolid::new(kind, H, Horizon::Ratio(ratio));
     solid.section = section;
     solid.density = RHO;

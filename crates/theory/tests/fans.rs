@@ -294,7 +294,7 @@ fn twice_as_large(spec: &Spec) -> Card {
 #[test]
 fn coarse_crystals_with_a_basis_are_larger_and_heavier() {
     let mut spec = diamond(5.431, 28.0855, silicon());
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let found = twice_as_large(&spec);
     // silicon against itself: the energy of a small strain is that of the constants with sites held
     let row = found
@@ -341,7 +341,7 @@ fn salt(kind: LatticeKind, spacing: f64, cells: f64, members: [Members; 2]) -> S
         cells,
         &[(a, 1.3, ended(0, 0)), (b, 4.1, ended(1, 1))],
     );
-    spec.potentials = vec![ActingSpec {
+    spec.interactions.potentials = vec![ActingSpec {
         potential: ended(0, 1),
         on: Acting::Between([0, 1]),
     }];
@@ -433,7 +433,7 @@ fn cells_of_decorated_lattices() {
     assert_eq!(dynamics.directions.len(), 4);
     // periodic bodies know what lies beyond their faces
     let mut small = salt(LatticeKind::Bcc, 1.0, 2.0, [basis(&[0]), basis(&[1])]);
-    small.periodic = [Some(2.0); 3];
+    small.space.periodic = [Some(2.0); 3];
     assert_eq!(arrangement::<3>(&small).unwrap().sites.len(), 2);
 }
 
@@ -450,7 +450,7 @@ fn what_does_not_repeat_has_no_waves() {
     assert_eq!(error, UpscaleError::Crystal(CrystalError::NotPeriodic));
     // fixed neighbours know pairs of one kind
     let mut fixed = diamond(5.431, 1.0, silicon());
-    fixed.family = FamilyChoice::Stencil;
+    fixed.bonds.family = FamilyChoice::Stencil;
     let error = crystal::<3>(&fixed).unwrap_err();
     assert_eq!(error, UpscaleError::Crystal(CrystalError::FixedNeighbours));
     assert!(lattice(&fixed).is_ok());

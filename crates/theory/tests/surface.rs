@@ -40,13 +40,13 @@ fn body(d: usize, points: &[[i32; 3]], m: u32) -> Spec {
         volume: None,
     };
     let mut spec = Spec::new(d, body, 2.0, LawSpec::Pmb(PmbStiffness::Young(3.0)));
-    spec.section = if d == 3 { 1.0 } else { 0.25 };
-    spec.horizon = Horizon::Ratio(m);
+    spec.space.section = if d == 3 { 1.0 } else { 0.25 };
+    spec.bonds.horizon = Horizon::Ratio(m);
     spec
 }
 
 fn with(mut spec: Spec, method: SurfaceMethod) -> Spec {
-    spec.surface = Some(correct(&spec, method).unwrap().0);
+    spec.bonds.surface = Some(correct(&spec, method).unwrap().0);
     spec
 }
 
@@ -56,8 +56,8 @@ fn at_rest(spec: &Spec, simd: Option<Simd>) -> Box<dyn Simulation> {
         trust_time_step: true,
     };
     let mut spec = spec.clone();
-    if !matches!(spec.schedule.time_step, TimeStep::Fixed(_)) {
-        spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    if !matches!(spec.run.schedule.time_step, TimeStep::Fixed(_)) {
+        spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     }
     let mut sim = build(&spec, options).unwrap();
     sim.start(true);
@@ -79,7 +79,7 @@ fn strains(d: usize) -> Vec<[[f64; 3]; 3]> {
 
 /// Stress at a strain: `½ Σ t V r n⊗n` over a full family, `t` the force per volumes of a bond.
 fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    let (d, m) = (spec.dimension, m as i32);
+    let (d, m) = (spec.space.dimension, m as i32);
     let horizon = f64::from(m) * H;
     let side = 2 * m + 1;
     let mut bonds = vec![];
@@ -95,17 +95,19 @@ fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
         if r == 0.0 || r > horizon * (1.0 + 1e-12) {
             continue;
         }
-        let nu = if spec.volume_scaling {
+        let nu = if spec.bonds.volume_scaling {
             volume_fraction(r, horizon, H)
         } else {
             1.0
         };
-        let weight =
-            nu * influence(spec.influence, &o, r, horizon) * H.powi(d as i32) * spec.section;
+        let weight = nu
+            * influence(spec.bonds.influence, &o, r, horizon)
+            * H.powi(d as i32)
+            * spec.space.section;
         bonds.push((r, o.map(|x| x / r), weight));
     }
     let tension: Box<dyn Fn(f64, f64) -> f64> =
-        match Solid::of_law(d, spec.plane, &spec.materials[0].law) {
+        match Solid::of_law(d, spec.space.plane, &spec.materials[0].law) {
             Some(solid) => {
                 let m: f64 = bonds.iter().map(|(r, _, w)| w * r * r).sum();
                 let theta: f64 = (0..3).map(|a| strain[a][a]).sum();
@@ -145,10 +147,10 @@ fn displaced(sim: &mut dyn Simulation, e: &[[f64; 3]; 3], by: f64) -> Vec<Point>
 
 /// Largest difference of the forces under all strains from those of the exact tractions, over the largest of these.
 fn misfit(spec: &Spec, m: u32, n: [i32; 3]) -> f64 {
-    let d = spec.dimension;
+    let d = spec.space.dimension;
     let mut sim = at_rest(spec, None);
     let volumes = sim.scalars("volume");
-    let face = H.powi(d as i32 - 1) * spec.section;
+    let face = H.powi(d as i32 - 1) * spec.space.section;
     let mut worst = 0.0f64;
     for e in strains(d) {
         let sigma = stress(spec, m, &e);
@@ -191,7 +193,7 @@ fn uniform_strains_are_exact_on_plates_and_blocks() {
     ] {
         for scaling in [false, true] {
             let mut plain = body(d, &points(n), m);
-            plain.volume_scaling = scaling;
+            plain.bonds.volume_scaling = scaling;
             let exact = misfit(&with(plain.clone(), SurfaceMethod::Exact), m, n);
             let without = misfit(&plain, m, n);
             println!("{d}-D, horizon {m}, scaling {scaling}: {exact:.1e}, without {without:.2}");
@@ -205,7 +207,7 @@ fn uniform_strains_are_exact_on_plates_and_blocks() {
 fn springs_and_influence_functions_are_exact_too() {
     let n = [16, 12, 1];
     let mut spec = body(2, &points(n), 3);
-    spec.influence = Influence::Conical;
+    spec.bonds.influence = Influence::Conical;
     assert!(misfit(&with(spec.clone(), SurfaceMethod::Exact), 3, n) < 1e-12);
     spec.materials[0].law = LawSpec::Springs(PmbStiffness::Young(3.0));
     assert!(misfit(&with(spec, SurfaceMethod::Exact), 3, n) < 1e-12);
@@ -228,7 +230,7 @@ fn state_based_solids_are_exact_in_every_strain() {
         for kind in [Influence::Constant, Influence::Inverse] {
             let mut plain = body(d, &points(n), m);
             plain.materials[0].law = LPS;
-            (plain.influence, plain.volume_scaling) = (kind, true);
+            (plain.bonds.influence, plain.bonds.volume_scaling) = (kind, true);
             let exact = misfit(&with(plain.clone(), SurfaceMethod::Exact), m, n);
             let without = misfit(&plain, m, n);
             println!("{d}-D, horizon {m}, {kind:?}: {exact:.1e}, without {without:.2}");
@@ -242,9 +244,9 @@ fn state_based_solids_are_exact_in_every_strain() {
 fn residual_inside(spec: &Spec) -> f64 {
     let mut sim = at_rest(spec, None);
     let (v, x) = (sim.scalars("volume"), sim.vectors("reference"));
-    let whole = H.powi(spec.dimension as i32) * spec.section;
+    let whole = H.powi(spec.space.dimension as i32) * spec.space.section;
     let mut worst = 0.0f64;
-    for e in strains(spec.dimension) {
+    for e in strains(spec.space.dimension) {
         let u = displaced(sim.as_mut(), &e, STRAIN);
         let f = sim.forces_under(&u);
         let size = |f: &Point| f.iter().fold(0.0f64, |m, c| m.max(c.abs()));
@@ -283,12 +285,12 @@ fn holes_and_steps() {
             let report = report.unwrap();
             println!("{name}, horizon {m}: {report:?}");
             let mut spec = spec;
-            spec.surface = Some(factors);
+            spec.bonds.surface = Some(factors);
             if report.exact {
                 let worst = residual_inside(&spec);
                 assert!(worst < 1e-11, "{name}, horizon {m}: {worst:e}");
             } else {
-                assert!(spec.surface.unwrap().warning.is_some());
+                assert!(spec.bonds.surface.unwrap().warning.is_some());
             }
         }
     }
@@ -319,7 +321,7 @@ fn worn() -> Vec<(Spec, Vec<Point>)> {
             rate: None,
             fatigue: None,
         });
-        spec.contact = Some(ContactSpec {
+        spec.interactions.contact = Some(ContactSpec {
             bonded: 0.9,
             free: 1.35,
             stiffness: ContactStiffness::Laws,
@@ -368,7 +370,7 @@ fn force_is_the_derivative_of_energy_and_momentum_is_kept() {
         };
         let step = 1e-5 * H;
         for i in (0..u.len()).step_by(37) {
-            for a in 0..spec.dimension {
+            for a in 0..spec.space.dimension {
                 let mut at = |x: f64| {
                     u[i][a] += x;
                     let w = energy(&u);
@@ -397,7 +399,7 @@ fn breaking_keeps_the_balance_and_all_widths_and_threads_agree_bitwise() {
                 .build()
                 .unwrap();
             let mut spec = spec.clone();
-            spec.schedule.time_step = TimeStep::Fixed(2e-3);
+            spec.run.schedule.time_step = TimeStep::Fixed(2e-3);
             let mut sim = at_rest(&spec, Some(simd));
             let small: Vec<Point> = u.iter().map(|u| u.map(|c| 0.7 * c)).collect();
             sim.set_displacements(&small);
@@ -451,14 +453,14 @@ fn other_bodies_get_their_own_factors() {
         perturb: None,
     };
     let mut spec = with(spec, SurfaceMethod::Volume);
-    assert_eq!(spec.surface.as_ref().unwrap().row.len(), 17 * 13);
+    assert_eq!(spec.bonds.surface.as_ref().unwrap().row.len(), 17 * 13);
     if let BodySpec::Lattice { spacing, .. } = &mut spec.body {
         *spacing = 0.5 * H;
     }
     let stale = build(&spec, Options::default()).err().unwrap();
     assert!(stale.message.contains("do not fit this body"), "{stale}");
     renew(&mut spec).unwrap();
-    assert_eq!(spec.surface.as_ref().unwrap().row.len(), 33 * 25);
+    assert_eq!(spec.bonds.surface.as_ref().unwrap().row.len(), 33 * 25);
     assert!(build(&spec, Options::default()).is_ok());
 }
 
@@ -466,12 +468,12 @@ fn other_bodies_get_their_own_factors() {
 fn tangents_are_differences_of_forces() {
     for (mut spec, u) in worn() {
         spec.materials[0].fracture = None;
-        spec.contact = None;
+        spec.interactions.contact = None;
         let mut sim = at_rest(&spec, None);
         let u: Vec<Point> = u.iter().map(|u| u.map(|c| 0.5 * c)).collect();
         sim.set_displacements(&u);
         let direction = |k: usize| -> Point {
-            std::array::from_fn(|a| match a < spec.dimension {
+            std::array::from_fn(|a| match a < spec.space.dimension {
                 true => ((3 * k + a) as f64 * 1.7).sin(),
                 false => 0.0,
             })

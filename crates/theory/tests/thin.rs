@@ -28,13 +28,13 @@ fn block(size: [usize; 3], poisson: f64) -> Box<dyn Simulation> {
         poisson,
     });
     let mut spec = Spec::new(3, body, 1.0, law);
-    spec.horizon = Horizon::Ratio(3);
-    spec.volume_scaling = true;
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.bonds.volume_scaling = true;
     let options = Options {
         trust_time_step: true,
         ..Options::default()
     };
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     build(&spec, options).unwrap()
 }
 

@@ -101,13 +101,13 @@ pub fn pulled(stepper: Stepper, steps: u64, end: f64) -> Box<dyn Simulation> {
         set: set.into(),
         kind,
     };
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         condition("all", ConditionKind::force("foundation", held)),
         condition("end", ConditionKind::Displacement([Some(pull), None, None])),
     ];
-    spec.schedule.stepper = stepper;
-    spec.schedule.time_step = TimeStep::Fixed(end / steps as f64);
-    spec.schedule.steps = steps;
+    spec.run.schedule.stepper = stepper;
+    spec.run.schedule.time_step = TimeStep::Fixed(end / steps as f64);
+    spec.run.schedule.steps = steps;
     let shelf = Shelf::standard().with_force::<Foundation>();
     let mut sim = build_with(&spec, Options::default(), &shelf).expect("a bar");
     sim.start(true);

@@ -57,9 +57,9 @@ pub fn main() {
         1.0,
         law,
     );
-    spec.horizon = Horizon::Ratio(3);
-    spec.schedule.time_step = TimeStep::Fraction(0.05);
-    spec.conditions = vec![ConditionSpec {
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.run.schedule.time_step = TimeStep::Fraction(0.05);
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::force("foundation", Parameters::default()),
     }];

@@ -156,7 +156,7 @@ fn border(n: usize, bound: f64) -> Result<f64, Failure> {
     let mut sim = deck::model(&deck)?;
     let start = sim.displacements();
     let rest = vec![[0.0; 3]; start.len()];
-    let steps = deck.spec.schedule.steps;
+    let steps = deck.spec.run.schedule.steps;
     let steady = |dt: f64| {
         sim.set_displacements(&start);
         sim.set_velocities(&rest);

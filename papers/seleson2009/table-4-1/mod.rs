@@ -60,7 +60,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
 /// The chain of a run of Fig. 4.3.
 fn in_deck(run: &str) -> Result<Chain, Failure> {
     let deck = deck::deck(DECK, run, &[])?;
-    let Horizon::Ratio(neighbours) = deck.spec.horizon else {
+    let Horizon::Ratio(neighbours) = deck.spec.bonds.horizon else {
         return Err(Failure::new(format!("{run}: write the horizon as m_ratio")));
     };
     let info = deck::model(&deck)?.info().clone();

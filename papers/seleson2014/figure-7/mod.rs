@@ -74,16 +74,16 @@ fn engine(
         1.0,
         law,
     );
-    spec.horizon = Horizon::Ratio(bonds.reach as u32);
-    spec.influence = influence;
+    spec.bonds.horizon = Horizon::Ratio(bonds.reach as u32);
+    spec.bonds.influence = influence;
     for a in 0..bonds.dimension {
-        spec.periodic[a] = Some(bonds.points as f64 * bonds.spacing);
+        spec.space.periodic[a] = Some(bonds.points as f64 * bonds.spacing);
     }
     let options = Options {
         trust_time_step: true,
         ..Options::default()
     };
-    spec.schedule.time_step = peridyne::spec::TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = peridyne::spec::TimeStep::Fixed(1e-3);
     let mut sim = build(&spec, options).map_err(|e| Failure::new(e.to_string()))?;
     Ok(sim.forces_under(u))
 }
@@ -197,11 +197,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         let mut spec = deck.spec.clone();
         let points = 40;
         spec.body = body(LatticeKind::Chain, points, h);
-        spec.periodic[0] = Some(points as f64 * h);
-        spec.family = FamilyChoice::Stencil;
+        spec.space.periodic[0] = Some(points as f64 * h);
+        spec.bonds.family = FamilyChoice::Stencil;
         spec.sets.clear();
-        spec.initial.clear();
-        spec.conditions.clear();
+        spec.loading.initial.clear();
+        spec.loading.conditions.clear();
         let read = spec.potential().map(|p| EamForm::read(&p.parameters));
         let Some(Ok(mei)) = read else {
             return Err(Failure::new("the deck has another potential"));

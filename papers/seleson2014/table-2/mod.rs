@@ -24,7 +24,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     ] {
         let deck = parsed(h, family)?;
         let points = model(&deck, false)?.info().points as f64;
-        let steps = deck.spec.schedule.steps as f64;
+        let steps = deck.spec.run.schedule.steps as f64;
         rows.push([h, points, steps, seconds(h, family, runs)?]);
     }
     let stencil = seconds(1.0, Family::Chain, runs)?;

@@ -56,7 +56,7 @@ impl Truth {
     fn of(deck: &Deck, model: &mut Model<2>) -> Result<Truth, Failure> {
         let mut sim: Box<dyn Simulation> = build(&deck.spec, Build::default()).map_err(failed)?;
         sim.start(true);
-        for _ in 0..deck.spec.schedule.steps {
+        for _ in 0..deck.spec.run.schedule.steps {
             sim.step().map_err(failed)?;
         }
         let all = model.reactions_of(sim.as_mut(), 1.0);

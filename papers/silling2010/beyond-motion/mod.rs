@@ -37,9 +37,9 @@ fn deck(text: &str, set: &[(&str, String)]) -> Result<Deck, Failure> {
 /// The linear body of a deck about its reference.
 fn linear<const D: usize>(deck: &Deck) -> Result<LinearBody<D>, Failure> {
     let mut spec = deck.spec.clone();
-    spec.initial.clear();
-    spec.conditions.clear();
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.loading.initial.clear();
+    spec.loading.conditions.clear();
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     let options = Build {
         trust_time_step: true,
         ..Build::default()
@@ -96,7 +96,7 @@ fn started<const D: usize>(
     dt: f64,
 ) -> Result<Box<dyn Simulation>, Failure> {
     let mut spec = Spec::of_linear(body);
-    spec.schedule.time_step = TimeStep::Fixed(dt);
+    spec.run.schedule.time_step = TimeStep::Fixed(dt);
     let mut sim = build(&spec, Build::default()).map_err(failed)?;
     let u: Vec<_> = { body.position.iter() }
         .map(|x| [u(x[0]), 0.0, 0.0])
@@ -291,7 +291,7 @@ fn plate(context: &Context, found: &mut Findings) -> Result<(), Failure> {
     let fine = linear::<2>(&deck)?;
     let mut chosen = Selection::every(3).choose(&fine).map_err(failed)?;
     let model = build(&deck.spec, Build::default()).map_err(failed)?;
-    for condition in &deck.spec.conditions {
+    for condition in &deck.spec.loading.conditions {
         let held = matches!(condition.kind, ConditionKind::Displacement(_));
         chosen.extend(
             model
@@ -308,8 +308,8 @@ fn plate(context: &Context, found: &mut Findings) -> Result<(), Failure> {
     let ended = |body: &LinearBody<2>| -> Result<Vec<[f64; 3]>, Failure> {
         let mut spec = Spec::of_linear(body);
         spec.sets = deck.spec.sets.clone();
-        spec.conditions = deck.spec.conditions.clone();
-        spec.schedule.time_step = TimeStep::Fixed(end / steps);
+        spec.loading.conditions = deck.spec.loading.conditions.clone();
+        spec.run.schedule.time_step = TimeStep::Fixed(end / steps);
         let mut sim = build(&spec, Build::default()).map_err(failed)?;
         sim.start(true);
         for _ in 0..steps as usize {

@@ -100,9 +100,9 @@ fn spec((sites, box_): &(Vec<Point>, Point)) -> Result<Spec, Failure> {
         density: vec![1.0 / volume; n],
         ..Cloud::default()
     });
-    spec.periodic = box_.map(Some);
-    spec.thermal = None;
-    spec.schedule.time_step = TimeStep::Fixed(STEP);
+    spec.space.periodic = box_.map(Some);
+    spec.loading.thermal = None;
+    spec.run.schedule.time_step = TimeStep::Fixed(STEP);
     Ok(spec)
 }
 

@@ -35,7 +35,7 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     }
     geometry(found, &mut say);
     for (n, ties) in found.ties.iter().enumerate().filter(|(_, ties)| **ties > 0) {
-        let name = match &*spec.indenters[n].name {
+        let name = match &*spec.loading.indenters[n].name {
             "" => format!("indenter {}", n + 1),
             name => format!("`{name}`"),
         };
@@ -107,7 +107,7 @@ fn trial(found: &Findings, say: &mut dyn FnMut(String, &str)) {
 fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {
     let (spec, info) = (found.spec, &found.info);
     let d = info.dimension;
-    let small = match spec.horizon {
+    let small = match spec.bonds.horizon {
         Horizon::Ratio(m) => m < 3,
         Horizon::Length(_) => info.horizon < 2.5 * info.spacing,
     };
@@ -134,7 +134,7 @@ fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {
     }
     for a in 0..d {
         let thickness = found.long(a);
-        if spec.periodic[a].is_none() && thickness < info.horizon * (1.0 - 1e-9) {
+        if spec.space.periodic[a].is_none() && thickness < info.horizon * (1.0 - 1e-9) {
             say(
                 format!(
                     "along {} the body is thinner ({:.2} spacings) than the horizon ({:.2} spacings)",
@@ -186,7 +186,7 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
                     }),
             };
             if off.abs() > 0.05 {
-                let fix = match (spec.calibration, &spec.materials[n].law) {
+                let fix = match (spec.bonds.calibration, &spec.materials[n].law) {
                     (_, LawSpec::Pmb(peridyne::spec::PmbStiffness::Micromodulus(_))) => {
                         "give bulk or young instead of micromodulus: the constant is then calibrated to this body"
                     }

@@ -50,7 +50,7 @@ pub fn advice(found: &Findings, say: &mut dyn FnMut(String, &str)) {
         BodySpec::Cloud(cloud) => cloud.velocity.is_empty(),
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Several(_) => true,
     };
-    if resting && spec.thermal.is_none() && spec.initial.is_empty() {
+    if resting && spec.loading.thermal.is_none() && spec.loading.initial.is_empty() {
         say(
             "the atoms start at rest, at 0 K".into(),
             "write thermal = { temperature = \"300 K\", seed = 1 }; a crystal shares it out: half of it stays as kinetic energy",

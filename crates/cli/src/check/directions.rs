@@ -11,7 +11,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// the plane.
 pub fn nominal_along(found: &Findings, m: &Material) -> Option<f64> {
     let nominal = m.nominal?;
-    let slice = found.info.dimension == 2 && found.spec.plane == Plane::Strain;
+    let slice = found.info.dimension == 2 && found.spec.space.plane == Plane::Strain;
     Some(match slice {
         true => nominal.young / (1.0 - nominal.poisson * nominal.poisson),
         false => nominal.young,

@@ -57,7 +57,7 @@ pub fn write(found: &Findings) -> String {
         "fields": found.fields.iter().map(fields).collect::<Vec<_>>(),
         "steps": found.steps,
         "increments_before": found.increments,
-        "time_step": found.spec.schedule.statics().is_none().then_some(info.time_step),
+        "time_step": found.spec.run.schedule.statics().is_none().then_some(info.time_step),
         "integrator": info.stepper.name(),
         "stable_step": info.stable_step,
         "spreads": info.transfers.iter().map(|t| json!({

@@ -12,7 +12,7 @@ const ALIKE: f64 = 0.9;
 
 /// Number of such points of each driven indenter that does not turn, on its way until `until`.
 pub(super) fn ties(spec: &Spec, points: &[Point], spacing: f64, until: f64) -> Vec<usize> {
-    let each = spec.indenters.iter();
+    let each = spec.loading.indenters.iter();
     each.map(|i| of_one(i, points, spacing, until)).collect()
 }
 

@@ -45,7 +45,7 @@ pub(super) fn followed(
             deck.file()
         ))
     })?;
-    match deck.spec.dimension {
+    match deck.spec.space.dimension {
         1 => go::<1>(arguments, deck, &asked, sim, fine),
         2 => go::<2>(arguments, deck, &asked, sim, fine),
         _ => go::<3>(arguments, deck, &asked, sim, fine),
@@ -91,7 +91,7 @@ impl Asked {
         }
         no_faces(deck, way)?;
         let spec = &deck.spec;
-        let Some(statics) = spec.schedule.statics() else {
+        let Some(statics) = spec.run.schedule.statics() else {
             return wrong(
                 "increments go from one equilibrium to the next, and this deck moves in time; write [statics] in place of [run], or leave --increments out",
             );
@@ -119,17 +119,17 @@ impl Asked {
                 "t of this deck is a time (statics.duration), for laws that answer to how fast they are deformed; coarse increments take none: leave duration out",
             );
         }
-        if spec.contact.is_some() || !spec.indenters.is_empty() {
+        if spec.interactions.contact.is_some() || !spec.loading.indenters.is_empty() {
             return wrong(
                 "what touches only pushes, and has no tangent from which a coarse body could be made: write contact = false, and leave indenters out",
             );
         }
-        if !spec.transfers.is_empty() || spec.healing.is_some() {
+        if !spec.interactions.transfers.is_empty() || spec.damage.healing.is_some() {
             return wrong(
                 "what spreads through bonds, and bonds that heal, change the body while the load stands still; increments know the load alone: leave heat, species and healing out",
             );
         }
-        let TimeStep::Fixed(each) = spec.schedule.time_step else {
+        let TimeStep::Fixed(each) = spec.run.schedule.time_step else {
             return wrong("this deck does not say how far its load goes");
         };
         let out = arguments.out.clone().unwrap_or_else(|| {

@@ -83,7 +83,7 @@ pub(super) fn levels<const D: usize>(
         say(&card(&made_of, way, deck.units));
         if let Stability::Stable { growth } = made_of.report.stability
             && growth > 0.0
-            && deck.spec.schedule.statics().is_none()
+            && deck.spec.run.schedule.statics().is_none()
         {
             say(&format!(
                 "note: without symmetry there is no energy: in dynamics the free vibrations of level {level} grow by a factor e in {}",
@@ -261,6 +261,7 @@ fn run_levels<const D: usize>(
         say("note: level 0 is the linear body about the relaxed crystal");
     } else if deck
         .spec
+        .run
         .schedule
         .statics()
         .is_some_and(|s| s.method != Method::Linear)
@@ -289,7 +290,7 @@ fn run_levels<const D: usize>(
             m.seconds[1],
             m.seconds[0],
         ));
-        if deck.spec.schedule.statics().is_none() && m.error > OFF {
+        if deck.spec.run.schedule.statics().is_none() && m.error > OFF {
             say(&format!(
                 "warning: {name} moves otherwise than level 0, by {:.0} %: removed points are taken to be in equilibrium at every moment, and waves of some ten coarse spacings and less come out slow; retain more points, or let loads and pulses be longer (the errors of frequencies are in {name}.json)",
                 100.0 * m.error

@@ -50,14 +50,14 @@ pub fn common_step(decks: &[Deck], input: &Input, substeps: u32) -> Result<Step,
     for (k, deck) in decks.iter().enumerate() {
         let mut trusting = deck.clone();
         // a fixed step is for the first level, which tells if it is too long
-        trusting.spec.schedule.force_unstable |= k > 0;
+        trusting.spec.run.schedule.force_unstable |= k > 0;
         let sim = deck::model(&trusting, input)?;
         let info = sim.info();
         stable = stable.min(info.stable_step);
         if found.is_none() {
             let time = deck
                 .duration
-                .unwrap_or(deck.spec.schedule.steps as f64 * info.time_step);
+                .unwrap_or(deck.spec.run.schedule.steps as f64 * info.time_step);
             found = Some((time, info.time_step / info.stable_step));
         }
     }
@@ -80,7 +80,7 @@ impl Level {
     pub fn run(deck: &Deck, input: &Input, step: &Step, stretch: u32) -> Result<Level, Failure> {
         let mut trusting = deck.clone();
         // the common step is set below
-        trusting.spec.schedule.force_unstable = true;
+        trusting.spec.run.schedule.force_unstable = true;
         let mut sim = deck::model(&trusting, input)?;
         let failed = |e: RunError| {
             Failure::Run(format!(

@@ -311,7 +311,7 @@ pub fn deck(
                     .spec
                     .potential()
                     .is_some_and(|p| p.cut_off().is_infinite())
-                    && deck.spec.family != FamilyChoice::Stencil
+                    && deck.spec.bonds.family != FamilyChoice::Stencil
                 {
                     true =>
                         "; the law needs a cut-off (--with cutoff=LENGTH) or fixed neighbours (--m-ratio N)",
@@ -368,10 +368,10 @@ fn block(spec: &Spec, factors: &[u32]) -> [u32; 3] {
         .iter()
         .fold(1u32, |l, f| (l / gcd(l, *f)).saturating_mul(*f))
         .max(1);
-    let reach = match (spec.potential(), spec.family) {
+    let reach = match (spec.potential(), spec.bonds.family) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours) => REACH * p.cut_off(),
         (Some(_), FamilyChoice::Stencil | FamilyChoice::List | FamilyChoice::Reference)
-        | (None, _) => spec.horizon.length(spacing),
+        | (None, _) => spec.bonds.horizon.length(spacing),
     };
     let reach = reach * f64::from(most);
     let edges = kind.edges();
@@ -402,12 +402,12 @@ fn motion(deck: &Deck, factors: &[u32]) -> Vec<Flag> {
     };
     let most = factors.iter().copied().max().unwrap_or(1);
     let plain = deck.units.plain_factor(Dim::LENGTH);
-    let length = spec.periodic[0].unwrap_or(LENGTH * f64::from(most) * spacing);
+    let length = spec.space.periodic[0].unwrap_or(LENGTH * f64::from(most) * spacing);
     let width = WIDTH * f64::from(most) * spacing;
     let (middle, w) = (0.5 * length / plain, width / plain);
     let pulse = format!("{:?}*exp(-((x-{middle:?})/{w:?})^2)", 0.01 * w);
     let mut components = vec![format!("{pulse:?}")];
-    components.resize(spec.dimension, "0".into());
+    components.resize(spec.space.dimension, "0".into());
     let mut flags = vec![
         flag(
             "cells",
@@ -416,7 +416,7 @@ fn motion(deck: &Deck, factors: &[u32]) -> Vec<Flag> {
         ),
         flag("cells", "run.time_step.safety", 0.5),
     ];
-    let speed = match spec.dimension {
+    let speed = match spec.space.dimension {
         1 => sound::<1>(spec),
         2 => sound::<2>(spec),
         _ => sound::<3>(spec),

@@ -35,7 +35,7 @@ pub fn text(found: &Found) -> String {
     if s.sites > 1 {
         t += &cell(found);
     }
-    if found.deck.spec.thermal.is_some() {
+    if found.deck.spec.loading.thermal.is_some() {
         t += "\n          the lattice at rest: without the deck's temperature";
     }
     t += "\n\nwaves along\n";

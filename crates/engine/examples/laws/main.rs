@@ -49,11 +49,11 @@ fn spec_of(
         volume: None,
     };
     let mut spec = Spec::new(kind.dimension(), body, 1.0, law);
-    spec.horizon = Horizon::Ratio(3);
-    spec.influence = Influence::Inverse;
-    spec.volume_scaling = true;
-    spec.family = family;
-    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.bonds.influence = Influence::Inverse;
+    spec.bonds.volume_scaling = true;
+    spec.bonds.family = family;
+    spec.run.schedule.time_step = TimeStep::Fraction(0.1);
     if breaks {
         spec.materials[0].fracture = Some(FractureSpec {
             criterion: Criterion::Stretch(0.5),
@@ -231,7 +231,7 @@ fn time(row: &str, spec: &Spec, simd: Simd) {
     sim.start(false);
     let mut best = f64::MAX;
     let steps = match simd {
-        _ if spec.dimension == 1 => 2000,
+        _ if spec.space.dimension == 1 => 2000,
         Simd::Portable => 3,
         _ => 16,
     };

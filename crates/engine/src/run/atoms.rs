@@ -19,7 +19,7 @@ pub(super) fn resolve_family(
 ) -> Result<(), BuildError> {
     let refused =
         |message: &str, help: &str| Err(BuildError::unsupported("family", message).help(help));
-    match (spec.family, potentials) {
+    match (spec.bonds.family, potentials) {
         (FamilyChoice::List, Some(_)) => refused(
             "a list stores bonds of peridynamic laws, and this law is an interatomic potential",
             "write family = \"reference\": those within the horizon in the reference, for ever; or leave it out: those that are near now",
@@ -39,7 +39,7 @@ pub(super) fn resolve_family(
         }
         // bonds of lists can be taken out one by one
         (FamilyChoice::Stencil, Some(_)) if breaks(spec) => {
-            spec.family = FamilyChoice::Reference;
+            spec.bonds.family = FamilyChoice::Reference;
             Ok(())
         }
         (FamilyChoice::Reference, Some(potentials)) => {
@@ -47,8 +47,9 @@ pub(super) fn resolve_family(
                 spec.body,
                 BodySpec::Lattice { perturb: None, .. } | BodySpec::Sites { .. }
             );
-            if lattice && potentials.has_stencil() && spec.bonded.is_none() && !breaks(spec) {
-                spec.family = FamilyChoice::Stencil;
+            let molecules = spec.interactions.bonded.is_some();
+            if lattice && potentials.has_stencil() && !molecules && !breaks(spec) {
+                spec.bonds.family = FamilyChoice::Stencil;
             }
             Ok(())
         }
@@ -59,10 +60,10 @@ pub(super) fn resolve_family(
 
 /// Can atoms be carried along by nodes?
 pub(super) fn check_smooth(spec: &Spec, atoms: bool) -> Result<(), BuildError> {
-    let Some(smooth) = &spec.smooth else {
+    let Some(smooth) = &spec.bonds.smooth else {
         return Ok(());
     };
-    if !atoms || spec.family != FamilyChoice::Reference {
+    if !atoms || spec.bonds.family != FamilyChoice::Reference {
         return Err(BuildError::unsupported(
             "smooth",
             "smoothing averages the force states of a potential, which are those of the reference",
@@ -132,7 +133,7 @@ pub(super) fn crystal(
     kind: LatticeKind,
     spacing: f64,
 ) -> Result<Option<Message>, BuildError> {
-    let horizon = match (current_neighbours(spec), spec.horizon) {
+    let horizon = match (current_neighbours(spec), spec.bonds.horizon) {
         (true, _) => Horizon::Length(potentials.reach),
         (false, h) => h,
     };
@@ -141,7 +142,7 @@ pub(super) fn crystal(
     if !(length.is_finite() && spacing > 0.0 && length < 100.0 * spacing) {
         return Ok(None);
     }
-    let volume = kind.site_volume() * spacing.powi(kind.dimension() as i32) * spec.section;
+    let volume = kind.site_volume() * spacing.powi(kind.dimension() as i32) * spec.space.section;
     let stencil = Stencil::new(kind, spacing, horizon);
     let bulk = |spacing: f64| potentials.bulk(&stencil, spacing, volume);
     // how the kinds of a mixture lie on the lattice is not known here

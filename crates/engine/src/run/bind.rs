@@ -24,7 +24,7 @@ pub(super) fn bind<const D: usize>(
     warnings: &mut Warnings,
 ) -> Result<(ConstitutiveModels, Box<dyn Interaction<D>>), BuildError> {
     let BodySpec::Several(named) = &spec.body else {
-        if let Some(interface) = spec.interfaces.first() {
+        if let Some(interface) = spec.interactions.interfaces.first() {
             let message = format!(
                 "interface `{}` joins two of several bodies, and there is one",
                 interface.name

@@ -16,7 +16,7 @@ pub(super) fn around<const D: usize>(
     interaction: Box<dyn Interaction<D>>,
     simd: Simd,
 ) -> Result<Box<dyn Interaction<D>>, BuildError> {
-    let Some(bonded) = &spec.bonded else {
+    let Some(bonded) = &spec.interactions.bonded else {
         return Ok(interaction);
     };
     let refused =
@@ -27,7 +27,7 @@ pub(super) fn around<const D: usize>(
             "give the material a pair potential",
         );
     };
-    if spec.family == FamilyChoice::Stencil {
+    if spec.bonds.family == FamilyChoice::Stencil {
         return refused(
             "molecules have no stencil",
             "remove family = \"stencil\": atoms feel those that are near now, or with family = \"reference\" those of the reference",

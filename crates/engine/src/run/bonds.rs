@@ -17,7 +17,7 @@ pub(super) fn scale<const D: usize>(
     interaction: &mut dyn Interaction<D>,
 ) -> Result<Vec<String>, BuildError> {
     let mut warnings = vec![];
-    for (n, factor) in spec.bonds.iter().enumerate() {
+    for (n, factor) in spec.bonds.factors.iter().enumerate() {
         let path = format!("bonds[{n}]");
         let named = |e: BuildError| e.at(path.clone());
         match factor {
@@ -38,7 +38,8 @@ pub(super) fn scale<const D: usize>(
                     at[s as usize] = value;
                 }
                 body.fill_images(&mut at);
-                let scaled = |i: usize, j: usize, _| pair(mean(spec.interface, at[i], at[j]));
+                let scaled =
+                    |i: usize, j: usize, _| pair(mean(spec.interactions.interface, at[i], at[j]));
                 interaction.scale_bonds(body, &scaled).map_err(named)?;
             }
             BondFactorSpec::Crossing { shape, factor } => {

@@ -47,7 +47,7 @@ pub(super) fn repulsion<const D: usize>(
     constitutive: &ConstitutiveModels,
     body: &Body<D>,
 ) -> Result<Option<Rules>, BuildError> {
-    let Some(contact) = &spec.contact else {
+    let Some(contact) = &spec.interactions.contact else {
         return Ok(None);
     };
     let mut kinds = vec![];
@@ -112,7 +112,7 @@ pub(super) fn repulsion<const D: usize>(
         }
         for a in 0..kinds.len() {
             for b in 0..kinds.len() {
-                let faces = faces(&kinds, &range, spec.section, a, b);
+                let faces = faces(&kinds, &range, spec.space.section, a, b);
                 adhesion.push(sticks::<D>(cohesion, faces)?);
             }
         }
@@ -134,7 +134,7 @@ pub(super) fn repulsion<const D: usize>(
         }
     }
     Ok(Some(Rules {
-        section: spec.section,
+        section: spec.space.section,
         adhesion,
         kinds,
         repulsion: Repulsion {
@@ -156,7 +156,7 @@ pub(super) fn own_stiffness<const D: usize>(
     of_materials: &[f64],
     horizon: f64,
 ) -> Vec<f64> {
-    match spec.contact.as_ref().map(|c| &c.stiffness) {
+    match spec.interactions.contact.as_ref().map(|c| &c.stiffness) {
         Some(ContactStiffness::Laws) => {}
         Some(ContactStiffness::Same(_) | ContactStiffness::Pairs(_)) | None => return vec![],
     }
@@ -350,7 +350,12 @@ pub(super) fn friction<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
 ) -> Result<Option<Friction<D>>, BuildError> {
-    let Some(law) = spec.contact.as_ref().and_then(|c| c.friction.as_ref()) else {
+    let Some(law) = spec
+        .interactions
+        .contact
+        .as_ref()
+        .and_then(|c| c.friction.as_ref())
+    else {
         return Ok(None);
     };
     check_friction::<D>(law, "contact.friction")?;

@@ -83,8 +83,12 @@ impl Faces {
         Ok(Faces {
             origins,
             named,
-            ends_at_points: spec.surface.as_ref().is_some_and(|f| f.ends_at_points()),
-            section: spec.section,
+            ends_at_points: spec
+                .bonds
+                .surface
+                .as_ref()
+                .is_some_and(|f| f.ends_at_points()),
+            section: spec.space.section,
         })
     }
 

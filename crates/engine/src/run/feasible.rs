@@ -14,7 +14,7 @@ use crate::spec::{LawSpec, Spec};
 
 /// Stages and instruction sets that there are not.
 pub(super) fn possible(spec: &Spec, simd: Option<Simd>) -> Result<(), BuildError> {
-    if let Some(preload) = &spec.preload {
+    if let Some(preload) = &spec.run.preload {
         preload::possible(spec, preload)?;
     }
     let available = Simd::available();

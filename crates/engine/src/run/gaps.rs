@@ -81,7 +81,7 @@ pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64
         let bodies = format!("bodies `{}` and `{}`", name(a), name(b));
         let joined = |a: usize, b: usize| {
             let ends = [name(a), name(b)];
-            let mut joints = spec.interfaces.iter();
+            let mut joints = spec.interactions.interfaces.iter();
             joints.any(|i| i.bodies.iter().all(|end| ends.contains(&end.as_str())))
         };
         if distance < OVERLAP * own {
@@ -94,7 +94,7 @@ pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64
             ])
         } else if joined(a, b) {
             None
-        } else if spec.contact.is_none() {
+        } else if spec.interactions.contact.is_none() {
             Some(message![
                 bodies,
                 " are ",
@@ -110,7 +110,7 @@ pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64
                 length(gap.contact),
                 format!(
                     ": such points begin to repel when they are nearer than {} of their distance now",
-                    spec.contact.as_ref().map_or(0.0, |c| c.bonded)
+                    spec.interactions.contact.as_ref().map_or(0.0, |c| c.bonded)
                 ),
             ])
         } else {
@@ -186,7 +186,7 @@ pub(super) fn across<const D: usize>(
     interaction: &dyn Interaction<D>,
 ) -> Vec<Message> {
     let length = |s: usize| {
-        let own = (body.volume.at(s) / spec.section).powf(1.0 / D as f64);
+        let own = (body.volume.at(s) / spec.space.section).powf(1.0 / D as f64);
         body.spacing_at(s).max(own)
     };
     let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();

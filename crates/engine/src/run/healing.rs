@@ -16,7 +16,7 @@ use state::Healing;
 fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {
     let unsupported =
         |message: &str, help: &str| Err(BuildError::unsupported("healing", message).help(help));
-    if spec.materials.iter().all(|m| m.fracture.is_none()) && spec.precracks.is_empty() {
+    if spec.materials.iter().all(|m| m.fracture.is_none()) && spec.damage.precracks.is_empty() {
         return unsupported(
             "nothing of this body breaks",
             "give a material a fracture, or leave healing out",
@@ -43,7 +43,7 @@ impl<const D: usize> System<D> {
         spec: &Spec,
         sets: &[(String, Vec<u32>)],
     ) -> Result<Option<Healing>, BuildError> {
-        let Some(healing) = &spec.healing else {
+        let Some(healing) = &spec.damage.healing else {
             return Ok(None);
         };
         refused(spec, healing)?;

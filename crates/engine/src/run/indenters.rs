@@ -15,7 +15,7 @@ fn length(x: f64) -> Quantity {
 
 /// Refuses rigid bodies that are none in this dimension, or of numbers without meaning.
 pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildError> {
-    for (n, indenter) in { spec.preload.iter() }
+    for (n, indenter) in { spec.run.preload.iter() }
         .flat_map(|p| p.indenters.iter())
         .enumerate()
     {
@@ -27,7 +27,7 @@ pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), B
         }
     }
     let mut names: Vec<&str> = vec![];
-    for (n, indenter) in spec.indenters.iter().enumerate() {
+    for (n, indenter) in spec.loading.indenters.iter().enumerate() {
         let path = format!("indenters[{n}]");
         let name = indenter.name.as_str();
         if !name.is_empty() && names.contains(&name) {

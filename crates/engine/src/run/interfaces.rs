@@ -29,7 +29,7 @@ pub(super) fn interfaces<const D: usize>(
     simd: Simd,
 ) -> Result<Vec<Joined<D>>, BuildError> {
     let mut made: Vec<Joined<D>> = vec![];
-    for (n, written) in spec.interfaces.iter().enumerate() {
+    for (n, written) in spec.interactions.interfaces.iter().enumerate() {
         let joined = join(spec, pieces, all, shelf, simd, written).map_err(|e| {
             let path = e.path.strip_prefix("materials[0].").unwrap_or(&e.path);
             BuildError {
@@ -83,10 +83,8 @@ fn join<const D: usize>(
     }
     // its law on a full family of the first body
     let first = &pieces[bodies[0]];
-    let own = Spec {
+    let mut own = Spec {
         body: first.body.clone(),
-        horizon: written.horizon,
-        influence: written.influence,
         materials: vec![MaterialSpec {
             name: written.name.clone(),
             set: "all".into(),
@@ -94,11 +92,13 @@ fn join<const D: usize>(
             law: written.law.clone(),
             fracture: written.fracture,
         }],
-        contact: None,
-        precracks: vec![],
-        interfaces: vec![],
         ..spec.clone()
     };
+    own.bonds.horizon = written.horizon;
+    own.bonds.influence = written.influence;
+    own.interactions.contact = None;
+    own.interactions.interfaces = vec![];
+    own.damage.precracks = vec![];
     let full = reference::<D>(&own)?;
     let spacings = bodies.map(|b| {
         let piece = &all.pieces()[b].body;
@@ -112,10 +112,10 @@ fn join<const D: usize>(
     });
     let spacing = 0.5 * (spacings[0] + spacings[1]);
     let mut moments = full.bulk;
-    if moments.is_none() && spec.calibration == Calibration::Discrete {
+    if moments.is_none() && spec.bonds.calibration == Calibration::Discrete {
         moments = cloud_moments(&own, &full.body, full.horizon, spacings[0])?;
     }
-    let continuum = || Moments::continuum(D, full.horizon, spec.section, written.influence);
+    let continuum = || Moments::continuum(D, full.horizon, spec.space.section, written.influence);
     let bulk = Bulk {
         moments: moments.unwrap_or_else(continuum),
         // bonds between two bodies are on no lattice

@@ -49,9 +49,9 @@ pub(super) fn regions<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<Messag
             else {
                 return None;
             };
-            let wanted = measure(region, D, spec.periodic)?;
+            let wanted = measure(region, D, spec.space.periodic)?;
             let volume = { body.slots.iter() }.map(|s| body.volume.at(*s as usize));
-            let found = volume.sum::<f64>() / spec.section;
+            let found = volume.sum::<f64>() / spec.space.section;
             let off = found / wanted - 1.0;
             if off.abs() <= CLOSE {
                 return None;
@@ -84,14 +84,16 @@ fn layers<const D: usize>(
     };
     let thick =
         |a: usize| spacing * grid.lattice.kind.edges()[a] / f64::from(grid.lattice.kind.planes(a));
-    let along = (0..D).filter(|a| spec.periodic[*a].is_none()).map(|a| {
-        let all = body.slots.iter().map(|s| grid.position(*s as usize)[a]);
-        let (first, last) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-            (l.min(x), h.max(x))
+    let along = (0..D)
+        .filter(|a| spec.space.periodic[*a].is_none())
+        .map(|a| {
+            let all = body.slots.iter().map(|s| grid.position(*s as usize)[a]);
+            let (first, last) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                (l.min(x), h.max(x))
+            });
+            let whole = last - first + thick(a);
+            ((whole / (high[a] - low[a]) - 1.0).abs(), a, first, last)
         });
-        let whole = last - first + thick(a);
-        ((whole / (high[a] - low[a]) - 1.0).abs(), a, first, last)
-    });
     let (off, a, first, last) = along.max_by(|x, y| x.0.total_cmp(&y.0))?;
     if off <= TOLERANCE {
         return None;

@@ -13,7 +13,7 @@ const ROUND_OFF: f64 = 1.0 + 1e-9;
 /// Where points have horizons of their own, `lps` is a law of `law/material`: its own kernel knows one horizon. Were laws changed?
 pub(super) fn resolve(spec: &mut Spec) -> bool {
     let mut changed = false;
-    if spec.own_horizon.is_none() {
+    if spec.bonds.own_horizon.is_none() {
         return changed;
     }
     for m in &mut spec.materials {
@@ -32,7 +32,7 @@ fn of_energy(fracture: FractureSpec) -> bool {
 
 /// Does what bonds bear follow the horizon of each point?
 pub(super) fn strengthen(spec: &Spec) -> bool {
-    spec.own_horizon.is_some()
+    spec.bonds.own_horizon.is_some()
         && spec
             .materials
             .iter()
@@ -65,7 +65,7 @@ fn possible(spec: &Spec) -> Result<(), BuildError> {
             "take lps, or leave own_horizon out",
         );
     }
-    let alike = match spec.influence {
+    let alike = match spec.bonds.influence {
         Influence::Constant => true,
         Influence::Inverse => !pmb,
         Influence::Conical | Influence::Gaussian | Influence::CubicSpline => false,
@@ -78,21 +78,21 @@ fn possible(spec: &Spec) -> Result<(), BuildError> {
             "leave influence out",
         );
     }
-    if !spec.volume_scaling {
+    if !spec.bonds.volume_scaling {
         return refused(
             "volume_scaling",
             "volumes fade at the horizon of a point: else its stiffness jumps wherever that passes another point",
             "leave volume_scaling out",
         );
     }
-    if spec.calibration != Calibration::Continuum {
+    if spec.bonds.calibration != Calibration::Continuum {
         return refused(
             "calibration",
             "the constants of points with horizons of their own are those of the continuum",
             "write calibration = \"continuum\"",
         );
     }
-    let scales = !matches!(spec.influence, Influence::Formula(_));
+    let scales = !matches!(spec.bonds.influence, Influence::Formula(_));
     let mut materials = spec.materials.iter();
     if let (Some(n), false) = (
         materials.position(|m| m.fracture.is_some_and(of_energy)),
@@ -113,7 +113,7 @@ pub(super) fn give<const D: usize>(
     body: &mut Body<D>,
     longest: f64,
 ) -> Result<(), BuildError> {
-    let Some(expression) = &spec.own_horizon else {
+    let Some(expression) = &spec.bonds.own_horizon else {
         return Ok(());
     };
     if !matches!(body.layout, Layout::Cloud(_)) {

@@ -71,13 +71,14 @@ pub(super) fn parts<'a, const D: usize>(
     };
     let (mut all, mut bodies) = (vec![], vec![]);
     for (n, piece) in pieces.iter().enumerate() {
-        let own = Spec {
+        let mut own = Spec {
             body: piece.body.clone(),
-            horizon: piece.horizon.unwrap_or(spec.horizon),
-            influence: piece.influence.unwrap_or(spec.influence),
-            family: piece.family.unwrap_or(spec.family),
             ..without.clone()
         };
+        let bonds = &mut own.bonds;
+        bonds.horizon = piece.horizon.unwrap_or(bonds.horizon);
+        bonds.influence = piece.influence.unwrap_or(bonds.influence);
+        bonds.family = piece.family.unwrap_or(bonds.family);
         let (part, body) = part(Cow::Owned(own), piece.bonded).map_err(|e| BuildError {
             path: e.path.replacen("body", &format!("body[{n}]"), 1),
             message: message![format!("body `{}`: ", piece.name), e.message],
@@ -128,7 +129,7 @@ impl Part<'_> {
         }
         let spec = self.spec.to_mut();
         spec.materials = used.iter().map(|m| spec.materials[*m].clone()).collect();
-        if let Some(contact) = &mut spec.contact
+        if let Some(contact) = &mut spec.interactions.contact
             && let ContactStiffness::Pairs(rows) = &mut contact.stiffness
             && rows.iter().all(|r| r.len() == rows.len())
         {
@@ -156,7 +157,7 @@ impl Part<'_> {
         let mut bulk = self.bulk;
         if bulk.is_none()
             && self.bonded
-            && spec.calibration == Calibration::Discrete
+            && spec.bonds.calibration == Calibration::Discrete
             && spec.materials.iter().any(from_modulus)
         {
             bulk = cloud_moments(spec, body, self.horizon, cell)?;
@@ -166,7 +167,8 @@ impl Part<'_> {
                 );
             }
         }
-        let continuum = || Moments::continuum(D, self.horizon, spec.section, spec.influence);
+        let continuum =
+            || Moments::continuum(D, self.horizon, spec.space.section, spec.bonds.influence);
         let bulk = Bulk {
             moments: bulk.unwrap_or_else(continuum),
             family: std::mem::take(&mut self.family),

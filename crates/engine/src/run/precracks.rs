@@ -22,6 +22,7 @@ pub(super) fn cut<const D: usize>(
             interaction.prepare(body);
         }
         for (n, crack) in spec
+            .damage
             .precracks
             .iter()
             .enumerate()

@@ -29,7 +29,9 @@ pub(super) fn bonds<const D: usize>(
 ) -> Result<f64, BuildError> {
     let lambda = match &body.layout {
         // no block has all the factors of a body, nor all its places
-        Layout::Grid(grid) if body.points() > LARGE && spec.bonds.is_empty() && !model.varies() => {
+        Layout::Grid(grid)
+            if body.points() > LARGE && spec.bonds.factors.is_empty() && !model.varies() =>
+        {
             let reach = model.stencil.as_ref().map_or(1, |s| s.reach);
             // in the plane and in space a block of many large families would cost more than the run
             let block = match D {
@@ -59,7 +61,7 @@ pub(super) fn bonds<const D: usize>(
                 periodic,
                 cell_volume.unwrap_or(1.0),
             )?;
-            let factors = match &spec.surface {
+            let factors = match &spec.bonds.surface {
                 None => None,
                 Some(all) => match surface::of_block(all, body, &block) {
                     Some(factors) => Some(factors),

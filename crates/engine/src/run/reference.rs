@@ -48,7 +48,10 @@ pub(super) fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
 /// Do the points talk to those that are near now?
 pub(super) fn current_neighbours(spec: &Spec) -> bool {
     spec.potential().is_some()
-        && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
+        && matches!(
+            spec.bonds.family,
+            FamilyChoice::Auto | FamilyChoice::Neighbours
+        )
 }
 
 /// Sums over a full family of the lattice, averaged over the sublattices; and this family.
@@ -71,7 +74,7 @@ fn bulk_family<const D: usize>(
     let mut family = vec![];
     for o in stencil.offsets.iter().flatten() {
         let r0 = grid.lattice.spacing * (o.squared as f64).sqrt() / 4.0;
-        let nu = if spec.volume_scaling {
+        let nu = if spec.bonds.volume_scaling {
             crate::family::volume_fraction(r0, horizon, cell)
         } else {
             1.0
@@ -80,7 +83,7 @@ fn bulk_family<const D: usize>(
         let xi: [f64; 3] = std::array::from_fn(|a| {
             0.25 * grid.lattice.spacing * edges[a] * f64::from(o.quarter[a])
         });
-        let omega = mean_influence(spec.influence, &xi, r0, horizon);
+        let omega = mean_influence(spec.bonds.influence, &xi, r0, horizon);
         let w = nu * omega * volume / stencil.offsets.len() as f64;
         sum.bare += nu * volume / stencil.offsets.len() as f64 * r0;
         sum.first += w * r0;
@@ -167,8 +170,8 @@ fn on_lattice<const D: usize>(
         ));
     }
     let (stencil, horizon) = stencil_of(spec, kind, spacing)?;
-    let periodic: [bool; D] = std::array::from_fn(|a| spec.periodic[a].is_some());
-    let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.section);
+    let periodic: [bool; D] = std::array::from_fn(|a| spec.space.periodic[a].is_some());
+    let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.space.section);
     let body = Body::<D>::on_lattice(lattice, quarters, stencil.reach, periodic, volume)?;
     periods_fit(spec, &body)?;
     let (bulk, family) = bulk_family::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
@@ -186,7 +189,7 @@ fn stencil_of(spec: &Spec, kind: LatticeKind, spacing: f64) -> Result<(Stencil, 
     let horizon = match current_neighbours(spec) {
         // only the lattice is wanted
         true => Horizon::Length(spacing * kind.nearest()),
-        false => spec.horizon,
+        false => spec.bonds.horizon,
     };
     Stencil::fits(kind, spacing, horizon)?;
     let stencil = Stencil::new(kind, spacing, horizon);
@@ -207,7 +210,7 @@ fn stencil_of(spec: &Spec, kind: LatticeKind, spacing: f64) -> Result<(Stencil, 
     if stencil.bonds() > MOST {
         return Err(too_many(
             stencil.bonds() as f64,
-            spec.horizon,
+            spec.bonds.horizon,
             horizon / spacing,
         ));
     }
@@ -217,7 +220,7 @@ fn stencil_of(spec: &Spec, kind: LatticeKind, spacing: f64) -> Result<(Stencil, 
 /// Are the periods that somebody gave those of the lattice?
 fn periods_fit<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildError> {
     for a in 0..D {
-        if let (Some(given), Some(p)) = (spec.periodic[a], body.period[a])
+        if let (Some(given), Some(p)) = (spec.space.periodic[a], body.period[a])
             && given > 0.0
             && (given - p).abs() > 1e-9 * p
         {
@@ -240,8 +243,11 @@ fn listed_if_asked<const D: usize>(
     spec: &Spec,
     r: Reference<D>,
 ) -> Result<Reference<D>, BuildError> {
-    let listed = matches!(spec.family, FamilyChoice::List | FamilyChoice::Reference);
-    let list = listed || !spec.pairs.is_empty();
+    let listed = matches!(
+        spec.bonds.family,
+        FamilyChoice::List | FamilyChoice::Reference
+    );
+    let list = listed || !spec.interactions.pairs.is_empty();
     if list || current_neighbours(spec) {
         Ok(Reference {
             body: r.body.to_cloud()?,
@@ -254,22 +260,23 @@ fn listed_if_asked<const D: usize>(
 }
 
 fn of_cloud<const D: usize>(spec: &Spec, cloud: &Cloud) -> Result<Reference<D>, BuildError> {
-    if spec.family == FamilyChoice::Stencil {
+    if spec.bonds.family == FamilyChoice::Stencil {
         return Err(BuildError::unsupported(
             "family",
             "a stencil needs a lattice body, this is a cloud of points",
         ));
     }
-    let mean = cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.section;
+    let mean =
+        cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.space.section;
     let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
-    let period = std::array::from_fn(|a| spec.periodic[a]);
+    let period = std::array::from_fn(|a| spec.space.periodic[a]);
     let body = Body::<D>::from_cloud(&cloud.position, &cloud.volume, &cloud.mark, spacing, period)?;
     Ok(Reference {
         body,
         stencil: None,
         bulk: None,
         family: vec![],
-        horizon: spec.horizon.length(spacing),
+        horizon: spec.bonds.horizon.length(spacing),
     })
 }
 

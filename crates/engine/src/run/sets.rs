@@ -300,7 +300,7 @@ pub(super) fn assign_materials<const D: usize>(
 /// There are no such points, or their sets do not cover them.
 pub fn materials_of(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildError> {
     possible(spec, None)?;
-    match spec.dimension {
+    match spec.space.dimension {
         1 => of_points::<1>(spec),
         2 => of_points::<2>(spec),
         _ => of_points::<3>(spec),
@@ -323,7 +323,7 @@ pub(super) fn initial<const D: usize>(
     names: &Names<D>,
     system: &mut System<D>,
 ) -> Result<(), BuildError> {
-    for (n, init) in spec.initial.iter().enumerate() {
+    for (n, init) in spec.loading.initial.iter().enumerate() {
         let members = system.body.slots_of(&init.set, &names.sets);
         let (slots, points) = members.map_err(|e| e.at(format!("initial[{n}].set")))?;
         if slots.is_empty() && names.carriers.is_some() {

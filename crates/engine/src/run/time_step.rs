@@ -68,29 +68,29 @@ pub(super) fn time_step(
     repulsion: Option<&Rules>,
     warnings: &mut Warnings,
 ) -> Result<f64, BuildError> {
-    let stepper = spec.schedule.stepper;
+    let stepper = spec.run.schedule.stepper;
     if stepper.rests() {
         // what spreads says how long a step may be
-        return match spec.schedule.time_step {
+        return match spec.run.schedule.time_step {
             TimeStep::Fixed(dt) => Ok(dt),
             TimeStep::Fraction(_) | TimeStep::Auto => Ok(1.0),
         };
     }
     let implicit = stepper.has_inertia() && stepper.solves();
-    if implicit && spec.schedule.time_step == TimeStep::Auto {
+    if implicit && spec.run.schedule.time_step == TimeStep::Auto {
         return Err(BuildError::missing(
             "schedule.time_step",
             "an implicit step is stable at any length: how long it is must be said",
         )
         .help("write time_step as a number, a thirtieth of the shortest period of interest, or { safety = 20 } for twenty explicit ones"));
     }
-    let fraction = match spec.schedule.time_step {
+    let fraction = match spec.run.schedule.time_step {
         TimeStep::Fixed(_) => None,
         TimeStep::Fraction(x) => Some(x),
         TimeStep::Auto if spec.potential().is_some() => Some(atoms::FRACTION),
         TimeStep::Auto => Some(SOLID_FRACTION),
     };
-    let dt = match (spec.schedule.time_step, fraction) {
+    let dt = match (spec.run.schedule.time_step, fraction) {
         (_, Some(x)) if limits.stable().is_finite() => x * limits.stable(),
         (TimeStep::Fraction(_) | TimeStep::Auto, _) if points == 1 => {
             return Err(BuildError::empty(
@@ -115,7 +115,7 @@ pub(super) fn time_step(
         ));
     }
     // a step that was chosen may be right where nothing ever touches
-    let chosen = matches!(spec.schedule.time_step, TimeStep::Fixed(_));
+    let chosen = matches!(spec.run.schedule.time_step, TimeStep::Fixed(_));
     let limit = if chosen { limits.bond } else { limits.stable() };
     if dt > limits.contact && dt <= limit && !implicit {
         let of = limits
@@ -144,7 +144,7 @@ pub(super) fn time_step(
             Dimension::TIME.of(limit),
             " of this body",
         ];
-        if !spec.schedule.force_unstable {
+        if !spec.run.schedule.force_unstable {
             return Err(
                 BuildError::invalid("schedule.time_step", message).help(message![
                     "write time_step = \"auto\", or ",

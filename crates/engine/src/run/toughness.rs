@@ -28,7 +28,7 @@ fn refused(spec: &Spec) -> Result<(), BuildError> {
             "one body breaks by the work on its bonds, another by their stretch: factors are of one of both",
         );
     }
-    for (n, t) in spec.toughness.iter().enumerate() {
+    for (n, t) in spec.damage.toughness.iter().enumerate() {
         if let ToughnessFactor::Temperature(rows) = &t.factor {
             let rises = rows.windows(2).all(|r| r[0][0] < r[1][0]);
             if rows.is_empty() || !rises || !rows.iter().all(|r| r[1] > 0.0 && r[1].is_finite()) {
@@ -37,7 +37,12 @@ fn refused(spec: &Spec) -> Result<(), BuildError> {
                     "factors of temperatures are rows [T, factor] with T rising and factors above 0",
                 ));
             }
-            if !spec.transfers.iter().any(|t| t.quantity == Quantity::Heat) {
+            if !spec
+                .interactions
+                .transfers
+                .iter()
+                .any(|t| t.quantity == Quantity::Heat)
+            {
                 return Err(BuildError::unsupported(
                     format!("toughness[{n}]"),
                     "this body has no temperature",
@@ -59,7 +64,7 @@ impl<const D: usize> System<D> {
         spec: &Spec,
         sets: &[(String, Vec<u32>)],
     ) -> Result<Option<ToughnessField>, BuildError> {
-        match spec.toughness.is_empty() {
+        match spec.damage.toughness.is_empty() {
             true if !own_horizons::strengthen(spec) => return Ok(None),
             true => {}
             false => refused(spec)?,
@@ -77,7 +82,7 @@ impl<const D: usize> System<D> {
             base[s as usize] = of.get(material).map_or(f64::INFINITY, |of| by * of);
         }
         let mut factors = vec![];
-        for (n, t) in spec.toughness.iter().enumerate() {
+        for (n, t) in spec.damage.toughness.iter().enumerate() {
             let (slots, _) = { self.body.slots_of(&t.set, sets) }
                 .map_err(|e| e.at(format!("toughness[{n}].set")))?;
             factors.push((slots, t.factor.clone()));

@@ -11,6 +11,12 @@ pub enum Horizon {
     Length(f64),
 }
 
+impl Default for Horizon {
+    fn default() -> Horizon {
+        Horizon::Ratio(1)
+    }
+}
+
 impl Horizon {
     /// δ (length) where points are `spacing` apart.
     pub fn length(self, spacing: f64) -> f64 {
@@ -21,18 +27,20 @@ impl Horizon {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Calibration {
     /// Constants from the integrals over the full ball (disk, segment) of radius δ.
     Continuum,
     /// Constants from the sums over a full family in the bulk of this very body.
+    #[default]
     Discrete,
 }
 
 /// Influence functions ω(ξ).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Influence {
     /// 1
+    #[default]
     Constant,
     /// 1/ξ
     Inverse,
@@ -122,8 +130,9 @@ impl Influence {
     ];
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FamilyChoice {
+    #[default]
     Auto,
     Stencil,
     List,

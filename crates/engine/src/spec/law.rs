@@ -175,9 +175,10 @@ impl Criterion {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum InterfaceRule {
     /// Harmonic mean: the two half bonds in series.
+    #[default]
     Series,
     /// Arithmetic mean: in parallel.
     Parallel,

@@ -1,6 +1,6 @@
 //! Steps: how many, how long, and what moves the state.
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Schedule {
     pub steps: u64,
     pub time_step: TimeStep,
@@ -290,12 +290,13 @@ pub enum Solver {
     ConjugateGradients,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum TimeStep {
     Fixed(f64),
     /// Fraction of the estimated stability limit.
     Fraction(f64),
     /// The engine chooses: 80 % of the limit for peridynamic points; for atoms a tenth of it (a thirtieth of the shortest
     /// period), and less where they are fast.
+    #[default]
     Auto,
 }

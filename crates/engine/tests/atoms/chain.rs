@@ -15,7 +15,7 @@ fn springs(points: usize, neighbours: u32) -> Spec {
         1.0,
         LawSpec::Springs(PmbStiffness::Young(1.0)),
     );
-    spec.horizon = Horizon::Ratio(neighbours);
+    spec.bonds.horizon = Horizon::Ratio(neighbours);
     spec
 }
 
@@ -34,9 +34,9 @@ fn a_wave_on_a_ring_of_springs_is_its_closed_form() {
         for k in [1, 7, 30] {
             let theta = std::f64::consts::TAU * f64::from(k) / n as f64;
             let mut spec = springs(n, m);
-            spec.periodic[0] = Some(n as f64);
+            spec.space.periodic[0] = Some(n as f64);
             let dt = 0.5;
-            spec.schedule.time_step = TimeStep::Fixed(dt);
+            spec.run.schedule.time_step = TimeStep::Fixed(dt);
             let mut sim = build(&spec, Options::default()).unwrap();
             let wave = |i: usize| (theta * i as f64).cos();
             sim.set_displacements(&(0..n).map(|i| [wave(i), 0.0, 0.0]).collect::<Vec<_>>());
@@ -66,7 +66,7 @@ fn springs_conserve_the_energy_of_the_scheme() {
     let n = 201;
     let mut spec = springs(n, 5);
     let dt = 0.9;
-    spec.schedule.time_step = TimeStep::Fixed(dt);
+    spec.run.schedule.time_step = TimeStep::Fixed(dt);
     let mut sim = build(&spec, Options::default()).unwrap();
     let u: Vec<_> = (0..n)
         .map(|i| [if (90..=110).contains(&i) { 1.0 } else { 0.0 }, 0.0, 0.0])
@@ -95,7 +95,7 @@ fn springs_conserve_the_energy_of_the_scheme() {
 fn springs_go_further_than_their_spacing() {
     let n = 401;
     let mut spec = springs(n, 20);
-    spec.schedule.time_step = TimeStep::Fixed(6.0);
+    spec.run.schedule.time_step = TimeStep::Fixed(6.0);
     let mut sim = build(&spec, Options::default()).unwrap();
     let u: Vec<_> = (0..n)
         .map(|i| [if (150..=250).contains(&i) { 50.0 } else { 0.0 }, 0.0, 0.0])
@@ -138,8 +138,8 @@ fn springs_are_pmb_where_nothing_turns_over() {
     let run = |law| {
         let mut spec = springs(64, 3);
         spec.materials[0].law = law;
-        spec.schedule.time_step = TimeStep::Fixed(0.5);
-        spec.initial = vec![InitialSpec {
+        spec.run.schedule.time_step = TimeStep::Fixed(0.5);
+        spec.loading.initial = vec![InitialSpec {
             set: "all".into(),
             displacement: [
                 Some(Expression::parse("0.3*exp(-((x-30)/4)^2)", &[]).unwrap()),
@@ -170,7 +170,7 @@ fn springs_are_pmb_where_nothing_turns_over() {
 fn springs_are_pmb_at_small_strains_in_the_plane() {
     let run = |law, scale: f64| {
         let mut spec = Spec::new(2, block(LatticeKind::Square, 1.0, 12), 1.0, law);
-        spec.horizon = Horizon::Ratio(3);
+        spec.bonds.horizon = Horizon::Ratio(3);
         let mut sim = build(&spec, Options::default()).unwrap();
         let mut noise = Noise(3);
         let u: Vec<_> = (0..144)
@@ -215,9 +215,9 @@ fn lj_chain(points: usize, spacing: f64, m: u32) -> Spec {
             1.0 / 72.0,
         )),
     );
-    spec.horizon = Horizon::Ratio(m);
-    spec.family = FamilyChoice::Stencil;
-    spec.schedule.time_step = TimeStep::Fixed(0.1);
+    spec.bonds.horizon = Horizon::Ratio(m);
+    spec.bonds.family = FamilyChoice::Stencil;
+    spec.run.schedule.time_step = TimeStep::Fixed(0.1);
     spec
 }
 
@@ -261,7 +261,7 @@ fn pressure_is_reported() {
 #[test]
 fn atoms_that_cross_stop_the_run_and_the_state_before_stays() {
     let mut spec = lj_chain(100, 1.0, 4);
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [None, None, None],
         velocity: [
@@ -270,7 +270,7 @@ fn atoms_that_cross_stop_the_run_and_the_state_before_stays() {
             None,
         ],
     }];
-    spec.schedule.force_unstable = true;
+    spec.run.schedule.force_unstable = true;
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let error = (0..200)
@@ -345,9 +345,9 @@ fn eam_chain(h: f64, points: usize, density_length: f64) -> Spec {
         63.546,
         LawSpec::Atoms(PotentialSpec::of(constants)),
     );
-    spec.horizon = Horizon::Ratio(5);
-    spec.family = FamilyChoice::Stencil;
-    spec.schedule.time_step = TimeStep::Fixed(0.2 * h);
+    spec.bonds.horizon = Horizon::Ratio(5);
+    spec.bonds.family = FamilyChoice::Stencil;
+    spec.run.schedule.time_step = TimeStep::Fixed(0.2 * h);
     spec
 }
 

@@ -170,12 +170,12 @@ fn energy_is_exchanged_and_does_not_drift() {
             let mut error = vec![];
             for halving in 0..2 {
                 let mut spec = atoms(LatticeKind::Fcc, 4, &potential, family, true);
-                spec.thermal = Some(ThermalSpec {
+                spec.loading.thermal = Some(ThermalSpec {
                     energy: Expression::constant(0.02),
                     seed: 3,
                 });
                 let dt = 4e-3 / (1 << halving) as f64;
-                spec.schedule.time_step = TimeStep::Fixed(dt);
+                spec.run.schedule.time_step = TimeStep::Fixed(dt);
                 let mut sim = build(&spec, Options::default()).unwrap();
                 sim.start(true);
                 let first = sim.ledger().unwrap();
@@ -234,11 +234,11 @@ fn all_instruction_sets_and_thread_counts_give_the_same_bits() {
         for (kind, cells) in KINDS {
             for family in [FamilyChoice::Stencil, FamilyChoice::Neighbours] {
                 let mut spec = atoms(kind, 2 * cells, &potential, family, true);
-                spec.thermal = Some(ThermalSpec {
+                spec.loading.thermal = Some(ThermalSpec {
                     energy: Expression::constant(0.3),
                     seed: 5,
                 });
-                spec.schedule.time_step = TimeStep::Fixed(2e-3);
+                spec.run.schedule.time_step = TimeStep::Fixed(2e-3);
                 let mut runs = vec![];
                 for simd in Simd::available() {
                     for threads in [1, 3] {
@@ -279,7 +279,7 @@ fn velocities_have_their_temperature_and_no_momentum() {
         FamilyChoice::Neighbours,
         true,
     );
-    spec.thermal = Some(ThermalSpec {
+    spec.loading.thermal = Some(ThermalSpec {
         energy: Expression::constant(0.7),
         seed: 11,
     });
@@ -296,7 +296,7 @@ fn velocities_have_their_temperature_and_no_momentum() {
     let s2 = v.iter().flatten().map(|v| v * v).sum::<f64>() / (3.0 * n);
     let s4 = v.iter().flatten().map(|v| v.powi(4)).sum::<f64>() / (3.0 * n);
     assert!((s4 / (s2 * s2) - 3.0).abs() < 0.6, "{}", s4 / (s2 * s2));
-    spec.thermal = Some(ThermalSpec {
+    spec.loading.thermal = Some(ThermalSpec {
         energy: Expression::constant(0.7),
         seed: 12,
     });

@@ -111,10 +111,10 @@ fn crystal(potential: &PotentialSpec, edge: f64, kinds: usize, cells: i32, perio
         }
     }
     if periodic {
-        spec.periodic = [Some(edge * f64::from(cells)); 3];
+        spec.space.periodic = [Some(edge * f64::from(cells)); 3];
     }
-    spec.schedule.time_step = TimeStep::Fixed(2e-3);
-    spec.schedule.force_unstable = true;
+    spec.run.schedule.time_step = TimeStep::Fixed(2e-3);
+    spec.run.schedule.force_unstable = true;
     spec
 }
 
@@ -242,7 +242,7 @@ fn all_instruction_sets_and_thread_counts_give_the_same_bits() {
     for (name, potential, edge, kinds) in fans() {
         // several blocks, and a path long enough for new lists
         let mut spec = crystal(&potential, edge, kinds, 4, true);
-        spec.thermal = Some(ThermalSpec {
+        spec.loading.thermal = Some(ThermalSpec {
             energy: Expression::constant(20.0),
             seed: 5,
         });
@@ -272,14 +272,14 @@ fn all_instruction_sets_and_thread_counts_give_the_same_bits() {
 fn energy_is_exchanged_and_does_not_drift() {
     for (name, potential, edge, kinds) in fans() {
         let mut spec = crystal(&potential, edge, kinds, 2, true);
-        spec.thermal = Some(ThermalSpec {
+        spec.loading.thermal = Some(ThermalSpec {
             energy: Expression::constant(0.05),
             seed: 5,
         });
         let mut drift = [0.0; 2];
         for (drift, halved) in drift.iter_mut().zip([false, true]) {
             let dt = if halved { 0.01 } else { 0.02 };
-            spec.schedule.time_step = TimeStep::Fixed(dt);
+            spec.run.schedule.time_step = TimeStep::Fixed(dt);
             let mut sim = build(&spec, Options::default()).unwrap();
             sim.start(true);
             let total = |sim: &mut dyn Simulation| {

@@ -41,7 +41,7 @@ fn mixed(own: &[PotentialSpec], potentials: Vec<ActingSpec>, mixing: Option<Mixi
     };
     let law = LawSpec::Atoms(own[0].clone());
     let mut spec = Spec::new(3, BodySpec::Cloud(cloud), 1.0, law);
-    spec.periodic = [Some(PERIOD); 3];
+    spec.space.periodic = [Some(PERIOD); 3];
     spec.materials.clear();
     for (n, potential) in own.iter().enumerate() {
         let name = format!("k{n}");
@@ -57,10 +57,10 @@ fn mixed(own: &[PotentialSpec], potentials: Vec<ActingSpec>, mixing: Option<Mixi
             fracture: None,
         });
     }
-    spec.potentials = potentials;
-    spec.mixing = mixing;
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
-    spec.schedule.force_unstable = true;
+    spec.interactions.potentials = potentials;
+    spec.interactions.mixing = mixing;
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.force_unstable = true;
     spec
 }
 
@@ -460,9 +460,9 @@ fn fixed(mut spec: Spec, kind: LatticeKind, which: &[&str]) -> Spec {
     for (set, text) in spec.sets.iter_mut().zip(which) {
         set.members = Members::Where(Expression::parse(text, &[]).unwrap());
     }
-    spec.horizon = Horizon::Ratio(2);
-    spec.family = FamilyChoice::Stencil;
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.bonds.horizon = Horizon::Ratio(2);
+    spec.bonds.family = FamilyChoice::Stencil;
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     spec
 }
 
@@ -489,8 +489,8 @@ fn fixed_neighbours_of_several_kinds() {
     ] {
         let spec = fixed(spec, LatticeKind::Cubic, &anyhow);
         let mut near = spec.clone();
-        near.family = FamilyChoice::Neighbours;
-        near.horizon = Horizon::Length(2.1);
+        near.bonds.family = FamilyChoice::Neighbours;
+        near.bonds.horizon = Horizon::Length(2.1);
         let (mut a, mut b) = (started(&spec), started(&near));
         assert_eq!(a.info().points as usize, CELLS.pow(3));
         let mut noise = Noise(3);

@@ -15,7 +15,7 @@ fn with_vacancy(mut spec: Spec) -> Spec {
     };
     let far = quarters.iter().flatten().fold(0, |m, q| (*q).max(m));
     let off = |q: &[i32; 3]| -> i32 {
-        let d = spec.dimension;
+        let d = spec.space.dimension;
         q[..d].iter().map(|q| (2 * q - far).pow(2)).sum()
     };
     let least = quarters.iter().map(off).min().unwrap();
@@ -50,7 +50,7 @@ fn check<const D: usize>(name: &str, spec: &Spec) {
         }
     }
     let rotation = body.soundness().rotation;
-    let turns = spec.periodic.iter().all(Option::is_none);
+    let turns = spec.space.periodic.iter().all(Option::is_none);
     assert!(
         !turns || rotation < 1e-9 && about_sites > 1e-6,
         "{name}: {rotation:e}, {about_sites:e}"
@@ -101,22 +101,22 @@ fn thirteen_atoms_become_an_icosahedron() {
         perturb: None,
     };
     let mut spec = Spec::new(3, body, 1.0, LawSpec::Atoms(lj.ended(10.0, End::Truncated)));
-    spec.horizon = Horizon::Length(10.0);
+    spec.bonds.horizon = Horizon::Length(10.0);
     let bent = |e: &str| Some(Expression::parse(e, &[]).unwrap());
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [bent("0.02*y*z"), bent("0.03*sin(3*x)*z"), bent("0.01*x")],
         velocity: [None, None, None],
     }];
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Fire,
         tolerance: 1e-8,
         ..Statics::default()
     });
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
-    spec.schedule.steps = 1;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.steps = 1;
     for family in [FamilyChoice::Neighbours, FamilyChoice::Reference] {
-        spec.family = family;
+        spec.bonds.family = family;
         let mut model = build(&spec, Options::default()).unwrap();
         assert_eq!(model.info().points, 13);
         model.start(true);

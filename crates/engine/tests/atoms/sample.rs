@@ -157,15 +157,15 @@ pub fn atoms(
         LawSpec::Atoms(potential.clone()),
     );
     let a = 1.02 / kind.nearest();
-    spec.family = family;
+    spec.bonds.family = family;
     // neighbours of the lattice that the cut-off leaves, and some more
-    spec.horizon = Horizon::Length(2.3);
+    spec.bonds.horizon = Horizon::Length(2.3);
     if periodic {
-        spec.periodic =
+        spec.space.periodic =
             std::array::from_fn(|x| (x < d).then_some(a * kind.edges()[x] * cells as f64));
     }
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
-    spec.schedule.force_unstable = true;
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.force_unstable = true;
     spec
 }
 

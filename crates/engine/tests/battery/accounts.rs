@@ -130,8 +130,8 @@ fn the_ledger_of_intact_bodies_closes_to_second_order() {
                 let residual = |n: usize| {
                     let mut spec = case.spec();
                     ends(&mut spec, place.cells[0]);
-                    spec.conditions = conditions.clone();
-                    spec.schedule.time_step = TimeStep::Fixed(4.0 / n as f64);
+                    spec.loading.conditions = conditions.clone();
+                    spec.run.schedule.time_step = TimeStep::Fixed(4.0 / n as f64);
                     let mut sim = made(&spec);
                     sim.start(true);
                     let mut worst: f64 = 0.0;
@@ -183,10 +183,10 @@ fn the_ledger_of_breaking_bodies_closes() {
                 let place = block(kind);
                 let case = Case::of(name, place);
                 let mut spec = case.spec();
-                spec.family = family;
-                spec.release = release;
+                spec.bonds.family = family;
+                spec.damage.release = release;
                 ends(&mut spec, place.cells[0]);
-                spec.conditions = vec![
+                spec.loading.conditions = vec![
                     on(
                         "low",
                         ConditionKind::Velocity([Some(e("-0.2")), None, None]),
@@ -196,9 +196,9 @@ fn the_ledger_of_breaking_bodies_closes() {
                         ConditionKind::Velocity([Some(e("0.2")), None, None]),
                     ),
                 ];
-                spec.contact = Some(CONTACT);
+                spec.interactions.contact = Some(CONTACT);
                 breaking(&mut spec, 0.05);
-                spec.schedule.time_step = TimeStep::Fixed(0.005);
+                spec.run.schedule.time_step = TimeStep::Fixed(0.005);
                 let mut sim = made(&spec);
                 sim.start(true);
                 steps(sim.as_mut(), 800);
@@ -246,16 +246,16 @@ fn what_breaking_bodies_lose_is_of_second_order() {
                 let residual = |n: usize| {
                     let mut spec = case.spec();
                     if periodic {
-                        spec.periodic[1] = case.periodic().periodic[1];
+                        spec.space.periodic[1] = case.periodic().space.periodic[1];
                     }
-                    spec.family = family;
-                    spec.release = release;
+                    spec.bonds.family = family;
+                    spec.damage.release = release;
                     ends(&mut spec, place.cells[0]);
-                    spec.conditions = [("low", "-0.2"), ("high", "0.2")]
+                    spec.loading.conditions = [("low", "-0.2"), ("high", "0.2")]
                         .map(|(set, v)| on(set, ConditionKind::Velocity([Some(e(v)), None, None])))
                         .to_vec();
                     breaking(&mut spec, 0.05);
-                    spec.schedule.time_step = TimeStep::Fixed(4.0 / n as f64);
+                    spec.run.schedule.time_step = TimeStep::Fixed(4.0 / n as f64);
                     let mut sim = made(&spec);
                     sim.start(true);
                     steps(sim.as_mut(), n);
@@ -290,7 +290,7 @@ fn a_thrown_mass_gives_what_it_loses() {
             let mut spec = Case::of(name, place).spec();
             let (mass, v0) = (0.02, -0.4);
             let top = (place.cells[1] as f64 - 1.0) * H;
-            spec.indenters = vec![IndenterSpec::sphere(
+            spec.loading.indenters = vec![IndenterSpec::sphere(
                 40.0,
                 1.5 * H,
                 IndenterMotion::Free(FreeSpec::new(
@@ -299,7 +299,7 @@ fn a_thrown_mass_gives_what_it_loses() {
                     [0.0, v0, 0.0],
                 )),
             )];
-            spec.schedule.time_step = TimeStep::Fixed(0.01);
+            spec.run.schedule.time_step = TimeStep::Fixed(0.01);
             let mut sim = made(&spec);
             sim.start(true);
             steps(sim.as_mut(), 300);
@@ -348,7 +348,7 @@ fn momentum(sim: &mut dyn Simulation) -> [f64; 3] {
 fn a_free_fall_is_a_parabola() {
     for case in cases() {
         let mut spec = case.spec();
-        spec.conditions = vec![on(
+        spec.loading.conditions = vec![on(
             "all",
             ConditionKind::BodyForce([Some(e("0.003")), None, None]),
         )];

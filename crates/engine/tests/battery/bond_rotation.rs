@@ -175,7 +175,7 @@ fn a_turning_body_keeps_its_momenta_and_energy() {
         let mut drift = vec![];
         for fraction in [0.4, 0.2] {
             let mut spec = case.spec();
-            spec.schedule.time_step = TimeStep::Fraction(fraction);
+            spec.run.schedule.time_step = TimeStep::Fraction(fraction);
             let mut sim = made(&spec);
             let x = sim.vectors("reference");
             let (volume, density) = (sim.scalars("volume"), RHO);

@@ -83,7 +83,7 @@ fn isotropic(d: usize, strain: f64) -> [[f64; 3]; 3] {
 fn ratio(spec: &Spec, law: &LawSpec, strain: [[f64; 3]; 3]) -> (f64, f64) {
     let sim = at_rest(spec);
     let w = sim.energy_under_strain(strain);
-    let expected = density(lame(law, spec.dimension, spec.plane), &strain);
+    let expected = density(lame(law, spec.space.dimension, spec.space.plane), &strain);
     w.iter().fold((f64::INFINITY, 0.0), |(a, b), w| {
         (f64::min(a, w / expected), f64::max(b, w / expected))
     })
@@ -226,7 +226,7 @@ fn homogeneous_strain_of_periodic_clouds_is_that_of_lattices() {
             [0.0, 0.003, 0.005],
         ];
         let lattice = at_rest(&spec).energy_under_strain(strain);
-        spec.family = FamilyChoice::List;
+        spec.bonds.family = FamilyChoice::List;
         let list = at_rest(&spec).energy_under_strain(strain);
         let top = lattice.iter().fold(0.0f64, |m, w| m.max(*w));
         for (a, b) in lattice.iter().zip(&list) {
@@ -247,7 +247,13 @@ fn perturbed_lattices_have_the_constants_of_their_lattice() {
             origin: [0.0; 3],
             region: Region::Block {
                 low: [0.0; 3],
-                high: std::array::from_fn(|a| if a < spec.dimension { 4.0 * H } else { 0.0 }),
+                high: std::array::from_fn(|a| {
+                    if a < spec.space.dimension {
+                        4.0 * H
+                    } else {
+                        0.0
+                    }
+                }),
             },
             perturb: Some(Perturbation {
                 amplitude: 0.05 * H * place.kind.nearest(),
@@ -255,7 +261,7 @@ fn perturbed_lattices_have_the_constants_of_their_lattice() {
             }),
         };
         let perturbed = at_rest(&spec).info().micromodulus.clone();
-        spec.calibration = Calibration::Continuum;
+        spec.bonds.calibration = Calibration::Continuum;
         let continuum = at_rest(&spec).info().micromodulus.clone();
         assert!(
             (perturbed[0] / c[0] - 1.0).abs() < 1e-14,
@@ -289,7 +295,7 @@ fn continuum_constants_converge_with_the_family() {
                     };
                 let case = Case::of(name, place);
                 let mut spec = case.periodic();
-                spec.calibration = Calibration::Continuum;
+                spec.bonds.calibration = Calibration::Continuum;
                 let law = &case.material.laws[0];
                 (ratio(&spec, law, isotropic(case.d(), 1e-3)).1 - 1.0).abs()
             };
@@ -328,9 +334,9 @@ fn a_cloud_says_that_its_constants_are_those_of_the_continuum() {
             .any(|w| w.contains("those of the continuum"))
     };
     assert!(warned(&spec));
-    spec.calibration = Calibration::Continuum;
+    spec.bonds.calibration = Calibration::Continuum;
     assert!(!warned(&spec));
-    spec.calibration = Calibration::Discrete;
+    spec.bonds.calibration = Calibration::Discrete;
     spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
     assert!(!warned(&spec));
 }
@@ -364,14 +370,14 @@ fn a_cloud_is_calibrated_to_the_families_it_has() {
             .into_iter()
             .find(|c| c.d() == d && c.material.name == "pmb");
         let mut spec = case.expect("a bond-based case").spec();
-        spec.horizon = Horizon::Length(2.2);
-        spec.influence = Influence::Constant;
+        spec.bonds.horizon = Horizon::Length(2.2);
+        spec.bonds.influence = Influence::Constant;
         spec.sets.clear();
         spec.materials.truncate(1);
         spec.materials[0].set = "all".into();
         spec.materials[0].law = law.clone();
         spec.body = BodySpec::Cloud(Cloud {
-            volume: vec![spec.section; position.len()],
+            volume: vec![spec.space.section; position.len()],
             position: position.clone(),
             spacing: Some(1.0),
             ..Cloud::default()
@@ -379,12 +385,12 @@ fn a_cloud_is_calibrated_to_the_families_it_has() {
         let inside = |x: &[f64; 3]| (0..d).all(|a| (3.0..=side as f64 - 4.0).contains(&x[a]));
         let mean = |calibration: Calibration| {
             let mut spec = spec.clone();
-            spec.calibration = calibration;
+            spec.bonds.calibration = calibration;
             let sim = at_rest(&spec);
             assert!(sim.info().warnings.iter().all(|w| !w.contains("continuum")));
             let strain = isotropic(d, SMALL);
             let w = sim.energy_under_strain(strain);
-            let expected = density(lame(&law, d, spec.plane), &strain);
+            let expected = density(lame(&law, d, spec.space.plane), &strain);
             let bulk = w.iter().zip(&position).filter(|(_, x)| inside(x));
             let (sum, count) = bulk.fold((0.0, 0), |(s, n), (w, _)| (s + w / expected, n + 1));
             sum / count as f64

@@ -36,13 +36,13 @@ fn a_body_cut_in_two_has_two_fragments_and_damage_where_bonds_broke() {
     for case in cases() {
         for family in [FamilyChoice::Stencil, FamilyChoice::List] {
             let mut spec = case.spec();
-            spec.family = family;
+            spec.bonds.family = family;
             let sim = at_rest(&spec);
             assert_eq!(sim.fragments(), 1, "{}", case.name());
             let (whole, reach) = (sim.info().directed_bonds, sim.info().horizon);
             let x = (case.place.cells[0] as f64 * 0.5 - 0.3) * H;
             for kind in [CrackKind::Broken, CrackKind::Absent] {
-                spec.precracks = vec![PrecrackSpec {
+                spec.damage.precracks = vec![PrecrackSpec {
                     shape: through(case.d(), x),
                     kind,
                 }];
@@ -91,7 +91,7 @@ fn damage_is_the_fraction_of_lost_bonds() {
         cells: [6, 1, 1],
     };
     let mut spec = Case::of("pmb", place).spec();
-    spec.precracks = vec![PrecrackSpec {
+    spec.damage.precracks = vec![PrecrackSpec {
         shape: through(1, 2.5 * H),
         kind: CrackKind::Broken,
     }];
@@ -113,7 +113,7 @@ fn a_body_cut_by_an_absent_crack_is_two_bodies() {
         let cells = case.place.cells[0];
         let cut_at = cells / 2;
         let mut spec = case.spec();
-        spec.precracks = vec![PrecrackSpec {
+        spec.damage.precracks = vec![PrecrackSpec {
             shape: through(case.d(), (cut_at as f64 - 0.5) * H),
             kind: CrackKind::Absent,
         }];
@@ -149,9 +149,9 @@ fn cracks_on_periodic_faces_cut_both_directions() {
                 let mut cuts = vec![];
                 for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                     let mut spec = case.periodic();
-                    spec.family = family;
-                    let period = spec.periodic[0].unwrap();
-                    spec.precracks = vec![PrecrackSpec {
+                    spec.bonds.family = family;
+                    let period = spec.space.periodic[0].unwrap();
+                    spec.damage.precracks = vec![PrecrackSpec {
                         shape: through(case.d(), face * period + x),
                         kind: CrackKind::Broken,
                     }];
@@ -279,9 +279,9 @@ fn a_bond_lets_go_at_once_or_after_its_force() {
                     cells: [2, 1, 1],
                 };
                 let mut spec = Case::of(name, place).spec();
-                (spec.family, spec.release) = (family, release);
+                (spec.bonds.family, spec.damage.release) = (family, release);
                 breaking(&mut spec, 0.05);
-                spec.schedule.time_step = TimeStep::Fixed(0.01);
+                spec.run.schedule.time_step = TimeStep::Fixed(0.01);
                 let mut sim = made(&spec);
                 sim.set_velocities(&[[-0.4, 0.0, 0.0], [0.4, 0.0, 0.0]]);
                 sim.start(true);

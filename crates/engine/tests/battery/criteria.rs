@@ -32,20 +32,20 @@ fn block(d: usize, cells: [usize; 3], law: LawSpec) -> Spec {
         perturb: None,
     };
     let mut spec = Spec::new(d, body, 1.0, law);
-    spec.horizon = Horizon::Ratio(3);
+    spec.bonds.horizon = Horizon::Ratio(3);
     spec
 }
 
 /// All points move as these expressions say.
 fn driven(spec: &mut Spec, velocity: [&str; 3]) {
-    let d = spec.dimension;
+    let d = spec.space.dimension;
     let all: [_; 3] = std::array::from_fn(|a| (a < d).then(|| e(velocity[a])));
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [None, None, None],
         velocity: all.clone(),
     }];
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Velocity(all),
     }];
@@ -59,8 +59,8 @@ fn two_points(law: LawSpec) -> Spec {
         ..Cloud::default()
     });
     let mut spec = Spec::new(1, body, 1.0, law);
-    spec.horizon = Horizon::Length(1.5);
-    spec.calibration = Calibration::Continuum;
+    spec.bonds.horizon = Horizon::Length(1.5);
+    spec.bonds.calibration = Calibration::Continuum;
     spec
 }
 
@@ -80,12 +80,12 @@ fn the_solid_that_remembers_is_lps() {
                     law => panic!("{law:?}"),
                 };
             }
-            spec.initial = vec![InitialSpec {
+            spec.loading.initial = vec![InitialSpec {
                 set: "all".into(),
                 displacement: [None, None, None],
                 velocity: [Some(e("0.15*x + 0.05*sin(9*x)")), None, None],
             }];
-            spec.schedule.time_step = TimeStep::Fraction(0.5);
+            spec.run.schedule.time_step = TimeStep::Fraction(0.5);
             let mut sim = started(&spec);
             for _ in 0..40 {
                 sim.step().unwrap();
@@ -119,15 +119,15 @@ fn the_work_on_bonds_is_what_they_store_and_dissipate() {
         }
         let miss = |part: f64| {
             let mut spec = spec.clone();
-            spec.volume_scaling = false;
-            spec.contact = None;
+            spec.bonds.volume_scaling = false;
+            spec.interactions.contact = None;
             spec.materials[0].fracture = fracture(Criterion::BondEnergy(1e9));
-            spec.initial = vec![InitialSpec {
+            spec.loading.initial = vec![InitialSpec {
                 set: "all".into(),
                 displacement: [None, None, None],
                 velocity: [Some(e("0.1*sin(3*x + 2*y + z)")), None, None],
             }];
-            spec.schedule.time_step = TimeStep::Fraction(part);
+            spec.run.schedule.time_step = TimeStep::Fraction(part);
             let mut sim = started(&spec);
             let steps = (8.0 / part) as usize;
             for _ in 0..steps {
@@ -169,7 +169,7 @@ fn a_bond_breaks_at_its_work() {
         let mut spec = two_points(law);
         spec.materials[0].fracture = fracture(Criterion::BondEnergy(energy));
         driven(&mut spec, ["x > 0.5 ? 1e-4 : 0", "0", "0"]);
-        spec.schedule.time_step = TimeStep::Fixed(1e-1);
+        spec.run.schedule.time_step = TimeStep::Fixed(1e-1);
         let mut sim = started(&spec);
         while sim.broken() == 0 {
             sim.step().unwrap();
@@ -212,8 +212,8 @@ fn the_work_is_twice_the_bond_energy_of_perilab() {
         });
         let solid = |bulk: f64, shear: f64| LawSpec::Lps(Moduli::from_bulk_shear(bulk, shear));
         let mut spec = Spec::new(3, body, 2.7e-9, solid(2500.0, 1150.0));
-        spec.horizon = Horizon::Length(2.1);
-        spec.calibration = Calibration::Continuum;
+        spec.bonds.horizon = Horizon::Length(2.1);
+        spec.bonds.calibration = Calibration::Continuum;
         for (name, x) in [("left", -1.5), ("right", 0.5)] {
             spec.sets.push(SetSpec {
                 name: name.into(),
@@ -224,7 +224,7 @@ fn the_work_is_twice_the_bond_energy_of_perilab() {
             });
             let u = if name == "left" { moved } else { 0.0 };
             let all = [Some(e(&format!("{u}"))), Some(e("0")), Some(e("0"))];
-            spec.conditions.push(ConditionSpec {
+            spec.loading.conditions.push(ConditionSpec {
                 set: name.into(),
                 kind: ConditionKind::Displacement(all),
             });
@@ -237,8 +237,8 @@ fn the_work_is_twice_the_bond_energy_of_perilab() {
         for m in &mut spec.materials {
             m.fracture = fracture(Criterion::BondEnergy(0.2));
         }
-        spec.schedule.time_step = TimeStep::Fixed(5e-6);
-        spec.schedule.force_unstable = true;
+        spec.run.schedule.time_step = TimeStep::Fixed(5e-6);
+        spec.run.schedule.force_unstable = true;
         let mut sim = started(&spec);
         let work = sim.scalars("bond_work");
         for w in work {
@@ -265,15 +265,15 @@ fn a_crack_takes_its_energy() {
         for law in [LawSpec::Pmb(PmbStiffness::Young(3.0)), LawSpec::Lps(solid)] {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 let mut spec = block(d, cells, law.clone());
-                spec.family = family;
+                spec.bonds.family = family;
                 // across the crack the body goes on
                 for a in 1..d {
-                    spec.periodic[a] = Some(cells[a] as f64);
+                    spec.space.periodic[a] = Some(cells[a] as f64);
                 }
                 spec.materials[0].fracture = fracture(Criterion::BondEnergy(energy));
                 let speed = format!("x > {middle} ? 5e-4 : 0");
                 driven(&mut spec, [&speed, "0", "0"]);
-                spec.schedule.time_step = TimeStep::Fixed(0.2);
+                spec.run.schedule.time_step = TimeStep::Fixed(0.2);
                 let mut sim = started(&spec);
                 while sim.time() < 200.0 {
                     sim.step().unwrap();
@@ -305,7 +305,7 @@ fn a_body_breaks_at_its_von_mises_stress() {
                 .extend([word("stress", "linear"), word("gradient", gradient)]);
             let law = LawSpec::named("correspondence", parameters);
             let mut spec = block(d, [7, 6, if d == 3 { 5 } else { 1 }], law);
-            spec.plane = plane;
+            spec.space.plane = plane;
             let strain = 1e-4;
             let per_strain = match (d, plane) {
                 (2, Plane::Stress) => young / (1.0 - nu * nu) * (1.0 - nu + nu * nu).sqrt(),
@@ -314,8 +314,8 @@ fn a_body_breaks_at_its_von_mises_stress() {
             let limit = per_strain * strain;
             spec.materials[0].fracture = fracture(Criterion::VonMises(limit));
             driven(&mut spec, ["1e-5*x", "0", "0"]);
-            spec.schedule.time_step = TimeStep::Fixed(0.02);
-            spec.schedule.force_unstable = true;
+            spec.run.schedule.time_step = TimeStep::Fixed(0.02);
+            spec.run.schedule.force_unstable = true;
             let mut sim = started(&spec);
             while sim.broken() == 0 {
                 sim.step().unwrap();
@@ -338,12 +338,12 @@ fn a_body_breaks_at_its_plastic_strain() {
     for name in ["elastic_plastic", "hypoelastic_plastic"] {
         let law = LawSpec::named(name, Parameters::numbers(&elastic));
         let mut spec = block(3, [6, 6, 6], law);
-        spec.influence = Influence::Inverse;
+        spec.bonds.influence = Influence::Inverse;
         let limit = 0.02;
         spec.materials[0].fracture = fracture(Criterion::PlasticStrain(limit));
         driven(&mut spec, ["1e-3*x", "-5e-4*y", "-5e-4*z"]);
-        spec.schedule.time_step = TimeStep::Fixed(0.2);
-        spec.schedule.force_unstable = true;
+        spec.run.schedule.time_step = TimeStep::Fixed(0.2);
+        spec.run.schedule.force_unstable = true;
         let mut sim = started(&spec);
         let mut before = 0.0;
         while sim.broken() == 0 {
@@ -388,8 +388,8 @@ fn fast_bonds_bear_more() {
             });
             driven(&mut spec, [&format!("x > 0.5 ? {speed} : 0"), "0", "0"]);
             let step = 1e-3 * s0 / speed;
-            spec.schedule.time_step = TimeStep::Fixed(step);
-            spec.schedule.force_unstable = true;
+            spec.run.schedule.time_step = TimeStep::Fixed(step);
+            spec.run.schedule.force_unstable = true;
             let mut sim = started(&spec);
             while sim.broken() == 0 {
                 sim.step().unwrap();
@@ -415,20 +415,20 @@ fn warm_bonds_bear_less() {
             Criterion::BondEnergy(_) => fracture(Criterion::BondEnergy(0.5 * 0.02 * 0.02)),
             other => fracture(other),
         };
-        spec.initial = vec![InitialSpec {
+        spec.loading.initial = vec![InitialSpec {
             set: "all".into(),
             displacement: [Some(e("0.015*x")), None, None],
             velocity: [None, None, None],
         }];
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: "all".into(),
             kind: ConditionKind::Displacement([Some(e("0.015*x")), None, None]),
         }];
-        spec.toughness = vec![ToughnessSpec {
+        spec.damage.toughness = vec![ToughnessSpec {
             set: "all".into(),
             factor: ToughnessFactor::Temperature(vec![[0.0, 1.0], [10.0, 1.0], [20.0, 0.5]]),
         }];
-        spec.transfers = vec![TransferSpec {
+        spec.interactions.transfers = vec![TransferSpec {
             quantity: Quantity::Heat,
             method: TransferMethod::Explicit { safety: 0.9 },
             reference: 0.0,
@@ -445,7 +445,7 @@ fn warm_bonds_bear_less() {
                 kind: TransferKind::Value(e("t")),
             }],
         }];
-        spec.schedule.time_step = TimeStep::Fixed(0.05);
+        spec.run.schedule.time_step = TimeStep::Fixed(0.05);
         let mut sim = started(&spec);
         while sim.broken() == 0 {
             sim.step().unwrap();
@@ -483,14 +483,14 @@ fn a_bar_lasts_as_its_line_says() {
                     high: [high, 1.0, 1.0],
                 }),
             });
-            spec.conditions.push(ConditionSpec {
+            spec.loading.conditions.push(ConditionSpec {
                 set: name.into(),
                 kind: ConditionKind::Displacement([Some(e(&format!("{strain}*x"))), None, None]),
             });
         }
-        spec.schedule.steps = increments;
-        spec.schedule.time_step = TimeStep::Fixed(1.0);
-        spec.schedule.stepper = Stepper::Statics(Statics {
+        spec.run.schedule.steps = increments;
+        spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
             method: Method::Newton,
             cycles: Some(Cycles {
                 load_ratio: ratio,
@@ -539,7 +539,7 @@ fn criteria_have_the_same_bits_on_any_number_of_threads() {
                 poisson: 0.3,
             };
             let mut spec = block(2, [24, 16, 1], LawSpec::Lps(solid));
-            spec.influence = Influence::Inverse;
+            spec.bonds.influence = Influence::Inverse;
             spec.materials[0].fracture = Some(FractureSpec {
                 rate: matches!(criterion, Criterion::Stretch(_)).then_some(RateSpec {
                     coefficient: 0.1,
@@ -547,12 +547,12 @@ fn criteria_have_the_same_bits_on_any_number_of_threads() {
                 }),
                 ..FractureSpec::new(criterion)
             });
-            spec.initial = vec![InitialSpec {
+            spec.loading.initial = vec![InitialSpec {
                 set: "all".into(),
                 displacement: [None, None, None],
                 velocity: [Some(e("0.01*(x - 12) + 0.02*sin(5*y)")), None, None],
             }];
-            spec.schedule.time_step = TimeStep::Fraction(0.5);
+            spec.run.schedule.time_step = TimeStep::Fraction(0.5);
             let mut sim = started(&spec);
             for _ in 0..60 {
                 sim.step().unwrap();
@@ -602,7 +602,7 @@ fn criteria_that_mean_nothing_are_refused() {
     assert_eq!(path, "materials[0].fracture.fatigue");
     assert!(message.contains("cycles"), "{message}");
     let (path, _) = said(&|s: &mut Spec| {
-        s.schedule.stepper = Stepper::Statics(Statics {
+        s.run.schedule.stepper = Stepper::Statics(Statics {
             method: Method::Newton,
             cycles: Some(Cycles {
                 load_ratio: 0.0,
@@ -623,7 +623,7 @@ fn criteria_that_mean_nothing_are_refused() {
     assert_eq!(path, "materials[0].law");
     let (path, message) = said(&|s: &mut Spec| {
         s.materials[0].fracture = Some(FractureSpec::new(Criterion::VonMises(1.0)));
-        s.toughness = vec![ToughnessSpec {
+        s.damage.toughness = vec![ToughnessSpec {
             set: "all".into(),
             factor: ToughnessFactor::Stretch(e("2")),
         }];
@@ -632,7 +632,7 @@ fn criteria_that_mean_nothing_are_refused() {
     assert!(message.contains("no factors"), "{message}");
     let (path, message) = said(&|s: &mut Spec| {
         s.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(1.0)));
-        s.toughness = vec![ToughnessSpec {
+        s.damage.toughness = vec![ToughnessSpec {
             set: "all".into(),
             factor: ToughnessFactor::Temperature(vec![[0.0, 1.0]]),
         }];

@@ -20,9 +20,9 @@ fn a_stencil_is_a_list() {
         for family in [FamilyChoice::Stencil, FamilyChoice::List] {
             let mut spec = case.spec();
             breaking(&mut spec, 0.03);
-            spec.contact = Some(CONTACT);
-            spec.family = family;
-            spec.schedule.time_step = TimeStep::Fixed(0.05 * H);
+            spec.interactions.contact = Some(CONTACT);
+            spec.bonds.family = family;
+            spec.run.schedule.time_step = TimeStep::Fixed(0.05 * H);
             let mut sim = made(&spec);
             let v = Random(13).vectors(sim.vectors("reference").len(), case.d(), 0.15);
             sim.set_velocities(&v);
@@ -93,10 +93,10 @@ fn lps_is_pmb_where_poissons_ratio_is_that_of_bonds() {
         };
         let young = 3.0;
         let mut spec = Case::of("pmb", place).periodic();
-        let d = spec.dimension;
+        let d = spec.space.dimension;
         let mut pmb = at_rest(&spec);
         spec.materials[0].law = LawSpec::Lps(Moduli { young, poisson });
-        spec.influence = Influence::Inverse;
+        spec.bonds.influence = Influence::Inverse;
         let mut lps = at_rest(&spec);
         let n = pmb.vectors("reference").len();
         let u = Random(17).vectors(n, d, 0.1 * H);
@@ -124,7 +124,7 @@ fn thermoelastic_and_position_aware_solids_are_lps() {
     for place in places() {
         let (young, poisson) = (3.0, 0.3);
         let mut spec = Case::of("lps", place).spec();
-        let (d, triangular) = (spec.dimension, place.kind == LatticeKind::Triangular);
+        let (d, triangular) = (spec.space.dimension, place.kind == LatticeKind::Triangular);
         let elastic = Parameters::numbers(&[("young", young), ("poisson", poisson)]);
         spec.materials[0].law = LawSpec::Lps(Moduli { young, poisson });
         let mut known = at_rest(&spec);
@@ -193,7 +193,7 @@ fn two_equal_materials_are_one() {
             let law = Case::of(name, place).material.laws[0].clone();
             spec.materials.iter_mut().for_each(|m| m.law = law.clone());
             let mut one = Case::of(name, place).spec();
-            one.influence = spec.influence;
+            one.bonds.influence = spec.bonds.influence;
             let (mut a, mut b) = (at_rest(&spec), at_rest(&one));
             let u = Random(23).vectors(a.vectors("reference").len(), case.d(), 0.1 * H);
             let (f, g) = (a.forces_under(&u), b.forces_under(&u));
@@ -217,7 +217,7 @@ fn interface_bonds_follow_their_rule() {
         (InterfaceRule::Minimum, 1.0),
     ] {
         let mut spec = Case::of("pmb mixed", place).spec();
-        spec.interface = rule;
+        spec.interactions.interface = rule;
         let mut sim = at_rest(&spec);
         // open the bond at the interface only, then one within the stiffer half
         let open = |at: usize| -> Vec<[f64; 3]> {
@@ -266,11 +266,11 @@ fn solids_that_do_not_flow_are_linear() {
             let mut sim = at_rest(&spec);
             let n = sim.vectors("reference").len();
             let mut random = Random(7);
-            sim.set_displacements(&random.vectors(n, spec.dimension, 0.12 * H));
+            sim.set_displacements(&random.vectors(n, spec.space.dimension, 0.12 * H));
             sim.start(true);
             sim.start(true);
             assert!(sim.broken() > 0);
-            let u = random.vectors(n, spec.dimension, 0.12 * H);
+            let u = random.vectors(n, spec.space.dimension, 0.12 * H);
             sim.set_displacements(&u);
             let mut scalars = sim.scalars("dilatation");
             scalars.extend(sim.scalars("energy_density"));

@@ -8,7 +8,7 @@ use peridyne::space::region::Region;
 use peridyne::spec::*;
 
 fn heals(spec: &mut Spec, below: &str) {
-    spec.healing = Some(HealingSpec {
+    spec.damage.healing = Some(HealingSpec {
         set: "all".into(),
         below: Expression::parse(below, &[]).unwrap(),
     });
@@ -43,11 +43,11 @@ fn plate(law: LawSpec, family: FamilyChoice, cut: bool) -> Spec {
         perturb: None,
     };
     let mut spec = Spec::new(2, body, 1.0, law);
-    spec.family = family;
-    spec.horizon = Horizon::Ratio(3);
-    spec.periodic[1] = Some(7.0);
+    spec.bonds.family = family;
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.space.periodic[1] = Some(7.0);
     if cut {
-        spec.precracks = vec![PrecrackSpec {
+        spec.damage.precracks = vec![PrecrackSpec {
             shape: CrackShape::Segment {
                 from: [7.0, -1.0, 0.0],
                 to: [7.0, 8.0, 0.0],
@@ -55,12 +55,12 @@ fn plate(law: LawSpec, family: FamilyChoice, cut: bool) -> Spec {
             kind: CrackKind::Broken,
         }];
     }
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [None, None, None],
         velocity: [Some(e("0.02*sin(0.3*x)")), Some(e("0.01*cos(0.2*x)")), None],
     }];
-    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    spec.run.schedule.time_step = TimeStep::Fraction(0.1);
     spec
 }
 
@@ -105,8 +105,8 @@ fn what_heals_under_strain_is_accounted_for() {
             }),
         }];
         heals(&mut spec, "t > 3 ? 0.5 : 0");
-        spec.schedule.time_step = TimeStep::Fraction(0.05);
-        spec.healing.as_mut().unwrap().set = "upper".into();
+        spec.run.schedule.time_step = TimeStep::Fraction(0.05);
+        spec.damage.healing.as_mut().unwrap().set = "upper".into();
         let mut sim = started(&spec);
         let (scale, at_first) = (sim.ledger().unwrap().initial, sim.scalars("damage"));
         let mut released = [0.0; 2];
@@ -141,18 +141,19 @@ fn what_heals_under_strain_is_accounted_for() {
 #[test]
 fn torn_and_closed_again_it_is_whole() {
     let explicit = |_: &mut Spec| {};
-    let implicit = |spec: &mut Spec| spec.schedule.stepper = Stepper::Newmark(Newmark::default());
+    let implicit =
+        |spec: &mut Spec| spec.run.schedule.stepper = Stepper::Newmark(Newmark::default());
     let tougher = |spec: &mut Spec| {
-        spec.toughness = vec![ToughnessSpec {
+        spec.damage.toughness = vec![ToughnessSpec {
             set: "all".into(),
             factor: ToughnessFactor::Stretch(e("1.5 + 0.1*sin(x)")),
         }];
     };
     let own = |spec: &mut Spec| {
-        spec.horizon = Horizon::Length(2.4);
-        spec.own_horizon = Some(e("2.4 - 0.03*x"));
-        spec.calibration = Calibration::Continuum;
-        spec.volume_scaling = true;
+        spec.bonds.horizon = Horizon::Length(2.4);
+        spec.bonds.own_horizon = Some(e("2.4 - 0.03*x"));
+        spec.bonds.calibration = Calibration::Continuum;
+        spec.bonds.volume_scaling = true;
     };
     for (law, family) in laws() {
         let plain = matches!(law, LawSpec::Pmb(_)) && family == FamilyChoice::List;
@@ -167,11 +168,11 @@ fn torn_and_closed_again_it_is_whole() {
 
 fn closes(law: &LawSpec, family: FamilyChoice, change: &dyn Fn(&mut Spec)) {
     let mut spec = plate(law.clone(), family, false);
-    spec.initial = vec![];
+    spec.loading.initial = vec![];
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
     heals(&mut spec, "1e-3");
     // all points told: apart by two spacings and back
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement([
             Some(e("x > 7 ? 2*sin(pi*t/100)^2 : 0")),
@@ -179,7 +180,7 @@ fn closes(law: &LawSpec, family: FamilyChoice, change: &dyn Fn(&mut Spec)) {
             None,
         ]),
     }];
-    spec.schedule.time_step = TimeStep::Fixed(0.1);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.1);
     change(&mut spec);
     let mut sim = started(&spec);
     let mut most = 0.0f64;
@@ -210,7 +211,7 @@ fn healing_that_cannot_be_is_refused() {
     heals(&mut spec, "x");
     assert!(refused(&spec).contains("depends on the place"));
     heals(&mut spec, "1e-3");
-    spec.precracks = vec![PrecrackSpec {
+    spec.damage.precracks = vec![PrecrackSpec {
         shape: CrackShape::Segment {
             from: [7.0, -1.0, 0.0],
             to: [7.0, 8.0, 0.0],
@@ -226,9 +227,9 @@ fn what_heals_at_the_end_of_an_implicit_step_pulls_in_the_next() {
     for (law, family) in laws() {
         let run = |cut: bool| {
             let mut spec = plate(law.clone(), family, cut);
-            spec.initial = vec![];
+            spec.loading.initial = vec![];
             // nothing moves in the first step, at whose end bonds heal
-            spec.conditions = vec![ConditionSpec {
+            spec.loading.conditions = vec![ConditionSpec {
                 set: "all".into(),
                 kind: ConditionKind::BodyForce([
                     Some(e("t > 0.3 ? 0.01*sin(0.3*x) : 0")),
@@ -239,8 +240,8 @@ fn what_heals_at_the_end_of_an_implicit_step_pulls_in_the_next() {
             if cut {
                 heals(&mut spec, "0.1");
             }
-            spec.schedule.stepper = Stepper::Newmark(Newmark::default());
-            spec.schedule.time_step = TimeStep::Fixed(0.2);
+            spec.run.schedule.stepper = Stepper::Newmark(Newmark::default());
+            spec.run.schedule.time_step = TimeStep::Fixed(0.2);
             let mut sim = started(&spec);
             (0..30).for_each(|_| sim.step().unwrap());
             assert_eq!(sim.scalars("damage").iter().sum::<f64>(), 0.0);
@@ -272,7 +273,7 @@ fn what_heals_after_statics_moves_as_what_was_never_cut() {
                 name: "ends".into(),
                 members: Members::Where(e("abs(x - 7) > 4")),
             }];
-            spec.preload = Some(PreloadSpec {
+            spec.run.preload = Some(PreloadSpec {
                 statics: Statics {
                     method: Method::Newton,
                     ..Statics::default()

@@ -302,7 +302,7 @@ fn a_turned_body_does_the_same() {
             Some(0.03),
         );
         let mut spec = case.spec();
-        spec.schedule.time_step = TimeStep::Fixed(0.02);
+        spec.run.schedule.time_step = TimeStep::Fixed(0.02);
         let mut sim = made(&spec);
         let x = sim.vectors("reference");
         let v: Vec<Point> = x
@@ -361,7 +361,7 @@ fn long_waves_travel_along_and_across_as_fast_as_their_stiffness() {
             let at = place(LatticeKind::Square, 3, [cells, 7, 1]);
             let case = with(at, law([ALONG, ACROSS], fibre, None), None);
             let mut spec = case.periodic();
-            spec.schedule.time_step = TimeStep::Fraction(0.3);
+            spec.run.schedule.time_step = TimeStep::Fraction(0.3);
             let mut sim = made(&spec);
             let reference = sim.vectors("reference");
             let k = 2.0 * std::f64::consts::PI / (cells as f64 * H);
@@ -420,7 +420,7 @@ fn each_kind_breaks_at_its_own_stretch() {
                 Some(matrix),
             );
             let mut spec = case.spec();
-            spec.family = family;
+            spec.bonds.family = family;
             let [first, second] = axes(fibre);
             // across: fibres are as long as before
             for (along, across, fibres_break) in
@@ -477,7 +477,7 @@ fn torn(law: LawSpec, notch: [Point; 2], (axis, rate): (usize, f64), most: u64) 
     let case = with(place(LatticeKind::Square, 3, cells), law, Some(0.01));
     let mut spec = case.spec();
     let [from, to] = notch;
-    spec.precracks = vec![PrecrackSpec {
+    spec.damage.precracks = vec![PrecrackSpec {
         shape: CrackShape::Segment { from, to },
         kind: CrackKind::Absent,
     }];
@@ -487,7 +487,7 @@ fn torn(law: LawSpec, notch: [Point; 2], (axis, rate): (usize, f64), most: u64) 
         all
     };
     let length = (cells[axis] as f64 - 1.0) * H;
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [None, None, None],
         velocity: along(format!("{rate}*(2*{}/{length} - 1)", ["x", "y"][axis])),
@@ -499,16 +499,16 @@ fn torn(law: LawSpec, notch: [Point; 2], (axis, rate): (usize, f64), most: u64) 
             name: name.into(),
             members: Members::Region(peridyne::space::region::Region::HalfSpace { point, normal }),
         });
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: name.into(),
             kind: ConditionKind::Velocity(along(format!("{}", -sign * rate))),
         });
-        spec.toughness.push(ToughnessSpec {
+        spec.damage.toughness.push(ToughnessSpec {
             set: name.into(),
             factor: ToughnessFactor::NoFailure,
         });
     }
-    spec.schedule.time_step = TimeStep::Fixed(0.02);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.02);
     let mut sim = made(&spec);
     let x = sim.vectors("reference");
     let before = whole(sim.as_mut());
@@ -596,14 +596,14 @@ fn bonds_broken_in_turn_know_their_kind() {
                     normal: [sign, 0.0, 0.0],
                 }),
             });
-            spec.conditions.push(ConditionSpec {
+            spec.loading.conditions.push(ConditionSpec {
                 set: name.into(),
                 kind: ConditionKind::Displacement([Some(e(text)), Some(e("0")), None]),
             });
         }
-        spec.schedule.steps = 2;
-        spec.schedule.time_step = TimeStep::Fixed(1.0);
-        spec.schedule.stepper = Stepper::Statics(Statics {
+        spec.run.schedule.steps = 2;
+        spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
             control: Control::Breaking,
             ..Statics::default()
         });
@@ -642,7 +642,7 @@ fn points_that_never_fail_keep_both_kinds() {
         Some(0.01),
     );
     let mut spec = case.spec();
-    spec.toughness = vec![ToughnessSpec {
+    spec.damage.toughness = vec![ToughnessSpec {
         set: "all".into(),
         factor: ToughnessFactor::NoFailure,
     }];
@@ -653,7 +653,7 @@ fn points_that_never_fail_keep_both_kinds() {
     sim.start(true);
     steps(sim.as_mut(), 3);
     assert_eq!(sim.broken(), 0);
-    spec.toughness[0].factor = ToughnessFactor::Stretch(e("2"));
+    spec.damage.toughness[0].factor = ToughnessFactor::Stretch(e("2"));
     let error = build(&spec, Default::default()).err().unwrap();
     let message = error.message.to_string();
     assert!(
@@ -700,9 +700,9 @@ fn what_no_ply_has_is_refused() {
         change(&mut spec);
         told(&spec)
     };
-    let strain = changed(&|s| s.plane = Plane::Strain);
+    let strain = changed(&|s| s.space.plane = Plane::Strain);
     assert!(strain.contains("write plane = \"stress\""), "{strain}");
-    let continuum = changed(&|s| s.calibration = Calibration::Continuum);
+    let continuum = changed(&|s| s.bonds.calibration = Calibration::Continuum);
     assert!(continuum.contains("sums over the lattice"), "{continuum}");
     let energy = changed(&|s| {
         s.materials[0].fracture = Some(FractureSpec::new(Criterion::Energy(1.0)));

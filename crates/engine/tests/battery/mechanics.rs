@@ -12,7 +12,7 @@ const STIFF: f64 = 3.0 / H;
 fn rigid_translation_gives_exactly_no_force() {
     for case in cases() {
         for mut spec in [case.spec(), case.periodic()] {
-            spec.contact = Some(CONTACT);
+            spec.interactions.contact = Some(CONTACT);
             let mut sim = at_rest(&spec);
             let n = sim.vectors("reference").len();
             for shift in [0.0, 1e-3, 17.3] {
@@ -57,7 +57,7 @@ const LARGE: f64 = 0.12 * H;
 /// A body with broken bonds, repulsion and memories, and displacements for it.
 fn worn(case: &Case, mut spec: Spec) -> (Box<dyn Simulation>, Vec<Point>) {
     breaking(&mut spec, 0.06);
-    spec.contact = Some(CONTACT);
+    spec.interactions.contact = Some(CONTACT);
     let mut sim = at_rest(&spec);
     let n = sim.vectors("reference").len();
     let mut random = Random(7);
@@ -210,7 +210,7 @@ fn energies_see_displacements_that_were_just_set() {
         case.place.cells = case.place.cells.map(|c| if c > 1 { 7 } else { 1 });
         let mut spec = case.periodic();
         let mut sims = [FamilyChoice::Stencil, FamilyChoice::List].map(|family| {
-            spec.family = family;
+            spec.bonds.family = family;
             at_rest(&spec)
         });
         let u = Random(61).vectors(sims[0].vectors("reference").len(), case.d(), 0.05 * H);
@@ -237,8 +237,8 @@ fn contact_force_is_the_derivative_of_contact_energy() {
             let case = Case::of(name, place);
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 let mut spec = case.spec();
-                spec.family = family;
-                spec.contact = Some(CONTACT);
+                spec.bonds.family = family;
+                spec.interactions.contact = Some(CONTACT);
                 let BodySpec::Sites { quarters, .. } = &mut spec.body else {
                     unreachable!("samples are sites")
                 };

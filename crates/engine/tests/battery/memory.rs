@@ -75,7 +75,7 @@ fn bits(sim: &mut dyn Simulation) -> Vec<u64> {
 /// Does what a torn body remembers after some steps make another model go on like it? `None`: such a body there is not. Into a model that has
 /// `started`, or before it does.
 fn goes_over(name: &str, case: &Case, mut spec: Spec, started: bool) -> Option<()> {
-    spec.schedule.time_step = TimeStep::Fixed(0.02 * H);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.02 * H);
     let made = |spec: &Spec| {
         let options = peridyne::run::Options {
             trust_time_step: true,
@@ -84,7 +84,7 @@ fn goes_over(name: &str, case: &Case, mut spec: Spec, started: bool) -> Option<(
         build(spec, options).ok()
     };
     let mut cut = spec.clone();
-    cut.precracks = vec![torn(case)];
+    cut.damage.precracks = vec![torn(case)];
     let (mut source, mut fresh) = (made(&cut)?, made(&spec)?);
     let n = source.vectors("reference").len();
     source.set_displacements(&Random(3).vectors(n, case.d(), 2e-3 * H));
@@ -135,7 +135,7 @@ fn what_a_torn_body_of_any_law_remembers_goes_to_another_model() {
     for case in cases() {
         for family in [FamilyChoice::Stencil, FamilyChoice::List] {
             let mut spec = case.spec();
-            spec.family = family;
+            spec.bonds.family = family;
             breaks(&mut spec, Criterion::Stretch(0.02));
             let name = format!("{} as {family:?}", case.name());
             all += 1;
@@ -176,7 +176,7 @@ fn what_criteria_measure_goes_over_too() {
                 for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                     let case = Case::of(law, place(kind));
                     let mut spec = case.spec();
-                    spec.family = family;
+                    spec.bonds.family = family;
                     breaks(&mut spec, criterion);
                     let name = format!("{} {criterion:?} {family:?}", case.name());
                     for started in [false, true] {

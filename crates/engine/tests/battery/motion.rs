@@ -38,7 +38,7 @@ fn energy_does_not_drift() {
             let mut wobble = vec![];
             for fraction in [0.5, 0.25] {
                 let mut spec = case.spec();
-                spec.schedule.time_step = TimeStep::Fraction(fraction);
+                spec.run.schedule.time_step = TimeStep::Fraction(fraction);
                 let mut sim = made(&spec);
                 let n = sim.vectors("reference").len();
                 sim.set_displacements(&Random(29).vectors(n, case.d(), 0.004 * H));
@@ -92,7 +92,7 @@ fn the_error_is_of_second_order_in_the_step() {
             let case = Case::of(name, place);
             let mut spec = case.spec();
             let end = 6.0;
-            spec.conditions = vec![ConditionSpec {
+            spec.loading.conditions = vec![ConditionSpec {
                 set: "all".into(),
                 kind: ConditionKind::BodyForce([Some(e("0.05*sin(3*t+x)")), None, None]),
             }];
@@ -103,12 +103,12 @@ fn the_error_is_of_second_order_in_the_step() {
                     normal: [1.0, 0.0, 0.0],
                 }),
             });
-            spec.conditions.push(ConditionSpec {
+            spec.loading.conditions.push(ConditionSpec {
                 set: "foot".into(),
                 kind: ConditionKind::Displacement([Some(e("0.02*sin(2*t)")), None, None]),
             });
             let mut run = |n: usize| {
-                spec.schedule.time_step = TimeStep::Fixed(end / n as f64);
+                spec.run.schedule.time_step = TimeStep::Fixed(end / n as f64);
                 let mut sim = made(&spec);
                 let count = sim.vectors("reference").len();
                 sim.set_velocities(&Random(31).vectors(count, case.d(), 0.02));
@@ -171,11 +171,11 @@ fn damping_is_of_second_order_and_may_change_in_time() {
             let case = Case::of("lps", place);
             let error = |n: usize| {
                 let mut spec = case.spec();
-                spec.conditions = vec![ConditionSpec {
+                spec.loading.conditions = vec![ConditionSpec {
                     set: "all".into(),
                     kind: ConditionKind::Damping(e(c)),
                 }];
-                spec.schedule.time_step = TimeStep::Fixed(2.0 / n as f64);
+                spec.run.schedule.time_step = TimeStep::Fixed(2.0 / n as f64);
                 let mut sim = made(&spec);
                 let count = sim.vectors("reference").len();
                 sim.set_velocities(&vec![[0.3, 0.0, 0.0]; count]);

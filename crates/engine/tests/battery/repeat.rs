@@ -31,21 +31,21 @@ fn busy(name: &str, kind: LatticeKind, family: FamilyChoice) -> Spec {
     };
     let case = Case::of(name, place);
     let mut spec = case.spec();
-    spec.family = family;
+    spec.bonds.family = family;
     breaking(&mut spec, 0.02);
-    spec.contact = Some(CONTACT);
-    spec.schedule.time_step = TimeStep::Fixed(0.05 * H);
+    spec.interactions.contact = Some(CONTACT);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.05 * H);
     // on a line it comes from the end
     let (x, y) = match kind.dimension() {
         1 => ("-0.8+0.1*t".to_string(), "0.2"),
         _ => (format!("{}", 0.5 * H * place.cells[0] as f64), "-0.9+0.5*t"),
     };
-    spec.indenters = vec![IndenterSpec::sphere(
+    spec.loading.indenters = vec![IndenterSpec::sphere(
         100.0,
         2.0 * H,
         IndenterMotion::Kinematic([e(&x), e(y), e("0.3")]),
     )];
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         ConditionSpec {
             set: "all".into(),
             kind: ConditionKind::Damping(e("0.01")),
@@ -133,8 +133,8 @@ fn the_same_bits_on_any_number_of_threads_and_in_every_width() {
                         let mut sim = build(&spec, options).unwrap();
                         let n = sim.vectors("reference").len();
                         // waves on a line come together less
-                        let speed = if spec.dimension == 1 { 0.4 } else { 0.1 };
-                        let v = Random(47).vectors(n, spec.dimension, speed);
+                        let speed = if spec.space.dimension == 1 { 0.4 } else { 0.1 };
+                        let v = Random(47).vectors(n, spec.space.dimension, speed);
                         sim.set_velocities(&v);
                         sim.start(true);
                         steps(sim.as_mut(), 25);
@@ -179,14 +179,15 @@ fn a_step_allocates_nothing() {
                 let mut spec = busy(name, kind, family);
                 // the indenter rests in the body: what it touches does not grow
                 let x = e(if kind.dimension() == 1 { "-0.7" } else { "1.3" });
-                spec.indenters[0].motion = IndenterMotion::Kinematic([x, e("-0.2"), e("0.3")]);
+                spec.loading.indenters[0].motion =
+                    IndenterMotion::Kinematic([x, e("-0.2"), e("0.3")]);
                 pool.install(|| {
                     let mut sim = at_rest(&spec);
                     // an energy with a pole at no volume ends with an error once a family is pushed flat
                     let pole = name.starts_with("neo") && kind == LatticeKind::Square;
                     sim.set_time_step(if pole { 0.028 } else { 0.05 } * H);
                     let n = sim.vectors("reference").len();
-                    let v = Random(47).vectors(n, spec.dimension, 0.05);
+                    let v = Random(47).vectors(n, spec.space.dimension, 0.05);
                     sim.set_velocities(&v);
                     sim.start(true);
                     // lists of what is near grow to their size

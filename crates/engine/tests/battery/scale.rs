@@ -15,7 +15,7 @@ fn larger(case: &Case, size: f64) -> Spec {
         panic!("a body of sites");
     };
     *spacing *= size;
-    spec.section *= size.powi(3 - case.d() as i32);
+    spec.space.section *= size.powi(3 - case.d() as i32);
     for m in &mut spec.materials {
         m.density /= size * size;
     }
@@ -27,7 +27,7 @@ fn larger(case: &Case, size: f64) -> Spec {
         }
     }
     breaking(&mut spec, 0.06);
-    spec.contact = Some(CONTACT);
+    spec.interactions.contact = Some(CONTACT);
     spec
 }
 
@@ -86,9 +86,9 @@ fn contact_is_that_of_bonds_of_the_same_bulk_modulus_whatever_the_influence() {
             let stiffness = |law: LawSpec| {
                 let mut spec = case.spec();
                 spec.materials[0].law = law;
-                spec.influence = influence;
-                spec.calibration = Calibration::Continuum;
-                spec.contact = Some(CONTACT);
+                spec.bonds.influence = influence;
+                spec.bonds.calibration = Calibration::Continuum;
+                spec.interactions.contact = Some(CONTACT);
                 made(&spec).info().contact_stiffness[0]
             };
             let bonds = stiffness(LawSpec::Pmb(PmbStiffness::Young(3.0)));

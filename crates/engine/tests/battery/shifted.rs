@@ -31,9 +31,9 @@ fn busy(name: &str, kind: LatticeKind) -> Spec {
     };
     let mut spec = Case::of(name, place).spec();
     breaking(&mut spec, 0.02);
-    spec.contact = Some(CONTACT);
-    spec.schedule.time_step = TimeStep::Fixed(0.05 * H);
-    spec.conditions = vec![
+    spec.interactions.contact = Some(CONTACT);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.05 * H);
+    spec.loading.conditions = vec![
         ConditionSpec {
             set: "all".into(),
             kind: ConditionKind::Damping(e("0.01")),
@@ -84,7 +84,10 @@ fn run(spec: &Spec, simd: Simd) -> HashMap<Site, Vec<u64>> {
     };
     let mut sim = build(spec, options).unwrap();
     let sites = sites(spec);
-    let v: Vec<_> = sites.iter().map(|s| velocity(*s, spec.dimension)).collect();
+    let v: Vec<_> = sites
+        .iter()
+        .map(|s| velocity(*s, spec.space.dimension))
+        .collect();
     sim.set_velocities(&v);
     sim.start(true);
     steps(sim.as_mut(), STEPS);
@@ -122,7 +125,7 @@ fn the_same_bits_in_every_place_of_a_tile() {
         for name in ["pmb", "pmb mixed", "lps", "lps mixed"] {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 let mut spec = busy(name, kind);
-                spec.family = family;
+                spec.bonds.family = family;
                 let first = run(&spec, Simd::detect());
                 for by in 1..8 {
                     // every set in turn, to spare time
@@ -143,7 +146,7 @@ fn two_pieces_are_what_each_is_alone() {
         for name in ["pmb", "lps"] {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 let mut spec = busy(name, kind);
-                spec.family = family;
+                spec.bonds.family = family;
                 let left = sites(&spec).clone();
                 let far = |s: &Site| [s[0] + 4 * (APART + left.len() as i32), s[1], s[2]];
                 let right: Vec<Site> = left.iter().map(far).collect();

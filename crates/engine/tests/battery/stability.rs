@@ -20,7 +20,7 @@ fn limit(name: &str) -> f64 {
 fn below_the_limit_a_run_stays_bounded() {
     for name in ["pmb", "lps"] {
         let mut spec = chain(name, 60);
-        spec.schedule.time_step = TimeStep::Fixed(0.99 * limit(name));
+        spec.run.schedule.time_step = TimeStep::Fixed(0.99 * limit(name));
         let mut sim = made(&spec);
         sim.set_displacements(&Random(41).vectors(60, 1, 1e-6 * H));
         sim.start(true);
@@ -39,7 +39,7 @@ fn below_the_limit_a_run_stays_bounded() {
 fn above_the_limit_a_run_stops_with_a_finite_state() {
     for name in ["pmb", "lps"] {
         let mut spec = chain(name, 60);
-        spec.schedule.time_step = TimeStep::Fixed(1.05 * limit(name));
+        spec.run.schedule.time_step = TimeStep::Fixed(1.05 * limit(name));
         let mut sim = made(&spec);
         assert!(
             sim.info()
@@ -80,7 +80,7 @@ fn the_ledger_sees_an_unstable_run_before_it_bursts() {
         .filter(|c| c.material.name == "lps" && c.d() > 1)
     {
         let mut spec = case.spec();
-        spec.schedule.time_step = TimeStep::Fraction(1.1);
+        spec.run.schedule.time_step = TimeStep::Fraction(1.1);
         let mut sim = made(&spec);
         let n = sim.vectors("reference").len();
         sim.set_displacements(&Random(43).vectors(n, case.d(), 1e-8 * H));
@@ -101,8 +101,8 @@ fn the_ledger_sees_an_unstable_run_before_it_bursts() {
 fn a_step_above_the_limit_is_refused() {
     for case in cases() {
         let mut spec = case.spec();
-        spec.schedule.time_step = TimeStep::Fraction(1.01);
-        spec.schedule.force_unstable = false;
+        spec.run.schedule.time_step = TimeStep::Fraction(1.01);
+        spec.run.schedule.force_unstable = false;
         let error = build(&spec, Options::default())
             .err()
             .expect("too long a step");
@@ -110,7 +110,7 @@ fn a_step_above_the_limit_is_refused() {
             error.message.contains("above the stability limit"),
             "{error}"
         );
-        spec.schedule.time_step = TimeStep::Fraction(0.99);
+        spec.run.schedule.time_step = TimeStep::Fraction(0.99);
         assert!(build(&spec, Options::default()).is_ok());
     }
 }
@@ -124,7 +124,7 @@ fn a_run_that_begins_is_not_unstable() {
             kind: ConditionKind::BodyForce([Some(e("0.01*t")), None, None]),
         };
         let mut spec = case.spec();
-        spec.conditions = vec![ramp];
+        spec.loading.conditions = vec![ramp];
         let mut sim = made(&spec);
         sim.start(true);
         for _ in 0..3 {
@@ -136,7 +136,7 @@ fn a_run_that_begins_is_not_unstable() {
             continue;
         }
         let mut spec = case.spec();
-        spec.indenters = vec![IndenterSpec::sphere(
+        spec.loading.indenters = vec![IndenterSpec::sphere(
             10.0,
             H,
             IndenterMotion::Kinematic([e("-0.6+0.3*t"), e("0"), e("0")]),

@@ -16,9 +16,9 @@ const SHEET: Place = Place {
 /// A sheet of two blocks of ids with a crack, on its way.
 fn torn(name: &str, family: FamilyChoice) -> Box<dyn Simulation> {
     let mut spec = Case::of(name, SHEET).spec();
-    spec.family = family;
+    spec.bonds.family = family;
     breaking(&mut spec, 0.2);
-    spec.precracks = vec![PrecrackSpec {
+    spec.damage.precracks = vec![PrecrackSpec {
         kind: CrackKind::Broken,
         shape: CrackShape::Segment {
             from: [-H, 4.3 * H, 0.0],
@@ -112,7 +112,7 @@ fn every_bond_that_breaks_shows_also_of_one_pair() {
         cells: [4, 1, 1],
     };
     let mut spec = Case::of("pmb", ring).periodic();
-    spec.family = FamilyChoice::Stencil;
+    spec.bonds.family = FamilyChoice::Stencil;
     let mut sim = at_rest(&spec);
     let whole = sim.scalars("whole");
     assert_eq!(whole, [1.0; 16]);

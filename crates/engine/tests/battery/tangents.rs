@@ -23,7 +23,7 @@ fn field(n: usize, d: usize, size: f64, seed: usize) -> Vec<Point> {
 
 fn model(spec: &Spec) -> Box<dyn Simulation> {
     let mut spec = spec.clone();
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let options = Options {
         trust_time_step: true,
         ..Options::default()
@@ -82,7 +82,7 @@ fn check<const D: usize>(name: &str, spec: &Spec) {
     let body = m.linear_body().of::<D>().unwrap();
     let sound = body.soundness();
     assert!(sound.asymmetry < 1e-12, "{name}: {sound:?}");
-    if spec.periodic[0].is_none() {
+    if spec.space.periodic[0].is_none() {
         assert!(sound.rotation < 1e-12, "{name}: {sound:?}");
     }
     // a state-based law reaches two families, others one
@@ -136,8 +136,8 @@ fn sweeps_at_tiny_displacements_are_the_tangent_at_rest_of_torn_bodies() {
     for case in cases().iter().filter(at_peace) {
         for family in [FamilyChoice::Stencil, FamilyChoice::List] {
             let mut spec = case.spec();
-            spec.family = family;
-            spec.precracks = vec![PrecrackSpec {
+            spec.bonds.family = family;
+            spec.damage.precracks = vec![PrecrackSpec {
                 kind: CrackKind::Broken,
                 shape: CrackShape::Segment {
                     from: [-H, 0.3 * H, 0.0],
@@ -160,7 +160,7 @@ fn linear_bodies_of_periodic_ones_and_of_lists() {
     for case in cases().iter().filter(smooth).step_by(5) {
         both(case, &case.periodic());
         let mut list = case.spec();
-        list.family = FamilyChoice::List;
+        list.bonds.family = FamilyChoice::List;
         both(case, &list);
     }
 }

@@ -43,7 +43,7 @@ fn torn_bodies_gain_no_energy() {
 /// Whether it tore.
 fn tears(case: &Case, (family, step, allowed): (FamilyChoice, f64, f64)) -> bool {
     let mut spec = case.spec();
-    spec.family = family;
+    spec.bonds.family = family;
     let [long, high] = [case.place.cells[0], case.place.cells[1]].map(|n| n as f64 * H);
     let apart = format!("0.12*(2*x/{long} - 1) + 0.03*sin(5*y)");
     let turned = format!("0.04*cos(3*x) + 0.06*(x/{long} - 0.5)");
@@ -51,14 +51,14 @@ fn tears(case: &Case, (family, step, allowed): (FamilyChoice, f64, f64)) -> bool
         1 => [Some(e(&apart.replace('y', "x"))), None, None],
         _ => [Some(e(&apart)), Some(e(&turned)), None],
     };
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "all".into(),
         displacement: [const { None }; 3],
         velocity,
     }];
     if case.d() == 2 {
         let x = 0.5 * long + 0.1 * H;
-        spec.precracks = vec![PrecrackSpec {
+        spec.damage.precracks = vec![PrecrackSpec {
             shape: CrackShape::Segment {
                 from: [x, -H, 0.0],
                 to: [x, 0.35 * high, 0.0],
@@ -67,7 +67,7 @@ fn tears(case: &Case, (family, step, allowed): (FamilyChoice, f64, f64)) -> bool
         }];
     }
     breaking(&mut spec, 0.04);
-    spec.schedule.time_step = TimeStep::Fraction(step);
+    spec.run.schedule.time_step = TimeStep::Fraction(step);
     let name = format!("{} {family:?}", case.name());
     let mut sim = made(&spec);
     sim.start(true);

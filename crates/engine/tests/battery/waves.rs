@@ -28,8 +28,9 @@ pub fn chain_omega2(spec: &Spec, sim: &mut dyn Simulation, theta: f64) -> f64 {
     let bonds: Vec<(f64, f64, f64)> = (1..=3)
         .map(|j| {
             let r = j as f64 * H;
-            let w =
-                influence(spec.influence, &[r], r, horizon) * volume_fraction(r, horizon, H) * v;
+            let w = influence(spec.bonds.influence, &[r], r, horizon)
+                * volume_fraction(r, horizon, H)
+                * v;
             (j as f64, r, w)
         })
         .collect();
@@ -90,7 +91,7 @@ fn a_chain_disperses_as_it_must_in_space_and_time() {
         for mode in [1, 5, 13, 24, 32] {
             for fraction in [0.2, 0.95] {
                 let mut spec = chain(name, 64);
-                spec.schedule.time_step = TimeStep::Fraction(fraction);
+                spec.run.schedule.time_step = TimeStep::Fraction(fraction);
                 let mut sim = made(&spec);
                 let theta = 2.0 * std::f64::consts::PI * mode as f64 / 64.0;
                 let omega2 = chain_omega2(&spec, sim.as_mut(), theta);
@@ -186,7 +187,7 @@ fn long_waves_travel_at_the_speed_of_sound() {
         let speed = (3.0f64 / RHO).sqrt();
         let off = |n: usize| {
             let mut spec = chain(name, n);
-            spec.schedule.time_step = TimeStep::Fraction(0.8);
+            spec.run.schedule.time_step = TimeStep::Fraction(0.8);
             let mut sim = made(&spec);
             let k = tau / (n as f64 * H);
             let c = frequency(sim.as_mut(), k, [1.0, 0.0, 0.0], 1) / k;
@@ -212,7 +213,7 @@ fn long_waves_travel_at_the_speed_of_sound() {
             cells: [64, 2, 2],
         };
         let mut spec = Case::of(name, place).periodic();
-        spec.schedule.time_step = TimeStep::Fraction(0.8);
+        spec.run.schedule.time_step = TimeStep::Fraction(0.8);
         let s = 1e-6;
         for (way, strain) in [
             ([1.0, 0.0, 0.0], [[s, 0.0, 0.0], [0.0; 3], [0.0; 3]]),

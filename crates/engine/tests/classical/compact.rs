@@ -20,8 +20,8 @@ fn softening() -> LawSpec {
 
 fn plate(sites: [i32; 3]) -> Spec {
     let mut spec = block(LatticeKind::Square, sites, 3, softening());
-    spec.influence = Influence::Constant;
-    spec.plane = Plane::Stress;
+    spec.bonds.influence = Influence::Constant;
+    spec.space.plane = Plane::Stress;
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Energy(ENERGY),
         alpha: 0.0,
@@ -42,7 +42,7 @@ fn driven(set: &str, speed: f64) -> ConditionSpec {
 fn separation() -> f64 {
     const LENGTH: i32 = 12;
     let mut spec = plate([LENGTH, 12, 1]);
-    spec.periodic[0] = Some(f64::from(LENGTH));
+    spec.space.periodic[0] = Some(f64::from(LENGTH));
     spec.sets = [("low", 1.0), ("high", -1.0)]
         .map(|(name, sign)| SetSpec {
             name: name.into(),
@@ -52,9 +52,9 @@ fn separation() -> f64 {
             }),
         })
         .to_vec();
-    spec.conditions = vec![driven("low", 0.0), driven("high", 1e-3)];
+    spec.loading.conditions = vec![driven("low", 0.0), driven("high", 1e-3)];
     // all points are led along y and none moves along x
-    spec.schedule.time_step = TimeStep::Fixed(0.25);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.25);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     while sim.fragments() < 2 && sim.step_number() < 10_000 {
@@ -71,7 +71,7 @@ fn separation() -> f64 {
 fn the_work_of_a_compact_test_is_its_fracture_energy() {
     let mut spec = plate([WIDTH, HEIGHT, 1]);
     let left = -0.5 * f64::from(WIDTH);
-    spec.precracks = vec![PrecrackSpec {
+    spec.damage.precracks = vec![PrecrackSpec {
         shape: CrackShape::Segment {
             from: [left - 1.0, 0.0, 0.0],
             to: [left + NOTCH, 0.0, 0.0],
@@ -97,14 +97,14 @@ fn the_work_of_a_compact_test_is_its_fracture_energy() {
         })
         .to_vec();
     const SPEED: f64 = 1e-4;
-    spec.conditions = vec![driven("low", -SPEED), driven("high", SPEED)];
-    spec.probes = vec![ProbeSpec {
+    spec.loading.conditions = vec![driven("low", -SPEED), driven("high", SPEED)];
+    spec.run.probes = vec![ProbeSpec {
         name: "load".into(),
         set: "high".into(),
         measure: Measure::Reaction,
     }];
     const STEP: f64 = 0.4;
-    spec.schedule.time_step = TimeStep::Fixed(STEP);
+    spec.run.schedule.time_step = TimeStep::Fixed(STEP);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let (mut area, mut peak, mut last) = (0.0, 0.0f64, 0.0);

@@ -34,19 +34,19 @@ fn block(kind: LatticeKind, sites: [i32; 3], ratio: u32, law: LawSpec) -> Spec {
         volume: None,
     };
     let mut spec = Spec::new(kind.dimension(), body, 1.0, law);
-    spec.horizon = Horizon::Ratio(ratio);
-    spec.influence = Influence::Inverse;
-    spec.volume_scaling = true;
+    spec.bonds.horizon = Horizon::Ratio(ratio);
+    spec.bonds.influence = Influence::Inverse;
+    spec.bonds.volume_scaling = true;
     spec
 }
 
 /// All points follow expressions of the place in the reference and time, a step is one unit of time.
 fn led(spec: &mut Spec, u: [&str; 3]) -> Box<dyn Simulation> {
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement(u.map(|u| Some(e(u)))),
     }];
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     let options = Options {
         trust_time_step: true,
         ..Options::default()

@@ -81,7 +81,7 @@ fn a_bar_relaxes_as_the_classical_one() {
             kind: ConditionKind::Displacement([Some(e(u)), None, None]),
         };
         let statics = matches!(stepper, Stepper::Statics(_));
-        spec.conditions = vec![
+        spec.loading.conditions = vec![
             held("low", "0"),
             held("high", &format!("1e-4*min(t/{ramp}, 1)")),
         ];
@@ -95,7 +95,7 @@ fn a_bar_relaxes_as_the_classical_one() {
                     name: name.into(),
                     members: Members::Region(Region::HalfSpace { point, normal }),
                 });
-                spec.conditions.push(ConditionSpec {
+                spec.loading.conditions.push(ConditionSpec {
                     set: name.into(),
                     kind: ConditionKind::Displacement(std::array::from_fn(|a| {
                         (a == axis).then(|| e("0"))
@@ -103,18 +103,18 @@ fn a_bar_relaxes_as_the_classical_one() {
                 });
             }
         } else {
-            spec.conditions.push(ConditionSpec {
+            spec.loading.conditions.push(ConditionSpec {
                 set: "all".into(),
                 kind: ConditionKind::Damping(e("0.1")),
             });
         }
-        spec.probes = vec![ProbeSpec {
+        spec.run.probes = vec![ProbeSpec {
             name: "pull".into(),
             set: "high".into(),
             measure: Measure::Reaction,
         }];
-        spec.schedule.stepper = stepper;
-        spec.schedule.time_step = TimeStep::Fixed(step);
+        spec.run.schedule.stepper = stepper;
+        spec.run.schedule.time_step = TimeStep::Fixed(step);
         let every = (150.0 / step) as usize;
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);
@@ -191,8 +191,8 @@ fn an_implicit_step_tells_a_law_of_rates_its_length() {
     ] {
         // the point in the middle and all its partners have full families
         let mut spec = block(LatticeKind::Cubic, [9; 3], 2, law.clone());
-        spec.influence = Influence::Constant;
-        spec.schedule.stepper = stepper;
+        spec.bonds.influence = Influence::Constant;
+        spec.run.schedule.stepper = stepper;
         let mut sim = led(&mut spec, ["1e-5*y*t", "0", "0"]);
         for _ in 0..20 {
             sim.step().unwrap();
@@ -238,7 +238,7 @@ fn a_bar_creeps_in_equilibrium() {
                 None,
             ]),
         };
-        spec.conditions = vec![
+        spec.loading.conditions = vec![
             pulled("low", -1.0),
             pulled("high", 1.0),
             ConditionSpec {
@@ -247,8 +247,8 @@ fn a_bar_creeps_in_equilibrium() {
             },
         ];
         let step = 1.0 / f64::from(parts);
-        spec.schedule.time_step = TimeStep::Fixed(step);
-        spec.schedule.stepper = Stepper::Statics(Statics {
+        spec.run.schedule.time_step = TimeStep::Fixed(step);
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
             method: Method::Newton,
             timed: true,
             tolerance: 1e-12,

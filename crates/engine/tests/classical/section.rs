@@ -179,7 +179,7 @@ fn off(d: usize, plane: Plane, (law, deviator): (LawSpec, Deviator), ends: [f64;
     let kind = [LatticeKind::Chain, LatticeKind::Square][d - 1];
     let led_by = |law: LawSpec| {
         let mut spec = block(kind, [9, if d == 2 { 9 } else { 1 }, 1], 2, law);
-        spec.plane = plane;
+        spec.space.plane = plane;
         let [x, y] = ends.map(text);
         let y = if d == 2 { format!("y*{y}") } else { "0".into() };
         led(&mut spec, [&format!("x*{x}"), &y, "0"])
@@ -271,7 +271,7 @@ fn a_bar_and_a_sheet_yield_at_the_yield_stress() {
     ] {
         let kind = [LatticeKind::Chain, LatticeKind::Square][d - 1];
         let mut spec = block(kind, [9, if d == 2 { 9 } else { 1 }, 1], 2, law);
-        spec.plane = Plane::Stress;
+        spec.space.plane = Plane::Stress;
         let y = if d == 2 { "1e-7*y*t" } else { "0" };
         let mut sim = led(&mut spec, ["1e-7*x*t", y, "0"]);
         for n in 1..=10 {
@@ -312,7 +312,7 @@ fn a_sheet_of_rubber_gets_thinner() {
     };
     let pulled = |law: LawSpec, ways: [&str; 2]| {
         let mut spec = block(LatticeKind::Square, [9, 9, 1], 2, law);
-        spec.plane = Plane::Stress;
+        spec.space.plane = Plane::Stress;
         led(&mut spec, [ways[0], ways[1], "0"])
     };
     for gradient in ["family", "bond"] {
@@ -374,7 +374,7 @@ fn a_torn_slice_is_one_of_the_solid() {
         ] {
             let of = |kind: LatticeKind, sites: [i32; 3]| {
                 let mut spec = block(kind, sites, 2, law.clone());
-                spec.plane = Plane::Strain;
+                spec.space.plane = Plane::Strain;
                 let [low, high] = [[0.4, -0.4, -9.0], [0.4, 9.0, 9.0]];
                 let corner = |y: f64, z: f64| [low[0], y, z];
                 let shape = match kind {
@@ -391,7 +391,7 @@ fn a_torn_slice_is_one_of_the_solid() {
                         ],
                     },
                 };
-                spec.precracks = vec![PrecrackSpec {
+                spec.damage.precracks = vec![PrecrackSpec {
                     shape,
                     kind: CrackKind::Broken,
                 }];

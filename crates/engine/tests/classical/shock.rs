@@ -23,10 +23,10 @@ fn strip(cells: i32, spacing: f64, left: (f64, LawSpec), right: (f64, LawSpec)) 
         volume: None,
     };
     let mut spec = Spec::new(2, body, left.0, left.1);
-    spec.plane = Plane::Strain;
-    spec.horizon = Horizon::Ratio(2);
-    spec.volume_scaling = true;
-    spec.periodic[1] = Some(f64::from(across) * spacing);
+    spec.space.plane = Plane::Strain;
+    spec.bonds.horizon = Horizon::Ratio(2);
+    spec.bonds.volume_scaling = true;
+    spec.space.periodic[1] = Some(f64::from(across) * spacing);
     let half = |name: &str, sign: f64| SetSpec {
         name: name.into(),
         members: Members::Region(Region::HalfSpace {
@@ -60,7 +60,7 @@ fn strip(cells: i32, spacing: f64, left: (f64, LawSpec), right: (f64, LawSpec)) 
 
 fn held(spec: &mut Spec) {
     for wall in ["west", "east"] {
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: wall.into(),
             kind: ConditionKind::Displacement([Some(e("0")), None, None]),
         });
@@ -121,7 +121,7 @@ fn tube(part: f64) -> f64 {
     let h = 1.0 / f64::from(cells);
     let mut spec = strip(cells, h, (1.0, gas(1.0)), (0.125, gas(0.1)));
     held(&mut spec);
-    spec.schedule.time_step = TimeStep::Fraction(part);
+    spec.run.schedule.time_step = TimeStep::Fraction(part);
     let mut sim = start(&spec);
     go(sim.as_mut(), 0.2);
     let ledger = sim.ledger().unwrap();
@@ -159,14 +159,14 @@ fn an_impact_of_copper_lies_on_its_hugoniot() {
     for (law, speed) in [(fluid(), 100.0), (fluid(), 1000.0), (metal(), 500.0)] {
         let h = 1e-3;
         let mut spec = strip(160, h, (rho, law.clone()), (rho, law));
-        spec.initial = [("left", speed), ("right", -speed)]
+        spec.loading.initial = [("left", speed), ("right", -speed)]
             .map(|(set, v)| InitialSpec {
                 set: set.into(),
                 displacement: [None, None, None],
                 velocity: [Some(e(&format!("{v}"))), None, None],
             })
             .to_vec();
-        spec.schedule.time_step = TimeStep::Fraction(0.3);
+        spec.run.schedule.time_step = TimeStep::Fraction(0.3);
         let shock = c0 + s * speed;
         let exact = rho * shock * speed;
         let mut sim = start(&spec);

@@ -16,7 +16,7 @@ const COHESION: CohesionSpec = CohesionSpec {
 const APART: f64 = 1.35;
 
 fn cohesive(spec: &mut Spec) {
-    spec.contact = Some(ContactSpec {
+    spec.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: APART,
         stiffness: ContactStiffness::Laws,
@@ -52,13 +52,13 @@ fn held(d: usize, spacing: f64, gap: f64, along: [f64; 2]) -> [f64; 2] {
     let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
     let mut spec = Spec::new(d, BodySpec::Several(pieces), 1.0, law);
     spec.sets = sets(&["lower", "upper"]);
-    spec.horizon = Horizon::Length(2.1);
-    spec.periodic[0] = Some(width);
+    spec.bonds.horizon = Horizon::Length(2.1);
+    spec.space.periodic[0] = Some(width);
     if d == 3 {
-        spec.periodic[2] = Some(width);
+        spec.space.periodic[2] = Some(width);
     }
     cohesive(&mut spec);
-    spec.contact.as_mut().unwrap().free = APART / (0.5 * (1.0 + spacing));
+    spec.interactions.contact.as_mut().unwrap().free = APART / (0.5 * (1.0 + spacing));
     let rows = top + 0.5 * spacing + 0.5;
     let to = |x: f64| text(&format!("{x:e}"));
     let tell = |set: &str, u: [f64; 3]| ConditionSpec {
@@ -69,12 +69,12 @@ fn held(d: usize, spacing: f64, gap: f64, along: [f64; 2]) -> [f64; 2] {
             if d == 3 { to(u[2]) } else { None },
         ]),
     };
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         tell("lower", [0.0; 3]),
         tell("upper", [along[0], gap - rows, along[1]]),
     ];
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
-    spec.probes = vec![ProbeSpec {
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.probes = vec![ProbeSpec {
         name: "p".into(),
         set: "upper".into(),
         measure: Measure::Reaction,
@@ -127,15 +127,15 @@ fn slow_blocks_stick_and_fast_ones_part() {
         let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
         let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, law);
         spec.sets = sets(&["one", "other"]);
-        spec.horizon = Horizon::Length(2.2);
+        spec.bonds.horizon = Horizon::Length(2.2);
         cohesive(&mut spec);
         let thrown = |set: &str, v: f64| InitialSpec {
             set: set.into(),
             displacement: [None, None, None],
             velocity: [text("0"), text(&format!("{v}")), None],
         };
-        spec.initial = vec![thrown("one", speed), thrown("other", -speed)];
-        spec.schedule.time_step = TimeStep::Fraction(0.2);
+        spec.loading.initial = vec![thrown("one", speed), thrown("other", -speed)];
+        spec.run.schedule.time_step = TimeStep::Fraction(0.2);
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);
         let mass = |set: &str, sim: &mut dyn Simulation| {
@@ -182,16 +182,23 @@ fn cohesion_that_cannot_be_is_refused() {
     let pieces = vec![piece("one", one.clone(), true), piece("other", other, true)];
     let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
     let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, law.clone());
-    spec.horizon = Horizon::Length(2.2);
+    spec.bonds.horizon = Horizon::Length(2.2);
     cohesive(&mut spec);
     for (strength, why) in [(1.0, "second row"), (1e-3, "20 times")] {
-        let cohesion = spec.contact.as_mut().unwrap().cohesion.as_mut().unwrap();
+        let cohesion = spec
+            .interactions
+            .contact
+            .as_mut()
+            .unwrap()
+            .cohesion
+            .as_mut()
+            .unwrap();
         cohesion.strength = strength;
         let error = refused(&spec);
         assert!(error.contains(why), "{error}");
     }
     let mut single = Spec::new(2, one, 1.0, law);
-    single.horizon = Horizon::Length(2.2);
+    single.bonds.horizon = Horizon::Length(2.2);
     cohesive(&mut single);
     assert!(refused(&single).contains("there is one"));
 }
@@ -271,13 +278,13 @@ fn statics_without_contact_does_not_pass_over_attraction() {
             name: "held".into(),
             members: Members::Where(text(&above).unwrap()),
         });
-        spec.horizon = Horizon::Length(2.2);
+        spec.bonds.horizon = Horizon::Length(2.2);
         cohesive(&mut spec);
         let held = |set: &str| ConditionSpec {
             set: set.into(),
             kind: ConditionKind::Displacement([text("0"), text("0"), None]),
         };
-        spec.preload = Some(PreloadSpec {
+        spec.run.preload = Some(PreloadSpec {
             statics: Statics {
                 method: Method::Newton,
                 ..Statics::default()

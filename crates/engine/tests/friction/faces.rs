@@ -8,9 +8,9 @@ use peridyne::spec::*;
 /// A block that is cut across, whose upper half is thrown at its lower one and along it.
 fn halves(law: LawSpec, friction: Option<FrictionSpec>, family: FamilyChoice) -> Spec {
     let mut spec = Spec::new(2, square(1.0, [0.5, 0.5, 0.0], [8.6, 7.6, 0.0]), 1.0, law);
-    spec.family = family;
-    spec.horizon = Horizon::Ratio(3);
-    spec.contact = Some(ContactSpec {
+    spec.bonds.family = family;
+    spec.bonds.horizon = Horizon::Ratio(3);
+    spec.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
@@ -18,7 +18,7 @@ fn halves(law: LawSpec, friction: Option<FrictionSpec>, family: FamilyChoice) ->
         cohesion: None,
         conductance: None,
     });
-    spec.precracks.push(PrecrackSpec {
+    spec.damage.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {
             from: [-1.0, 4.0, 0.0],
             to: [10.0, 4.0, 0.0],
@@ -32,13 +32,13 @@ fn halves(law: LawSpec, friction: Option<FrictionSpec>, family: FamilyChoice) ->
             normal: [0.0, -1.0, 0.0],
         }),
     });
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "upper".into(),
         // faces that just touch
         displacement: [None, text("-0.0999"), None],
         velocity: [text("0.1"), text("-0.4"), None],
     }];
-    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    spec.run.schedule.time_step = TimeStep::Fraction(0.1);
     spec
 }
 

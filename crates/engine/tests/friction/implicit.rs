@@ -14,8 +14,8 @@ fn newmark(spec: &Spec, times: f64) -> Spec {
     let mut explicit = made(spec);
     run(explicit.as_mut(), 1);
     let mut spec = spec.clone();
-    spec.schedule.stepper = Stepper::Newmark(Newmark::default());
-    spec.schedule.time_step = TimeStep::Fixed(times * explicit.time());
+    spec.run.schedule.stepper = Stepper::Newmark(Newmark::default());
+    spec.run.schedule.time_step = TimeStep::Fixed(times * explicit.time());
     spec
 }
 
@@ -47,7 +47,7 @@ fn a_block_slides_down_an_incline_by_coulombs_law_in_long_steps() {
 #[test]
 fn what_sticks_stays_in_long_steps() {
     let mut spec = newmark(&resting(), 8.0);
-    spec.schedule.stepper = Stepper::Newmark(Newmark::hht(-0.2));
+    spec.run.schedule.stepper = Stepper::Newmark(Newmark::hht(-0.2));
     rests(&spec);
 }
 
@@ -105,7 +105,7 @@ fn bodies_with_mass_go_the_way_of_explicit_steps() {
         };
         let thrown = |dt: f64| {
             let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, friction.clone(), dt);
-            let IndenterMotion::Free(free) = &mut spec.indenters[0].motion else {
+            let IndenterMotion::Free(free) = &mut spec.loading.indenters[0].motion else {
                 panic!()
             };
             (free.center, free.velocity) = ([2.2, 2.6, 4.6], [0.15, 0.1, -0.3]);
@@ -117,7 +117,7 @@ fn bodies_with_mass_go_the_way_of_explicit_steps() {
         let exact = place(explicit.as_mut());
         let off = |dt: f64, steps: usize| {
             let mut spec = thrown(dt);
-            spec.schedule.stepper = Stepper::Newmark(Newmark::default());
+            spec.run.schedule.stepper = Stepper::Newmark(Newmark::default());
             let mut sim = made(&spec);
             let (_, before) = mass_and_momentum(sim.as_mut());
             let start = seen(sim.as_mut(), "velocity");
@@ -155,7 +155,7 @@ fn a_box_tumbles_in_long_steps() {
 fn tumbled(solver: Solver) -> Vec<f64> {
     let friction = Some(FrictionSpec::constant(0.4));
     let mut spec = tumbling(RigidShape::Box { half: HALF }, friction, 0.08);
-    spec.schedule.stepper = Stepper::Newmark(Newmark {
+    spec.run.schedule.stepper = Stepper::Newmark(Newmark {
         solver,
         ..Newmark::default()
     });
@@ -191,7 +191,7 @@ fn tumbled(solver: Solver) -> Vec<f64> {
 fn a_ball_bounces_off_held_points() {
     for solver in [Solver::Direct, Solver::ConjugateGradients] {
         let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, None, 0.04);
-        let IndenterMotion::Free(free) = &mut spec.indenters[0].motion else {
+        let IndenterMotion::Free(free) = &mut spec.loading.indenters[0].motion else {
             panic!()
         };
         (free.center, free.velocity) = ([2.5, 2.5, 4.6], [0.0, 0.0, -0.3]);
@@ -200,11 +200,11 @@ fn a_ball_bounces_off_held_points() {
             name: "held".into(),
             members: Members::Where(text("x > 0.5 || z < 1.5").unwrap()),
         }];
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: "held".into(),
             kind: ConditionKind::Displacement([text("0"), text("0"), text("0")]),
         }];
-        spec.schedule.stepper = Stepper::Newmark(Newmark {
+        spec.run.schedule.stepper = Stepper::Newmark(Newmark {
             solver,
             ..Newmark::default()
         });
@@ -241,10 +241,10 @@ fn a_head_with_cohesion_draws_points_along() {
             name: "rim".into(),
             members: Members::Where(text("max(abs(x), abs(y)) > 2.5").unwrap()),
         }];
-        spec.conditions[0].set = "rim".into();
+        spec.loading.conditions[0].set = "rim".into();
         spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(4.0));
-        spec.schedule.stepper = stepper;
-        spec.schedule.time_step = TimeStep::Fixed(dt);
+        spec.run.schedule.stepper = stepper;
+        spec.run.schedule.time_step = TimeStep::Fixed(dt);
         let mut sim = made(&spec);
         let mut most = 0.0f64;
         while sim.time() < 30.0 {

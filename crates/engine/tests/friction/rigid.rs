@@ -22,7 +22,7 @@ pub(super) fn run(sim: &mut dyn Simulation, steps: usize) {
 }
 
 fn probe(spec: &mut Spec, indenter: &str) {
-    spec.probes.push(ProbeSpec {
+    spec.run.probes.push(ProbeSpec {
         name: "p".into(),
         set: "all".into(),
         measure: Measure::Indenter {
@@ -64,9 +64,9 @@ pub(super) fn mass_and_momentum(sim: &mut dyn Simulation) -> (f64, Point) {
 pub(super) fn on_an_incline(friction: FrictionSpec, tangent: f64) -> Spec {
     let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
     let mut spec = Spec::new(2, square(1.0, [0.0; 3], [5.0, 2.0, 0.0]), 1.0, law);
-    spec.horizon = Horizon::Length(2.5);
+    spec.bonds.horizon = Horizon::Length(2.5);
     let pull = |g: f64| text(&format!("{g}"));
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::BodyForce([pull(0.01 * tangent), pull(-0.01), None]),
     }];
@@ -84,7 +84,7 @@ pub(super) fn on_an_incline(friction: FrictionSpec, tangent: f64) -> Spec {
     });
     plane.name = "plane".into();
     plane.friction = Some(friction);
-    spec.indenters = vec![plane];
+    spec.loading.indenters = vec![plane];
     probe(&mut spec, "plane");
     spec
 }
@@ -136,7 +136,7 @@ fn a_block_slides_down_an_incline_by_coulombs_law() {
 pub(super) fn resting() -> Spec {
     let mut spec = on_an_incline(FrictionSpec::constant(0.9), 0.3);
     // what bounces would slip a little at every bounce
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Damping(text("t < 100 ? 0.2 : 0").unwrap()),
     });
@@ -192,13 +192,13 @@ fn dragging_to_and_fro_takes_the_area_of_the_loop() {
         down = press + 3.0 * far
     );
     let down = format!("-0.05*min({count}*t/{press}, 1)");
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "top".into(),
         kind: ConditionKind::Displacement([text(&way), text(&down), None]),
     }];
-    spec.indenters[0].stiffness = 2e4;
-    spec.indenters[0].motion = IndenterMotion::Kinematic(constants([0.0, -3.0, 0.0]));
-    spec.schedule = Schedule {
+    spec.loading.indenters[0].stiffness = 2e4;
+    spec.loading.indenters[0].motion = IndenterMotion::Kinematic(constants([0.0, -3.0, 0.0]));
+    spec.run.schedule = Schedule {
         steps: count as u64,
         time_step: TimeStep::Fixed(1.0 / count),
         force_unstable: false,
@@ -259,7 +259,7 @@ pub(super) fn tumbling(shape: RigidShape, friction: Option<FrictionSpec>, dt: f6
     };
     let law = LawSpec::Pmb(PmbStiffness::Young(20.0));
     let mut spec = Spec::new(3, cube, 1.0, law);
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     let mut free = FreeSpec::new(30.0, [2.2, 2.6, 5.1], [0.05, 0.1, -0.3]);
     free.spin = [0.03, -0.04, 0.1];
     let mut body = IndenterSpec::new(8.0, shape, IndenterMotion::Free(free));
@@ -269,8 +269,8 @@ pub(super) fn tumbling(shape: RigidShape, friction: Option<FrictionSpec>, dt: f6
     });
     body.name = "box".into();
     body.friction = friction;
-    spec.indenters = vec![body];
-    spec.schedule.time_step = TimeStep::Fixed(dt);
+    spec.loading.indenters = vec![body];
+    spec.run.schedule.time_step = TimeStep::Fixed(dt);
     probe(&mut spec, "box");
     spec
 }
@@ -378,7 +378,7 @@ fn a_rubbing_ball_keeps_energy_at_second_order() {
     for friction in [None, Some(FrictionSpec::constant(0.4))] {
         let off = |dt: f64, steps: usize| {
             let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, friction.clone(), dt);
-            let IndenterMotion::Free(free) = &mut spec.indenters[0].motion else {
+            let IndenterMotion::Free(free) = &mut spec.loading.indenters[0].motion else {
                 panic!()
             };
             (free.center, free.velocity) = ([2.2, 2.6, 4.6], [0.15, 0.1, -0.3]);
@@ -425,8 +425,8 @@ fn a_box_of_triangles_tumbles_as_the_box() {
 #[test]
 fn what_touches_hard_is_stepped_in_parts() {
     let mut spec = tumbling(RigidShape::Box { half: HALF }, None, 0.02);
-    spec.schedule.time_step = TimeStep::Auto;
-    spec.indenters[0].stiffness = 4000.0;
+    spec.run.schedule.time_step = TimeStep::Auto;
+    spec.loading.indenters[0].stiffness = 4000.0;
     let mut sim = made(&spec);
     while sim.time() < 20.0 {
         sim.step().unwrap();
@@ -455,13 +455,13 @@ pub(super) fn layer(edge: f64, body: IndenterSpec) -> Spec {
         perturb: None,
     };
     let mut spec = Spec::new(3, plate, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-    spec.horizon = Horizon::Length(1.5);
-    spec.conditions = vec![ConditionSpec {
+    spec.bonds.horizon = Horizon::Length(1.5);
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement([text("0"), text("0"), text("0")]),
     }];
-    spec.schedule.time_step = TimeStep::Fixed(0.005);
-    spec.indenters = vec![IndenterSpec {
+    spec.run.schedule.time_step = TimeStep::Fixed(0.005);
+    spec.loading.indenters = vec![IndenterSpec {
         name: "head".into(),
         ..body
     }];
@@ -541,7 +541,7 @@ fn what_rigid_bodies_cannot_be_is_refused() {
     };
     refused(
         &|s| {
-            s.indenters[0].shape = RigidShape::Plane {
+            s.loading.indenters[0].shape = RigidShape::Plane {
                 normal: [0.0, 0.0, 1.0],
             }
         },
@@ -549,7 +549,7 @@ fn what_rigid_bodies_cannot_be_is_refused() {
     );
     refused(
         &|s| {
-            s.probes[0].measure = Measure::Indenter {
+            s.run.probes[0].measure = Measure::Indenter {
                 indenter: "ball".into(),
                 of: None,
             }
@@ -557,12 +557,12 @@ fn what_rigid_bodies_cannot_be_is_refused() {
         "no indenter `ball`",
     );
     refused(
-        &|s| s.indenters.push(s.indenters[0].clone()),
+        &|s| s.loading.indenters.push(s.loading.indenters[0].clone()),
         "two indenters",
     );
     refused(
         &|s| {
-            if let IndenterMotion::Free(free) = &mut s.indenters[0].motion {
+            if let IndenterMotion::Free(free) = &mut s.loading.indenters[0].motion {
                 free.inertia = Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3.0]]);
             }
         },
@@ -570,8 +570,8 @@ fn what_rigid_bodies_cannot_be_is_refused() {
     );
     refused(
         &|s| {
-            s.periodic = [Some(6.0), None, None];
-            s.indenters[0].shape = RigidShape::Box {
+            s.space.periodic = [Some(6.0), None, None];
+            s.loading.indenters[0].shape = RigidShape::Box {
                 half: [1.0, 1.5, 4.0],
             };
         },
@@ -579,7 +579,7 @@ fn what_rigid_bodies_cannot_be_is_refused() {
     );
     refused(
         &|s| {
-            s.indenters[0].cohesion = Some(CohesionSpec {
+            s.loading.indenters[0].cohesion = Some(CohesionSpec {
                 energy: 1.0,
                 strength: 1.0,
             })

@@ -67,9 +67,9 @@ fn solids(low: [[f64; 3]; 2], high: [[f64; 3]; 2], spacing: [f64; 2]) -> Spec {
     let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
     let mut spec = Spec::new(3, BodySpec::Several(pieces), 1.0, law);
     spec.sets = sets(&["one", "block"]);
-    spec.horizon = Horizon::Length(2.2);
-    spec.contact = glancing().contact;
-    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    spec.bonds.horizon = Horizon::Length(2.2);
+    spec.interactions.contact = glancing().interactions.contact;
+    spec.run.schedule.time_step = TimeStep::Fraction(0.1);
     spec
 }
 
@@ -88,7 +88,7 @@ fn solids_that_rub_keep_all_of_their_angular_momentum() {
         [[4.1, 3.1, 2.1], [3.1, 2.8, 5.0]],
     );
     let mut spec = solids(low, high, [1.0, 0.8]);
-    spec.initial = vec![moving("block", ["0"; 3], ["1.2", "0.5", "-1"])];
+    spec.loading.initial = vec![moving("block", ["0"; 3], ["1.2", "0.5", "-1"])];
     keeps_both_momenta(&spec, 4.0);
 }
 
@@ -100,7 +100,7 @@ fn rows_that_cross_keep_all_of_their_angular_momentum() {
         [[8.1, 0.1, 0.1], [4.4, 4.3, 1.4]],
     );
     let mut spec = solids(low, high, [1.0, 1.0]);
-    spec.initial = vec![moving("block", ["0"; 3], ["0.8", "0.5", "-1"])];
+    spec.loading.initial = vec![moving("block", ["0"; 3], ["0.8", "0.5", "-1"])];
     keeps_both_momenta(&spec, 2.0);
 }
 
@@ -122,7 +122,7 @@ fn rubs(spec: &Spec) -> f64 {
     let forces = |friction: bool| {
         let mut spec = spec.clone();
         if !friction {
-            spec.contact.as_mut().unwrap().friction = None;
+            spec.interactions.contact.as_mut().unwrap().friction = None;
         }
         made(&spec).vectors("force_density")
     };
@@ -152,10 +152,10 @@ fn bodies_that_turn_as_one_do_not_rub() {
         displacement: lowered.clone(),
         ..turned("(y - 0.3)")
     };
-    spec.initial = vec![turned("y"), block];
+    spec.loading.initial = vec![turned("y"), block];
     let off = rubs(&spec);
     assert!(off < 1e-12, "{off:e}");
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         displacement: lowered,
         ..moving("block", ["0"; 3], ["1", "0", "0"])
     }];
@@ -179,7 +179,7 @@ fn bodies_that_turn_as_one_do_not_rub() {
             [x, y, z]
         })
     };
-    spec.initial = vec![spun("one", "z"), spun("block", "(z - 0.2)")];
+    spec.loading.initial = vec![spun("one", "z"), spun("block", "(z - 0.2)")];
     let off = rubs(&spec);
     assert!(off < 1e-12, "{off:e}");
 }
@@ -197,11 +197,11 @@ fn what_rolls_does_not_rub() {
         displacement: [None, text("-0.3"), None],
         velocity: [text(v[0]), text(v[1]), None],
     };
-    spec.initial = vec![with(["-0.2*(y - 0.3 - 4.55)", "0.2*(x - 7)"])];
+    spec.loading.initial = vec![with(["-0.2*(y - 0.3 - 4.55)", "0.2*(x - 7)"])];
     let rolls = rubs(&spec);
     assert!(rolls < 1e-12, "{rolls:e}");
     // about its own corner the place of contact slides
-    spec.initial = vec![with(["-0.2*(y - 0.3 - 5.1)", "0.2*(x - 7)"])];
+    spec.loading.initial = vec![with(["-0.2*(y - 0.3 - 5.1)", "0.2*(x - 7)"])];
     let slides = rubs(&spec);
     assert!(slides > 0.1, "{slides}");
 }
@@ -212,7 +212,7 @@ fn a_ball_that_rolls_does_not_rub() {
     let begins = |velocity: f64| {
         let friction = Some(FrictionSpec::constant(0.4));
         let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, friction, 0.005);
-        let IndenterMotion::Free(free) = &mut spec.indenters[0].motion else {
+        let IndenterMotion::Free(free) = &mut spec.loading.indenters[0].motion else {
             panic!()
         };
         // 1.9 above the point (2, 2, 2), and further than its radius from all others

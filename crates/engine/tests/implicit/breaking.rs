@@ -15,7 +15,7 @@ const CONTACT: ContactSpec = ContactSpec {
 fn notched(law: LawSpec) -> Spec {
     let mut spec = block([24.0, 16.0, 0.0], 2, law, 2);
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.02)));
-    spec.precracks.push(PrecrackSpec {
+    spec.damage.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {
             from: [12.5, -1.0, 0.0],
             to: [12.5, 5.5, 0.0],
@@ -23,7 +23,7 @@ fn notched(law: LawSpec) -> Spec {
         kind: CrackKind::Broken,
     });
     for (set, way) in [("low", "-"), ("high", "")] {
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: set.into(),
             kind: ConditionKind::Velocity([text(&format!("{way}0.004")), None, None]),
         });
@@ -36,8 +36,8 @@ fn bonds_break_at_the_end_of_a_step_as_explicit_ones_do() {
     for law in [LawSpec::Pmb(PmbStiffness::Young(1.0)), LPS] {
         let run = |stepper: Stepper, fraction: f64, duration: f64| {
             let mut spec = notched(law.clone());
-            spec.schedule.stepper = stepper;
-            spec.schedule.time_step = TimeStep::Fraction(fraction);
+            spec.run.schedule.stepper = stepper;
+            spec.run.schedule.time_step = TimeStep::Fraction(fraction);
             let mut sim = built(&spec);
             let mut first = None;
             while sim.time() < duration {
@@ -97,8 +97,8 @@ fn bonds_that_remember_break_at_the_end_of_a_step_as_explicit_ones_do() {
         let run = |stepper: Stepper| {
             let mut spec = notched(law.clone());
             spec.materials[0].fracture = Some(fracture);
-            spec.schedule.stepper = stepper;
-            spec.schedule.time_step = TimeStep::Fraction(0.1);
+            spec.run.schedule.stepper = stepper;
+            spec.run.schedule.time_step = TimeStep::Fraction(0.1);
             let mut sim = built(&spec);
             let mut first = None;
             while sim.time() < 80.0 {
@@ -139,7 +139,7 @@ fn bodies_that_collide_keep_momentum_and_energy() {
         let pieces = vec![PieceSpec::new("ball", ball), PieceSpec::new("plate", plate)];
         let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
         let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, law);
-        spec.horizon = Horizon::Ratio(2);
+        spec.bonds.horizon = Horizon::Ratio(2);
         spec.sets = vec![SetSpec {
             name: "ball".into(),
             members: Members::Within {
@@ -147,14 +147,14 @@ fn bodies_that_collide_keep_momentum_and_energy() {
                 members: Box::new(Members::All),
             },
         }];
-        spec.contact = Some(CONTACT);
-        spec.initial.push(InitialSpec {
+        spec.interactions.contact = Some(CONTACT);
+        spec.loading.initial.push(InitialSpec {
             set: "ball".into(),
             displacement: [None, None, None],
             velocity: [None, text("-1"), None],
         });
-        spec.schedule.stepper = stepper;
-        spec.schedule.time_step = TimeStep::Fraction(fraction);
+        spec.run.schedule.stepper = stepper;
+        spec.run.schedule.time_step = TimeStep::Fraction(fraction);
         let mut sim = built(&spec);
         let mut touched = 0.0f64;
         while sim.time() < 2.5 {
@@ -198,15 +198,17 @@ fn a_ball_that_is_pressed_in_does_the_work_that_the_block_holds() {
                 normal: [0.0, 1.0, 0.0],
             }),
         });
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: "bottom".into(),
             kind: ConditionKind::Displacement([text("0"), text("0"), None]),
         });
         let center = ["6", "10.5 - 0.005*t", "0"].map(|e| text(e).unwrap());
         let motion = IndenterMotion::Kinematic(center);
-        spec.indenters.push(IndenterSpec::sphere(2.0, 4.0, motion));
-        spec.schedule.stepper = stepper;
-        spec.schedule.time_step = TimeStep::Fixed(step);
+        spec.loading
+            .indenters
+            .push(IndenterSpec::sphere(2.0, 4.0, motion));
+        spec.run.schedule.stepper = stepper;
+        spec.run.schedule.time_step = TimeStep::Fixed(step);
         let mut sim = built(&spec);
         while sim.time() < 200.0 - 1e-9 {
             sim.step().unwrap();

@@ -19,20 +19,20 @@ fn amplified(alpha: f64, w: f64, [u, v, a]: [f64; 3]) -> [f64; 3] {
 /// Two points, one of them held: an oscillator with ω = 1.
 fn oscillator(alpha: f64, w: f64, u: f64) -> Box<dyn Simulation> {
     let mut spec = block([1.0, 0.0, 0.0], 1, SPRINGS, 1);
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "low".into(),
         kind: ConditionKind::Displacement([text("0"), None, None]),
     });
-    spec.initial.push(InitialSpec {
+    spec.loading.initial.push(InitialSpec {
         set: "high".into(),
         displacement: [text(&format!("{u}")), None, None],
         velocity: [None, None, None],
     });
-    spec.schedule.stepper = Stepper::Newmark(Newmark {
+    spec.run.schedule.stepper = Stepper::Newmark(Newmark {
         tolerance: 1e-14,
         ..Newmark::hht(alpha)
     });
-    spec.schedule.time_step = TimeStep::Fixed(w);
+    spec.run.schedule.time_step = TimeStep::Fixed(w);
     built(&spec)
 }
 
@@ -85,8 +85,8 @@ fn it_is_of_second_order_and_takes_little_of_what_is_slow() {
             let (duration, omega) = (17.0, 2.0 * (3.0 * PI / 40.0).sin());
             let mut spec = block([19.0, 0.0, 0.0], 1, SPRINGS, 1);
             start(&mut spec, "0.01*cos(3*pi*(x+0.5)/20)", ["0", "0"]);
-            spec.schedule.stepper = Stepper::Newmark(Newmark::hht(alpha));
-            spec.schedule.time_step = TimeStep::Fixed(duration / f64::from(steps));
+            spec.run.schedule.stepper = Stepper::Newmark(Newmark::hht(alpha));
+            spec.run.schedule.time_step = TimeStep::Fixed(duration / f64::from(steps));
             let mut sim = built(&spec);
             (0..steps).for_each(|_| sim.step().unwrap());
             let u = sim.displacements()[0][0] / (3.0 * PI * 0.5 / 20.0).cos();
@@ -119,15 +119,15 @@ fn what_the_method_takes_has_an_account_of_its_own() {
             "0.02*sin(2*x*y)",
             ["0.01*sin(3*x+y)", "0.02*cos(x-2*y)"],
         );
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: "high".into(),
             kind: ConditionKind::BodyForce([text("1e-3*sin(t)"), None, None]),
         });
-        spec.schedule.stepper = Stepper::Newmark(Newmark {
+        spec.run.schedule.stepper = Stepper::Newmark(Newmark {
             tolerance: 1e-13,
             ..options
         });
-        spec.schedule.time_step = TimeStep::Fraction(3.0);
+        spec.run.schedule.time_step = TimeStep::Fraction(3.0);
         let mut sim = built(&spec);
         let first = sim.ledger().unwrap();
         for _ in 0..100 {

@@ -23,11 +23,11 @@ fn solid(size: &[f64], longest: f64, own: Option<&str>) -> Spec {
         },
     );
     let mut spec = Spec::new(d, body, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-    spec.horizon = Horizon::Length(longest);
-    spec.family = FamilyChoice::List;
-    spec.calibration = Calibration::Continuum;
-    spec.volume_scaling = true;
-    spec.own_horizon = own.and_then(text);
+    spec.bonds.horizon = Horizon::Length(longest);
+    spec.bonds.family = FamilyChoice::List;
+    spec.bonds.calibration = Calibration::Continuum;
+    spec.bonds.volume_scaling = true;
+    spec.bonds.own_horizon = own.and_then(text);
     spec
 }
 
@@ -56,7 +56,7 @@ fn of_families(d: usize) -> Vec<LawSpec> {
 fn with_law(mut spec: Spec, law: &LawSpec) -> Spec {
     spec.materials[0].law = law.clone();
     if matches!(law, LawSpec::Lps(_)) {
-        spec.influence = Influence::Inverse;
+        spec.bonds.influence = Influence::Inverse;
     }
     spec
 }
@@ -138,7 +138,7 @@ fn unlike_horizons_keep_momentum_and_energy() {
         // forces are the slope of the energy: it is kept, and to second order in the step
         let off = |fraction: f64| {
             let mut spec = with_law(solid(size, 3.6, Some(GRADED)), &law);
-            spec.schedule.time_step = TimeStep::Fraction(fraction);
+            spec.run.schedule.time_step = TimeStep::Fraction(fraction);
             let mut sim = started(&spec);
             sim.set_displacements(&u);
             sim.start(true);
@@ -178,14 +178,14 @@ fn has_an_equilibrium(law: &LawSpec) {
     };
     spec.sets = vec![end("low", 1.0, 1.1), end("high", -1.0, 12.9)];
     for (set, u) in [("low", "0"), ("high", "0.2")] {
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: set.into(),
             kind: ConditionKind::Displacement([text(u), text("0"), None]),
         });
     }
-    spec.schedule.steps = 1;
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.steps = 1;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-11,
         ..Statics::default()
@@ -231,7 +231,7 @@ fn a_graded_bar_lets_a_wave_through() {
     for (over, patch, back) in [(1.0, 0.3, 2e-3), (40.0, 0.02, 5e-4)] {
         let own = graded(over);
         let mut spec = solid(&[400.0], 4.1, Some(&own));
-        spec.initial.push(InitialSpec {
+        spec.loading.initial.push(InitialSpec {
             set: "all".into(),
             displacement: [text("0.01*exp(-((x-100)/12)^2)"), None, None],
             velocity: [
@@ -277,16 +277,22 @@ fn what_knows_one_horizon_is_refused() {
         change(&mut spec);
         build(&spec, Options::default()).err().unwrap().path
     };
-    assert_eq!(said(&|s| s.own_horizon = text("5")), "own_horizon");
-    assert_eq!(said(&|s| s.own_horizon = text("x-1")), "own_horizon");
-    assert_eq!(said(&|s| s.own_horizon = text("2+t")), "own_horizon");
-    assert_eq!(said(&|s| s.family = FamilyChoice::Auto), "own_horizon");
-    assert_eq!(said(&|s| s.volume_scaling = false), "volume_scaling");
+    assert_eq!(said(&|s| s.bonds.own_horizon = text("5")), "own_horizon");
+    assert_eq!(said(&|s| s.bonds.own_horizon = text("x-1")), "own_horizon");
+    assert_eq!(said(&|s| s.bonds.own_horizon = text("2+t")), "own_horizon");
     assert_eq!(
-        said(&|s| s.calibration = Calibration::Discrete),
+        said(&|s| s.bonds.family = FamilyChoice::Auto),
+        "own_horizon"
+    );
+    assert_eq!(said(&|s| s.bonds.volume_scaling = false), "volume_scaling");
+    assert_eq!(
+        said(&|s| s.bonds.calibration = Calibration::Discrete),
         "calibration"
     );
-    assert_eq!(said(&|s| s.influence = Influence::Conical), "influence");
+    assert_eq!(
+        said(&|s| s.bonds.influence = Influence::Conical),
+        "influence"
+    );
     let softening = Parameters::numbers(&[("young", 1.0), ("onset", 0.2)]);
     assert_eq!(
         said(&|s| {
@@ -334,17 +340,17 @@ fn of_points() -> Vec<(LawSpec, &'static str)> {
 /// A plate in plane strain all of whose points are told a uniform strain that grows with time.
 fn told(law: &LawSpec, longest: f64, own: Option<&str>) -> Spec {
     let mut spec = with_law(solid(&[18.0, 8.0], longest, own), law);
-    spec.plane = Plane::Strain;
+    spec.space.plane = Plane::Strain;
     if own.is_none() {
         // a yield surface of each family, as points with horizons of their own have it
-        spec.calibration = Calibration::Discrete;
+        spec.bonds.calibration = Calibration::Discrete;
     }
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement([text("0.01*t*x + 0.004*t*y"), text("-0.03*t*y"), None]),
     }];
-    spec.schedule.time_step = TimeStep::Fixed(0.1);
-    spec.schedule.force_unstable = true;
+    spec.run.schedule.time_step = TimeStep::Fixed(0.1);
+    spec.run.schedule.force_unstable = true;
     spec
 }
 
@@ -467,7 +473,7 @@ fn contact_is_as_stiff_as_the_bonds_of_each_point() {
     for law in pmb.into_iter().chain(of_families(2)) {
         let squeezed = |longest: f64, own: Option<&str>| {
             let mut spec = with_law(solid(&[14.0, 5.0], longest, own), &law);
-            spec.contact = Some(ContactSpec {
+            spec.interactions.contact = Some(ContactSpec {
                 bonded: 0.9,
                 free: 1.35,
                 stiffness: ContactStiffness::Laws,
@@ -475,12 +481,12 @@ fn contact_is_as_stiff_as_the_bonds_of_each_point() {
                 cohesion: None,
                 conductance: None,
             });
-            spec.initial = vec![InitialSpec {
+            spec.loading.initial = vec![InitialSpec {
                 set: "all".into(),
                 displacement: [text("-0.6*x"), None, None],
                 velocity: [None, None, None],
             }];
-            spec.schedule.time_step = TimeStep::Fixed(1e-3);
+            spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
             let mut sim = started(&spec);
             let contact_step = sim.info().contact_step;
             sim.step().unwrap();
@@ -539,12 +545,12 @@ fn a_fracture_energy_is_one_of_every_horizon() {
         let mut spec = of(4.6, Some("x < 12 ? 2.3 : 4.6"), g);
         let rate = 1e-3;
         let across = text("0").filter(|_| size.len() > 1);
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: "all".into(),
             kind: ConditionKind::Displacement([text("1e-3*t*x"), across, None]),
         }];
-        spec.schedule.time_step = TimeStep::Fixed(0.1);
-        spec.schedule.force_unstable = true;
+        spec.run.schedule.time_step = TimeStep::Fixed(0.1);
+        spec.run.schedule.force_unstable = true;
         let mut sim = started(&spec);
         let x = sim.vectors("reference");
         let [short, long] = [0.1, 23.9].map(|at| {
@@ -591,7 +597,7 @@ fn stress_flow_and_rates_break_alike_at_every_horizon() {
     ] {
         let broken = |longest: f64, own: Option<&str>| {
             let mut spec = told(law, longest, own);
-            spec.calibration = Calibration::Continuum;
+            spec.bonds.calibration = Calibration::Continuum;
             spec.materials[0].fracture = Some(fracture);
             let mut sim = started(&spec);
             let each = (0..15).map(|_| {

@@ -17,7 +17,7 @@ fn every_declared_column_can_be_read() {
                 rate: None,
                 fatigue: None,
             });
-            spec.schedule.time_step = TimeStep::Fixed(1e-3);
+            spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
             let mut sim = made(&spec);
             let declared = sim.columns();
             let points = sim.info().points as usize;
@@ -64,7 +64,7 @@ fn what_is_moved_persists_and_what_follows_is_derived() {
 #[test]
 fn a_snapshot_has_what_was_asked_for_and_no_more() {
     let mut spec = block([9, 4, 0], 2, 0.5, PMB);
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let mut sim = made(&spec);
     let snapshot = sim.snapshot(&["damage", "displacement", "body", "nothing"], false);
     let names: Vec<&str> = snapshot.columns.iter().map(|c| c.name()).collect();
@@ -84,7 +84,7 @@ fn a_field_that_does_not_exist_is_refused_with_the_nearest() {
         ("temperature", "the points are no atoms", ""),
         ("whole", "a column of bonds", ""),
     ] {
-        spec.fields = Some(vec!["velocity".into(), name.into()]);
+        spec.run.fields = Some(vec!["velocity".into(), name.into()]);
         let Err(error) = build(&spec, Options::default()) else {
             panic!("{name} was taken")
         };
@@ -104,9 +104,9 @@ fn memory_goes_from_one_model_to_another() {
         rate: None,
         fatigue: None,
     });
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     for family in [FamilyChoice::Stencil, FamilyChoice::List] {
-        spec.family = family;
+        spec.bonds.family = family;
         let mut broken = made(&spec);
         let u: Vec<_> = (0..broken.info().points)
             .map(|i| [0.02 * (i as f64).sin(), 0.01 * (i as f64).cos(), 0.0])

@@ -37,7 +37,7 @@ fn plate(n: u32, a: f64, law: LawSpec) -> Spec {
             }),
         });
     }
-    spec.precracks = vec![PrecrackSpec {
+    spec.damage.precracks = vec![PrecrackSpec {
         shape: CrackShape::Segment {
             from: [-a, 0.0, 0.0],
             to: [a, 0.0, 0.0],
@@ -124,7 +124,7 @@ fn j_is_what_a_longer_crack_frees() {
 #[test]
 fn a_whole_plate_has_no_j() {
     let mut spec = plate(24, A, LPS);
-    spec.precracks.clear();
+    spec.damage.precracks.clear();
     push(&mut spec, "top", [text("3e-4*x"), None, None]);
     push(&mut spec, "bottom", [text("3e-4*x"), None, None]);
     probe(&mut spec, "none", "all", around(0.1, 0.5));

@@ -43,7 +43,7 @@ fn strain_is_that_of_a_homogeneous_deformation_and_knows_no_rotation() {
     for d in 1..=3 {
         for law in [PMB, LPS] {
             let mut spec = block([9, 6, 4], d, 0.5, law.clone());
-            spec.schedule.time_step = TimeStep::Fixed(1e-3);
+            spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
             let mut sim = made(&spec);
             let (x, f) = (sim.vectors("reference"), large(d));
             sim.set_displacements(&deformed(&x, &f));
@@ -79,7 +79,7 @@ fn points_whose_bonds_do_not_span_the_space_have_no_strain() {
         0.5,
         LawSpec::Pmb(PmbStiffness::Micromodulus(1.0)),
     );
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let mut sim = made(&spec);
     let x = sim.vectors("reference");
     sim.set_displacements(
@@ -109,7 +109,7 @@ fn stress_is_the_slope_of_the_energy() {
             // two horizons from every side: families of families are whole
             let n = [[30, 14, 14], [16, 15, 0], [10, 10, 10]][d - 1];
             let mut spec = block(n, d, 0.5, law.clone());
-            spec.schedule.time_step = TimeStep::Fixed(1e-3);
+            spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
             let mut sim = made(&spec);
             let x = sim.vectors("reference");
             let reach = 2.0 * sim.info().horizon + 1e-9;
@@ -171,7 +171,7 @@ fn stress_is_the_slope_of_the_energy() {
 fn stress_turns_with_the_body() {
     for law in [PMB, LPS] {
         let mut spec = block([9, 8, 0], 2, 0.5, law.clone());
-        spec.schedule.time_step = TimeStep::Fixed(1e-3);
+        spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
         let mut sim = made(&spec);
         let x = sim.vectors("reference");
         let (s, c) = 0.9f64.sin_cos();
@@ -216,7 +216,7 @@ fn stress_turns_with_the_body() {
 #[test]
 fn stresses_of_points_are_the_virial_of_the_body() {
     let mut spec = block([9, 8, 0], 2, 0.5, LPS);
-    spec.contact = Some(ContactSpec {
+    spec.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
@@ -224,7 +224,7 @@ fn stresses_of_points_are_the_virial_of_the_body() {
         cohesion: None,
         conductance: None,
     });
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let mut sim = made(&spec);
     let x = sim.vectors("reference");
     let wavy: Vec<Point> = x

@@ -25,7 +25,7 @@ fn the_reaction_of_a_support_is_the_load() {
     ] {
         let mut spec = block([11, 5, 4], d, 0.5, law.clone());
         statics(&mut spec, method);
-        if let Stepper::Statics(s) = &mut spec.schedule.stepper {
+        if let Stepper::Statics(s) = &mut spec.run.schedule.stepper {
             s.tolerance = 1e-10;
         }
         hold(&mut spec, "low", [text("0"), text("0"), text("0")]);
@@ -94,13 +94,13 @@ fn in_motion_reactions_change_the_momentum() {
     for kind in ["displacement", "velocity"] {
         for law in [PMB, LPS] {
             let mut spec = block([11, 5, 0], 2, 0.5, law.clone());
-            spec.schedule.time_step = TimeStep::Fraction(0.5);
+            spec.run.schedule.time_step = TimeStep::Fraction(0.5);
             let way = [text("0.02*sin(3*t)+0.01*t"), text("0.01*t*t"), None];
             let kind = match kind {
                 "displacement" => ConditionKind::Displacement(way),
                 _ => ConditionKind::Velocity(way),
             };
-            spec.conditions.push(ConditionSpec {
+            spec.loading.conditions.push(ConditionSpec {
                 set: "low".into(),
                 kind,
             });
@@ -145,8 +145,8 @@ fn in_motion_reactions_change_the_momentum() {
 fn a_load_displacement_curve_holds_the_work() {
     let mut spec = block([20, 6, 0], 2, 0.5, LPS);
     statics(&mut spec, Method::Linear);
-    spec.schedule.steps = 5;
-    spec.schedule.time_step = TimeStep::Fixed(0.2);
+    spec.run.schedule.steps = 5;
+    spec.run.schedule.time_step = TimeStep::Fixed(0.2);
     hold(&mut spec, "low", [text("0"), text("0"), None]);
     hold(&mut spec, "high", [text("0.05*t"), None, None]);
     probe(&mut spec, "pull", "high", Measure::Reaction);
@@ -182,7 +182,7 @@ fn a_load_displacement_curve_holds_the_work() {
 #[test]
 fn folds_are_those_of_the_column() {
     let mut spec = block([9, 5, 0], 2, 0.5, PMB);
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     for (name, fold) in [
         ("mean", Fold::Mean),
         ("least", Fold::Min),

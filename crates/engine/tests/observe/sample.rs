@@ -41,12 +41,12 @@ pub fn block(n: [u32; 3], d: usize, h: f64, law: LawSpec) -> Spec {
         end("low", 1.0, 0.1 * h),
         end("high", -1.0, h * f64::from(n[0]) - 0.1 * h),
     ];
-    spec.horizon = Horizon::Ratio(if d == 3 { 2 } else { 3 });
+    spec.bonds.horizon = Horizon::Ratio(if d == 3 { 2 } else { 3 });
     spec
 }
 
 pub fn statics(spec: &mut Spec, method: Method) {
-    spec.schedule = Schedule {
+    spec.run.schedule = Schedule {
         steps: 1,
         time_step: TimeStep::Fixed(1.0),
         force_unstable: false,
@@ -58,21 +58,21 @@ pub fn statics(spec: &mut Spec, method: Method) {
 }
 
 pub fn hold(spec: &mut Spec, set: &str, u: [Option<Expression>; 3]) {
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: set.into(),
         kind: ConditionKind::Displacement(u),
     });
 }
 
 pub fn push(spec: &mut Spec, set: &str, force: [Option<Expression>; 3]) {
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: set.into(),
         kind: ConditionKind::BodyForce(force),
     });
 }
 
 pub fn probe(spec: &mut Spec, name: &str, set: &str, measure: Measure) {
-    spec.probes.push(ProbeSpec {
+    spec.run.probes.push(ProbeSpec {
         name: name.into(),
         set: set.into(),
         measure,
@@ -81,7 +81,7 @@ pub fn probe(spec: &mut Spec, name: &str, set: &str, measure: Measure) {
 
 pub fn made(spec: &Spec) -> Box<dyn Simulation> {
     let options = Options {
-        trust_time_step: matches!(spec.schedule.time_step, TimeStep::Fixed(_)),
+        trust_time_step: matches!(spec.run.schedule.time_step, TimeStep::Fixed(_)),
         ..Options::default()
     };
     let mut sim = build(spec, options).unwrap();
@@ -91,7 +91,7 @@ pub fn made(spec: &Spec) -> Box<dyn Simulation> {
 
 pub fn run(spec: &Spec) -> Box<dyn Simulation> {
     let mut sim = made(spec);
-    for _ in 0..spec.schedule.steps {
+    for _ in 0..spec.run.schedule.steps {
         sim.step().unwrap();
     }
     sim

@@ -47,7 +47,7 @@ fn compared(sim: &mut dyn Simulation, at: &[Point], stress: [f64; 2], case: &str
 pub fn prescribed_tension() -> Vec<Off> {
     let (at, mut spec) = bar(0.0);
     hold(&mut spec, "all", ["0", "0.001*y*t/1.0e-8", "0"]);
-    spec.schedule.time_step = TimeStep::Fixed(2e-9);
+    spec.run.schedule.time_step = TimeStep::Fixed(2e-9);
     let mut sim = model(&spec);
     sim.start(true);
     for _ in 0..5 {
@@ -67,7 +67,7 @@ pub fn bonds_in_tension() -> Vec<Off> {
     let numbers = numbers.with("gradient", Parameter::Word("bond".into()));
     let (at, mut spec) = bar_of("hypoelastic", numbers);
     hold(&mut spec, "all", ["0", "0.001*y*t/1.0e-8", "0"]);
-    spec.schedule.time_step = TimeStep::Fixed(2e-9);
+    spec.run.schedule.time_step = TimeStep::Fixed(2e-9);
     let mut sim = model(&spec);
     sim.start(true);
     for _ in 0..5 {
@@ -92,8 +92,8 @@ pub fn tension_at_rest() -> Vec<Off> {
     }
     hold(&mut spec, "x", ["0", "", ""]);
     hold(&mut spec, "z", ["", "", "0"]);
-    spec.schedule.time_step = TimeStep::Fixed(0.5);
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.time_step = TimeStep::Fixed(0.5);
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-12,
         ..Statics::default()
@@ -128,7 +128,7 @@ pub fn tension_at_rest() -> Vec<Off> {
 fn stretched(parameters: Parameters, dt: f64, steps: usize) -> (Vec<Point>, Box<dyn Simulation>) {
     let (at, mut spec) = bar_of("hypoelastic_plastic", parameters);
     hold(&mut spec, "all", ["0", "0.001*y*t/1.0e-8", "0"]);
-    spec.schedule.time_step = TimeStep::Fixed(dt);
+    spec.run.schedule.time_step = TimeStep::Fixed(dt);
     let mut sim = model(&spec);
     sim.start(true);
     for _ in 0..steps {

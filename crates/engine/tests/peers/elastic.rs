@@ -73,7 +73,7 @@ fn approaching(spec: &Spec, at: &[Point]) -> Box<dyn Simulation> {
 pub fn compression_2x1x1() -> Vec<Off> {
     let at = grid([2, 1, 1], 2.0);
     let mut spec = cells(&at, 2.0, 7800.0, 2.1, steel());
-    spec.schedule.time_step = TimeStep::Fixed(1e-5);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-5);
     let found = first(approaching(&spec, &at).as_mut(), 5);
     compared(&found, "Compression_2x1x1")
 }
@@ -81,7 +81,7 @@ pub fn compression_2x1x1() -> Vec<Off> {
 pub fn compression_3x1x1() -> Vec<Off> {
     let at = grid([3, 1, 1], 1.0);
     let mut spec = cells(&at, 1.0, 7800.0, 1.1, steel());
-    spec.schedule.time_step = TimeStep::Fixed(1e-5);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-5);
     let found = first(approaching(&spec, &at).as_mut(), 5);
     compared(&found, "Compression_3x1x1")
 }
@@ -89,8 +89,8 @@ pub fn compression_3x1x1() -> Vec<Off> {
 pub fn compression_3x1x1_influence() -> Vec<Off> {
     let at = grid([3, 1, 1], 1.0);
     let mut spec = cells(&at, 1.0, 7800.0, 2.1, steel());
-    spec.influence = Influence::Inverse;
-    spec.schedule.time_step = TimeStep::Fixed(1e-6);
+    spec.bonds.influence = Influence::Inverse;
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-6);
     let found = first(approaching(&spec, &at).as_mut(), 5);
     compared(&found, "Compression_3x1x1_InfluenceFunction")
 }
@@ -98,7 +98,7 @@ pub fn compression_3x1x1_influence() -> Vec<Off> {
 pub fn compression_from_displacements() -> Vec<Off> {
     let at = grid([2, 1, 1], 2.0);
     let mut spec = cells(&at, 2.0, 7800.0, 2.1, steel());
-    spec.schedule.time_step = TimeStep::Fixed(1e-5);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-5);
     let mut sim = model(&spec);
     sim.set_displacements(&[[1e-5, 0.0, 0.0], [-1e-5, 0.0, 0.0]]);
     let found = first(sim.as_mut(), 5);
@@ -117,8 +117,8 @@ pub fn compression_qs() -> Vec<Off> {
     hold(&mut spec, "high", ["-0.1*t", "", ""]);
     hold(&mut spec, "along y", ["", "", "0"]);
     hold(&mut spec, "along z", ["", "0", ""]);
-    spec.schedule.time_step = TimeStep::Fixed(0.25);
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.time_step = TimeStep::Fixed(0.25);
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-12,
         ..Statics::default()
@@ -172,7 +172,7 @@ pub fn pairs_that_part(law: LawSpec) -> Vec<Off> {
         rate: None,
         fatigue: None,
     });
-    spec.schedule.time_step = TimeStep::Fixed(1e-8);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-8);
     let mut sim = model(&spec);
     let v = [-244.939, -244.959, 244.939, 244.959].map(|v| [0.0, v, 0.0]);
     sim.set_velocities(&v);
@@ -217,14 +217,14 @@ pub fn bond_breaking_in_time() -> Vec<Off> {
         rate: None,
         fatigue: None,
     });
-    spec.toughness = vec![ToughnessSpec {
+    spec.damage.toughness = vec![ToughnessSpec {
         set: "all".into(),
         factor: ToughnessFactor::Stretch(
             // the peer adds up its steps, and is a rounding beyond 7e-5 after 7,000
             Expression::parse("t < 6.9995e-5 ? 1 : 0.015/50", &[]).unwrap(),
         ),
     }];
-    spec.schedule.time_step = TimeStep::Fixed(1e-8);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-8);
     let mut sim = model(&spec);
     let v = [-244.939, -244.959, 244.939, 244.959].map(|v| [0.0, v, 0.0]);
     sim.set_velocities(&v);
@@ -306,7 +306,7 @@ fn bond_based(plane: Plane) -> Vec<Off> {
     let c = 12.0 * 200e9 / (PI * 0.25 * 0.751f64.powi(3));
     let law = LawSpec::Pmb(PmbStiffness::Micromodulus(c));
     let mut spec = cells(&at, 0.015625, 7800.0, 0.751, law);
-    (spec.dimension, spec.plane, spec.section) = (2, plane, 0.25);
+    (spec.space.dimension, spec.space.plane, spec.space.section) = (2, plane, 0.25);
     stretched(&spec, &at, "ElasticBondBased2DPlane")
 }
 
@@ -350,7 +350,7 @@ pub fn linear_bar() -> Vec<Off> {
 pub fn wave_in_bar() -> Vec<Off> {
     let at = grid([21, 5, 5], 0.002);
     let mut spec = cells(&at, 8e-9, 2200.0, 0.00601, lps(14.9e9, 8.94e9));
-    spec.schedule.time_step = TimeStep::Fixed(9.0659e-8);
+    spec.run.schedule.time_step = TimeStep::Fixed(9.0659e-8);
     let mut sim = model(&spec);
     let thrown = |x: &Point| [if x[0] < -0.015 { -100.0 } else { 0.0 }, 0.0, 0.0];
     let v: Vec<Point> = at.iter().map(thrown).collect();
@@ -390,7 +390,7 @@ pub fn initial_damage() -> Vec<Off> {
         .map(|t| [t[0], t[1], t[2]].map(|c| corners[c as usize]))
         .collect();
     let surface = Triangles::new(&triangles).unwrap();
-    spec.precracks = vec![PrecrackSpec {
+    spec.damage.precracks = vec![PrecrackSpec {
         shape: CrackShape::Surface(Arc::new(surface)),
         kind: CrackKind::Broken,
     }];
@@ -399,7 +399,7 @@ pub fn initial_damage() -> Vec<Off> {
     let pull = format!("-0.05*(cos({PI} + t*{PI}/1.0e-2) + 1)");
     hold(&mut spec, "pulled", [&pull, &pull, &pull]);
     hold(&mut spec, "held", ["0", "0", "0"]);
-    spec.schedule.time_step = TimeStep::Fixed(2e-5);
+    spec.run.schedule.time_step = TimeStep::Fixed(2e-5);
     let mut sim = model(&spec);
     sim.start(true);
     let bonds: Vec<f64> = rows(", bonds").concat();

@@ -258,9 +258,9 @@ pub fn cells(at: &[Point], volume: f64, density: f64, horizon: f64, law: LawSpec
         ..Cloud::default()
     };
     let mut spec = Spec::new(3, BodySpec::Cloud(cloud), density, law);
-    spec.horizon = Horizon::Length(horizon);
-    spec.calibration = Calibration::Continuum;
-    spec.schedule.time_step = TimeStep::Fixed(1e-9);
+    spec.bonds.horizon = Horizon::Length(horizon);
+    spec.bonds.calibration = Calibration::Continuum;
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-9);
     spec
 }
 
@@ -300,7 +300,7 @@ pub fn set(spec: &mut Spec, name: &str, at: &[Point], holds: impl Fn(&Point) -> 
 /// Displacements of a set; an empty text leaves an axis free.
 pub fn hold(spec: &mut Spec, set: &str, axes: [&str; 3]) {
     let parse = |text: &str| (!text.is_empty()).then(|| Expression::parse(text, &[]).unwrap());
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: set.into(),
         kind: ConditionKind::Displacement(axes.map(parse)),
     });

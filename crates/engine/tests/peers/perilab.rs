@@ -298,9 +298,9 @@ fn points(layers: &[f64]) -> Vec<Point> {
 /// Points with a stiffer corner, of two laws, in `dimension` axes.
 fn two_blocks(at: &[Point], dimension: usize, laws: [LawSpec; 2]) -> Spec {
     let mut spec = cells(at, VOLUME, 2.7e-9, HORIZON, laws[0].clone());
-    spec.dimension = dimension;
+    spec.space.dimension = dimension;
     // each end of a bond answers for itself
-    spec.interface = InterfaceRule::Parallel;
+    spec.interactions.interface = InterfaceRule::Parallel;
     set(&mut spec, "soft", at, |x| !(x[0] > 0.0 && x[1] > 0.5));
     set(&mut spec, "stiff", at, |x| x[0] > 0.0 && x[1] > 0.5);
     spec.materials = { ["soft", "stiff"].into_iter().zip(laws) }
@@ -354,7 +354,7 @@ fn plane_stress() -> Vec<Off> {
     let at = points(&[0.0]);
     let u: Vec<Point> = at.iter().map(|x| [0.1 * x[0], 0.0, 0.0]).collect();
     let mut spec = two_blocks(&at, 2, lps());
-    spec.plane = Plane::Stress;
+    spec.space.plane = Plane::Stress;
     forces(&spec, &u, &stored("calculation__calculation"), 5e-8)
 }
 
@@ -418,7 +418,7 @@ fn four() -> Vec<Off> {
 fn damage(moved: f64, criteria: [Criterion; 2], stored: f64) -> Vec<Off> {
     let at = [[-1.5, 0.0, 0.0], [0.5, 0.0, 0.0]];
     let mut spec = cells(&at, VOLUME, 2.7e-9, HORIZON, lps()[0].clone());
-    spec.interface = InterfaceRule::Parallel;
+    spec.interactions.interface = InterfaceRule::Parallel;
     set(&mut spec, "soft", &at, |x| x[0] < 0.0);
     set(&mut spec, "stiff", &at, |x| x[0] > 0.0);
     spec.materials = { ["soft", "stiff"].into_iter().zip(lps()).zip(criteria) }

@@ -16,7 +16,7 @@ pub fn cube() -> Vec<Off> {
         ]),
     );
     let mut spec = cells(&at, 0.125, 0.0027, 1.75, law);
-    spec.schedule.time_step = TimeStep::Fixed(1e-6);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-6);
     let mut sim = model(&spec);
     let v: Vec<[f64; 3]> = at
         .iter()

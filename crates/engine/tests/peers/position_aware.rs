@@ -60,7 +60,7 @@ pub fn torn_in_two() -> Vec<Off> {
     set(&mut spec, "gone", &at, |x| x[0] > 0.3);
     hold(&mut spec, "still", ["0", "0", "0"]);
     hold(&mut spec, "gone", ["0.03*t", "0", "0"]);
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     let options = Options {
         trust_time_step: true,
         ..Options::default()

@@ -39,13 +39,13 @@ pub fn cube() -> Vec<Off> {
     hold(&mut spec, "along x", ["", "0", "0"]);
     hold(&mut spec, "along y", ["0", "", "0"]);
     hold(&mut spec, "along z", ["0", "0", ""]);
-    spec.transfers = vec![heated(273.0, "273 + 1000*t")];
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.interactions.transfers = vec![heated(273.0, "273 + 1000*t")];
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-12,
         ..Statics::default()
     });
-    spec.schedule.time_step = TimeStep::Fixed(0.1);
+    spec.run.schedule.time_step = TimeStep::Fixed(0.1);
     let mut sim = model(&spec);
     sim.start(true);
     for _ in 0..10 {
@@ -85,8 +85,8 @@ pub fn bonds_that_fail() -> Vec<Off> {
     hold(&mut spec, "held", ["0", "0", "0"]);
     hold(&mut spec, "gliding", ["0", "", "0"]);
     let value = "10000 - 10000*0.5*(cos(3.14159265359 + t*3.14159265359/0.1) + 1)";
-    spec.transfers = vec![heated(10_000.0, value)];
-    spec.schedule.time_step = TimeStep::Fixed(1e-5);
+    spec.interactions.transfers = vec![heated(10_000.0, value)];
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-5);
     let mut sim = model(&spec);
     sim.start(true);
     let (mut places, mut damages) = (vec![], vec![]);

@@ -5,8 +5,8 @@ use super::*;
 /// A plate between two grips that is pulled until bonds break, and let back; plane strain.
 fn pulled(law: LawSpec, fracture: Option<FractureSpec>) -> Spec {
     let mut spec = block([11.0, 6.0, 0.0], 2, law);
-    spec.plane = Plane::Strain;
-    spec.horizon = Horizon::Ratio(3);
+    spec.space.plane = Plane::Strain;
+    spec.bonds.horizon = Horizon::Ratio(3);
     spec.materials[0].fracture = fracture;
     let ends = |name: &str, sign: f64, x: f64| SetSpec {
         name: name.into(),
@@ -19,8 +19,8 @@ fn pulled(law: LawSpec, fracture: Option<FractureSpec>) -> Spec {
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
     let pull = "t < 0.7 ? 0.3*t : 0.21 - 0.1*(t - 0.7)";
     hold(&mut spec, "high", [text(pull), number(0.0), None]);
-    spec.schedule.steps = 6;
-    spec.schedule.time_step = TimeStep::Fixed(1.0 / 6.0);
+    spec.run.schedule.steps = 6;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0 / 6.0);
     spec
 }
 
@@ -103,8 +103,8 @@ fn a_stiffness_without_symmetry_is_named_by_its_cause() {
 #[test]
 fn a_band_that_flows_and_breaks_stays_in_numbers() {
     let mut spec = block([13.0, 10.0, 0.0], 2, law("hypoelastic_plastic"));
-    spec.plane = Plane::Strain;
-    spec.horizon = Horizon::Ratio(3);
+    spec.space.plane = Plane::Strain;
+    spec.bonds.horizon = Horizon::Ratio(3);
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::PlasticStrain(0.002)));
     let rows = |name: &str, sign: f64, y: f64| SetSpec {
         name: name.into(),
@@ -116,8 +116,8 @@ fn a_band_that_flows_and_breaks_stays_in_numbers() {
     spec.sets = vec![rows("low", 1.0, 2.5), rows("high", -1.0, 7.5)];
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
     hold(&mut spec, "high", [number(0.0), text("0.06*t"), None]);
-    spec.schedule.steps = 16;
-    spec.schedule.time_step = TimeStep::Fixed(1.0 / 16.0);
+    spec.run.schedule.steps = 16;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0 / 16.0);
     let spec = with(&spec, Method::Newton, Solver::Auto, 1e-8);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);

@@ -3,7 +3,7 @@
 use super::*;
 
 fn followed(spec: &mut Spec, control: Control, tolerance: f64) {
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         control,
         tolerance,
@@ -24,7 +24,7 @@ fn softening(critical: f64) -> MaterialSpec {
 fn chain(increments: u64, opening: f64) -> Spec {
     let law = LawSpec::Pmb(PmbStiffness::Young(1.0));
     let mut spec = block([40.0, 0.0, 0.0], 1, law);
-    spec.horizon = Horizon::Ratio(1);
+    spec.bonds.horizon = Horizon::Ratio(1);
     let part = |name: &str, condition: &str| SetSpec {
         name: name.into(),
         members: Members::Where(text(condition).unwrap()),
@@ -37,7 +37,7 @@ fn chain(increments: u64, opening: f64) -> Spec {
     spec.materials = vec![strong, weak];
     hold(&mut spec, "low", [number(0.0), None, None]);
     hold(&mut spec, "high", [text("t"), None, None]);
-    spec.schedule.steps = increments;
+    spec.run.schedule.steps = increments;
     followed(&mut spec, Control::Opening(opening), 1e-12);
     spec
 }
@@ -100,18 +100,18 @@ fn a_shallow_truss_snaps_through() {
     };
     let law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
     let mut spec = Spec::new(2, BodySpec::Cloud(cloud), 1.0, law);
-    spec.horizon = Horizon::Length(1.2);
+    spec.bonds.horizon = Horizon::Length(1.2);
     let of = |name: &str, ids: &[u32]| SetSpec {
         name: name.into(),
         members: Members::Points(ids.into()),
     };
     spec.sets = vec![of("feet", &[0, 2]), of("top", &[1])];
     hold(&mut spec, "feet", [number(0.0), number(0.0), None]);
-    spec.conditions.push(ConditionSpec {
+    spec.loading.conditions.push(ConditionSpec {
         set: "top".into(),
         kind: ConditionKind::BodyForce([None, text("-t"), None]),
     });
-    spec.schedule = Schedule {
+    spec.run.schedule = Schedule {
         steps: 40,
         time_step: TimeStep::Fixed(1.0),
         force_unstable: false,
@@ -162,7 +162,7 @@ fn a_shallow_truss_snaps_through() {
 fn slender(opening: f64, increments: u64) -> Spec {
     let mut spec = super::sequence::slender();
     spec.materials = vec![softening(0.01)];
-    spec.schedule.steps = increments;
+    spec.run.schedule.steps = increments;
     followed(&mut spec, Control::Opening(opening), 1e-9);
     spec
 }
@@ -211,14 +211,14 @@ fn what_has_no_path_is_refused() {
         build(&spec, Options::default()).err().unwrap()
     };
     let method = said(&|spec| {
-        spec.schedule.stepper = Stepper::Statics(Statics {
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
             control: Control::Opening(1e-3),
             ..Statics::default()
         });
     });
     assert_eq!(method.path, "statics.method");
     let solver = said(&|spec| {
-        spec.schedule.stepper = Stepper::Statics(Statics {
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
             method: Method::Newton,
             control: Control::Opening(1e-3),
             solver: Solver::ConjugateGradients,
@@ -230,7 +230,7 @@ fn what_has_no_path_is_refused() {
     assert_eq!(brittle.path, "materials[0].fracture");
     let constant = said(&|spec| {
         let force = ConditionKind::BodyForce([None, number(1e-6), None]);
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: "all".into(),
             kind: force,
         });
@@ -238,7 +238,7 @@ fn what_has_no_path_is_refused() {
     assert_eq!(constant.path, "conditions");
     // pressed, no bond opens
     let mut spec = chain(1, 1e-3);
-    spec.conditions[1].kind = ConditionKind::Displacement([text("-t"), None, None]);
+    spec.loading.conditions[1].kind = ConditionKind::Displacement([text("-t"), None, None]);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let error = sim.step().unwrap_err().to_string();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 /// Motion by this stepper from an equilibrium.
 fn then(spec: &mut Spec, increments: u64, stepper: Stepper, step: f64) {
-    spec.preload = Some(PreloadSpec {
+    spec.run.preload = Some(PreloadSpec {
         statics: Statics {
             method: Method::Newton,
             tolerance: 1e-12,
@@ -13,12 +13,12 @@ fn then(spec: &mut Spec, increments: u64, stepper: Stepper, step: f64) {
         },
         increments,
         duration: None,
-        conditions: std::mem::take(&mut spec.conditions),
+        conditions: std::mem::take(&mut spec.loading.conditions),
         indenters: vec![],
         cuts: vec![],
     });
-    spec.schedule.stepper = stepper;
-    spec.schedule.time_step = TimeStep::Fixed(step);
+    spec.run.schedule.stepper = stepper;
+    spec.run.schedule.time_step = TimeStep::Fixed(step);
 }
 
 fn started(spec: &Spec) -> Box<dyn Simulation> {
@@ -55,11 +55,11 @@ fn a_bar_that_is_let_go_vibrates_with_the_energy_of_its_load() {
         for increments in [1, 5] {
             let mut spec = block([f64::from(n), 0.0, 0.0], 1, SPRINGS);
             hold(&mut spec, "low", [number(0.0), None, None]);
-            let still = spec.conditions.clone();
+            let still = spec.loading.conditions.clone();
             let pulled = ConditionKind::BodyForce([text(&load), None, None]);
-            spec.conditions.push(condition("all", pulled));
+            spec.loading.conditions.push(condition("all", pulled));
             then(&mut spec, increments, stepper, dt);
-            spec.conditions = still;
+            spec.loading.conditions = still;
             let mut sim = started(&spec);
             for k in 0..increments {
                 let shown = (k as f64 - increments as f64) * dt;
@@ -106,7 +106,7 @@ fn a_string_sounds_as_its_tension_says() {
         LawSpec::Pmb(PmbStiffness::Micromodulus(1.0)),
     );
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
-    let low = spec.conditions.clone();
+    let low = spec.loading.conditions.clone();
     let stretch = 0.02;
     let end = stretch * f64::from(n);
     hold(
@@ -117,7 +117,7 @@ fn a_string_sounds_as_its_tension_says() {
     // nothing resists across a row without tension
     hold(&mut spec, "all", [None, number(0.0), None]);
     then(&mut spec, 2, Stepper::Verlet, 0.1);
-    spec.conditions = low;
+    spec.loading.conditions = low;
     hold(&mut spec, "high", [number(end), number(0.0), None]);
     let mut sim = started(&spec);
     sim.step().unwrap();
@@ -148,7 +148,7 @@ fn a_string_sounds_as_its_tension_says() {
 /// A plate of a nonlinear law, pulled and held.
 fn pulled(law: LawSpec) -> Spec {
     let mut spec = block([16.0, 12.0, 0.0], 2, law);
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
     hold(&mut spec, "high", [text("0.3*t"), number(0.0), None]);
     then(&mut spec, 3, Stepper::Verlet, 0.1);
@@ -174,7 +174,7 @@ fn a_stretched_plate_rests_until_it_is_cut_and_its_cut_releases_what_its_bonds_h
         assert!(l.kinetic < 1e-14 * l.strain, "{law:?}: {l:?}");
         // the trapezoidal rule of the loads' work, over three increments of a stretch of 2 %
         assert!(l.residual().abs() < 1e-3 * l.strain, "{law:?}: {l:?}");
-        let Some(preload) = &mut spec.preload else {
+        let Some(preload) = &mut spec.run.preload else {
             unreachable!()
         };
         preload.cuts.push(PrecrackSpec {
@@ -207,7 +207,7 @@ fn a_stretched_plate_rests_until_it_is_cut_and_its_cut_releases_what_its_bonds_h
 #[test]
 fn velocities_that_are_given_begin_with_motion() {
     let mut spec = pulled(LPS);
-    spec.initial.push(InitialSpec {
+    spec.loading.initial.push(InitialSpec {
         set: "all".into(),
         displacement: [None, None, None],
         velocity: [None, text("0.01*sin(x)"), None],
@@ -231,7 +231,7 @@ fn what_cannot_begin_in_equilibrium_is_refused() {
     let said = |spec: &Spec| build(spec, Options::default()).err().unwrap();
     let of = |change: &dyn Fn(&mut PreloadSpec)| {
         let mut spec = spec.clone();
-        spec.preload.iter_mut().for_each(change);
+        spec.run.preload.iter_mut().for_each(change);
         said(&spec)
     };
     let linear = of(&|p| p.statics.method = Method::Linear);
@@ -241,7 +241,7 @@ fn what_cannot_begin_in_equilibrium_is_refused() {
     let loose = of(&|p| p.conditions.clear());
     assert_eq!(loose.path, "preload.conditions", "{loose:?}");
     let mut jump = spec.clone();
-    jump.conditions.clear();
+    jump.loading.conditions.clear();
     hold(&mut jump, "low", [number(0.1), None, None]);
     let jump = said(&jump);
     assert!(
@@ -259,7 +259,7 @@ fn what_cannot_begin_in_equilibrium_is_refused() {
     assert!(error.contains("prescribe a velocity of 0"), "{error}");
     assert_eq!(sim.step_number(), 3);
     let mut held = spec.clone();
-    held.conditions.push(condition(
+    held.loading.conditions.push(condition(
         "all",
         ConditionKind::Velocity([None, number(0.0), None]),
     ));
@@ -273,20 +273,20 @@ fn what_cannot_begin_in_equilibrium_is_refused() {
 fn work_on_bonds_goes_on_from_statics_to_motion() {
     let plate = |end: &str| {
         let mut spec = block([12.0, 4.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-        spec.horizon = Horizon::Ratio(2);
+        spec.bonds.horizon = Horizon::Ratio(2);
         spec.materials[0].fracture = Some(FractureSpec::new(Criterion::BondEnergy(5e-4)));
         hold(&mut spec, "low", [number(0.0), number(0.0), None]);
         hold(&mut spec, "high", [text(end), number(0.0), None]);
         spec
     };
     let newton = |spec: &mut Spec, increments: u64| {
-        spec.schedule.stepper = Stepper::Statics(Statics {
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
             method: Method::Newton,
             tolerance: 1e-12,
             ..Statics::default()
         });
-        spec.schedule.steps = increments;
-        spec.schedule.time_step = TimeStep::Fixed(1.0 / increments as f64);
+        spec.run.schedule.steps = increments;
+        spec.run.schedule.time_step = TimeStep::Fixed(1.0 / increments as f64);
     };
     // where does the first bond break?
     let mut alone = plate("0.4*t");
@@ -304,7 +304,7 @@ fn work_on_bonds_goes_on_from_statics_to_motion() {
         let mut spec = plate(&format!("{:e}*t", stretch * most));
         then(&mut spec, 10, Stepper::Verlet, 0.2);
         let pulled = format!("{:e} + {:e}*min(t/200, 1)", stretch * most, more * most);
-        spec.conditions = plate(&pulled).conditions;
+        spec.loading.conditions = plate(&pulled).loading.conditions;
         let mut sim = started(&spec);
         (0..10).for_each(|_| sim.step().unwrap());
         let statics = sim.broken();

@@ -4,8 +4,8 @@ use super::*;
 
 fn breaking(spec: &mut Spec, critical: f64, equilibria: u64) {
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(critical)));
-    spec.schedule.steps = equilibria;
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.steps = equilibria;
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         control: Control::Breaking,
         ..Statics::default()
     });
@@ -42,8 +42,8 @@ fn a_chain_bears_the_critical_stretch_of_all_its_springs() {
 /// A bar five times as long as it is wide, with a notch, pulled by t.
 pub(super) fn slender() -> Spec {
     let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-    spec.horizon = Horizon::Ratio(2);
-    spec.precracks.push(PrecrackSpec {
+    spec.bonds.horizon = Horizon::Ratio(2);
+    spec.damage.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {
             from: [20.5, -1.0, 0.0],
             to: [20.5, 1.5, 0.0],
@@ -97,14 +97,14 @@ fn the_first_bond_is_that_of_load_control() {
     let broken = sim.broken();
     for (part, breaks) in [(0.99, false), (1.01, true)] {
         let mut told = spec.clone();
-        told.conditions.pop();
+        told.loading.conditions.pop();
         hold(
             &mut told,
             "high",
             [text(&format!("{:e}*t", part * factor)), number(0.0), None],
         );
-        told.schedule.steps = 1;
-        told.schedule.stepper = Stepper::Statics(Statics::default());
+        told.run.schedule.steps = 1;
+        told.run.schedule.stepper = Stepper::Statics(Statics::default());
         let mut sim = build(&told, Options::default()).unwrap();
         sim.start(true);
         // what follows may take the bar apart
@@ -121,7 +121,7 @@ fn what_has_no_factor_is_refused() {
         build(&spec, Options::default()).err().unwrap()
     };
     let newton = said(&|spec| {
-        spec.schedule.stepper = Stepper::Statics(Statics {
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
             control: Control::Breaking,
             method: Method::Newton,
             ..Statics::default()
@@ -132,7 +132,7 @@ fn what_has_no_factor_is_refused() {
     assert_eq!(whole.path, "materials[0].fracture");
     let constant = said(&|spec| {
         let force = ConditionKind::BodyForce([None, number(1e-6), None]);
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: "all".into(),
             kind: force,
         });
@@ -145,10 +145,10 @@ fn what_has_no_factor_is_refused() {
 fn bonds_through_periodic_faces_break_in_turn() {
     let strip = |notches: &[[f64; 3]]| {
         let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-        spec.horizon = Horizon::Ratio(2);
-        spec.periodic[1] = Some(8.0);
+        spec.bonds.horizon = Horizon::Ratio(2);
+        spec.space.periodic[1] = Some(8.0);
         for [x, low, high] in notches {
-            spec.precracks.push(PrecrackSpec {
+            spec.damage.precracks.push(PrecrackSpec {
                 shape: CrackShape::Segment {
                     from: [*x, *low, 0.0],
                     to: [*x, *high, 0.0],
@@ -159,7 +159,7 @@ fn bonds_through_periodic_faces_break_in_turn() {
         hold(&mut spec, "low", [number(0.0), number(0.0), None]);
         hold(&mut spec, "high", [text("t"), number(0.0), None]);
         breaking(&mut spec, 0.01, 6);
-        spec.schedule.stepper = Stepper::Statics(Statics {
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
             control: Control::Breaking,
             solver: Solver::Direct,
             ..Statics::default()

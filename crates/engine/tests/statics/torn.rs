@@ -6,7 +6,7 @@ use super::*;
 fn chain() -> Spec {
     let law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
     let mut spec = block([10.0, 0.0, 0.0], 1, law);
-    spec.horizon = Horizon::Ratio(1);
+    spec.bonds.horizon = Horizon::Ratio(1);
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.03)));
     spec.sets.push(SetSpec {
         name: "tough".into(),
@@ -15,13 +15,13 @@ fn chain() -> Spec {
             high: [6.1, 0.0, 0.0],
         }),
     });
-    spec.toughness.push(ToughnessSpec {
+    spec.damage.toughness.push(ToughnessSpec {
         set: "tough".into(),
         factor: ToughnessFactor::Stretch(text("100").unwrap()),
     });
     hold(&mut spec, "low", [number(0.0), None, None]);
-    spec.schedule.steps = 4;
-    spec.schedule.time_step = TimeStep::Fixed(0.25);
+    spec.run.schedule.steps = 4;
+    spec.run.schedule.time_step = TimeStep::Fixed(0.25);
     spec
 }
 
@@ -84,7 +84,7 @@ fn points_that_have_lost_their_bonds_rest_where_they_are() {
 fn a_load_on_what_nothing_holds_is_an_error_that_names_the_point() {
     for (method, solver, tolerance) in ALL {
         let mut spec = with(&chain(), method, solver, tolerance);
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: "high".into(),
             kind: ConditionKind::BodyForce([text("0.05*t"), None, None]),
         });
@@ -117,9 +117,9 @@ fn linear_increments_see_what_broke() {
             poisson: 0.3,
         });
         let mut spec = block([12.0, 12.0, 0.0], 2, law);
-        spec.horizon = Horizon::Ratio(3);
+        spec.bonds.horizon = Horizon::Ratio(3);
         spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(2e-5)));
-        spec.precracks.push(PrecrackSpec {
+        spec.damage.precracks.push(PrecrackSpec {
             shape: CrackShape::Segment {
                 from: [5.5, -1.0, 0.0],
                 to: [5.5, 3.5, 0.0],
@@ -128,8 +128,8 @@ fn linear_increments_see_what_broke() {
         });
         hold(&mut spec, "low", [number(0.0), number(0.0), None]);
         hold(&mut spec, "high", [text("2.6e-4*t"), number(0.0), None]);
-        spec.schedule.steps = 5;
-        spec.schedule.time_step = TimeStep::Fixed(0.2);
+        spec.run.schedule.steps = 5;
+        spec.run.schedule.time_step = TimeStep::Fixed(0.2);
         let spec = with(&spec, Method::Linear, solver, 1e-12);
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);

@@ -28,8 +28,8 @@ fn relaxed(spec: &Spec, increments: u32) -> Box<dyn Simulation> {
 
 fn minimized(spec: &Spec, method: Method, increments: u32) -> Box<dyn Simulation> {
     let mut spec = with(spec, method, Solver::Auto, 1e-6);
-    spec.schedule.steps = u64::from(increments);
-    spec.schedule.time_step = TimeStep::Fixed(1.0 / f64::from(increments));
+    spec.run.schedule.steps = u64::from(increments);
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0 / f64::from(increments));
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     sim
@@ -50,7 +50,7 @@ fn forces_rubbed(
 ) -> Vec<[f64; 2]> {
     let radius = 100.0;
     let mut spec = block([20.0, 8.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-    spec.horizon = Horizon::Ratio(3);
+    spec.bonds.horizon = Horizon::Ratio(3);
     spec.sets.push(rows("floor", 1.0, 2.1));
     hold(&mut spec, "floor", [text(floor[0]), text(floor[1]), None]);
     let center = [
@@ -62,8 +62,8 @@ fn forces_rubbed(
     let mut disk = IndenterSpec::new(stiffness, shape, IndenterMotion::Kinematic(center));
     disk.name = "disk".into();
     disk.friction = friction;
-    spec.indenters = vec![disk];
-    spec.probes = vec![ProbeSpec {
+    spec.loading.indenters = vec![disk];
+    spec.run.probes = vec![ProbeSpec {
         name: "disk".into(),
         set: "all".into(),
         measure: Measure::Indenter {
@@ -141,9 +141,9 @@ fn a_block_that_is_pressed_into_a_disk_bears_as_the_disk_in_the_block() {
 fn faces_of_a_crack_are_pressed_together() {
     let pressed = |cut: bool| {
         let mut spec = block([12.0, 12.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
-        spec.horizon = Horizon::Ratio(3);
+        spec.bonds.horizon = Horizon::Ratio(3);
         spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.5)));
-        spec.contact = Some(ContactSpec {
+        spec.interactions.contact = Some(ContactSpec {
             bonded: 0.9,
             free: 1.35,
             stiffness: ContactStiffness::Laws,
@@ -154,7 +154,7 @@ fn faces_of_a_crack_are_pressed_together() {
         spec.sets
             .extend([rows("floor", 1.0, 2.1), rows("top", -1.0, 9.9)]);
         if cut {
-            spec.precracks.push(PrecrackSpec {
+            spec.damage.precracks.push(PrecrackSpec {
                 shape: CrackShape::Segment {
                     from: [-1.0, 6.5, 0.0],
                     to: [13.0, 6.5, 0.0],
@@ -164,7 +164,7 @@ fn faces_of_a_crack_are_pressed_together() {
         }
         hold(&mut spec, "floor", [number(0.0), number(0.0), None]);
         hold(&mut spec, "top", [number(0.0), text("-2*t"), None]);
-        spec.probes = vec![ProbeSpec {
+        spec.run.probes = vec![ProbeSpec {
             name: "top".into(),
             set: "top".into(),
             measure: Measure::Reaction,
@@ -221,11 +221,11 @@ fn faces_of_a_crack_rub() {
                 },
                 perturb: None,
             };
-            spec.family = family;
-            spec.periodic[0] = Some(12.0);
-            spec.horizon = Horizon::Ratio(2);
+            spec.bonds.family = family;
+            spec.space.periodic[0] = Some(12.0);
+            spec.bonds.horizon = Horizon::Ratio(2);
             let rubs = friction.is_some();
-            spec.contact = Some(ContactSpec {
+            spec.interactions.contact = Some(ContactSpec {
                 bonded: 0.9,
                 free: 1.35,
                 stiffness: ContactStiffness::Laws,
@@ -234,7 +234,7 @@ fn faces_of_a_crack_rub() {
                 conductance: None,
             });
             spec.sets = vec![rows("floor", 1.0, 2.1), rows("top", -1.0, 5.9)];
-            spec.precracks.push(PrecrackSpec {
+            spec.damage.precracks.push(PrecrackSpec {
                 shape: CrackShape::Segment {
                     from: [-1.0, 4.0, 0.0],
                     to: [13.0, 4.0, 0.0],
@@ -248,7 +248,7 @@ fn faces_of_a_crack_rub() {
             let along = format!("{along}*max(0, 2*t - 1)");
             let ways = [along.as_str(), "-0.2*min(1, 2*t)"];
             hold(&mut spec, "top", [text(ways[0]), text(ways[1]), None]);
-            spec.probes = vec![ProbeSpec {
+            spec.run.probes = vec![ProbeSpec {
                 name: "top".into(),
                 set: "top".into(),
                 measure: Measure::Reaction,

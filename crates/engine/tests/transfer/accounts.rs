@@ -30,7 +30,7 @@ fn plate(method: TransferMethod, cloud: bool) -> Spec {
         })
         .to_vec();
     if cloud {
-        spec.horizon = Horizon::Length(0.3);
+        spec.bonds.horizon = Horizon::Length(0.3);
     }
     spec
 }
@@ -62,7 +62,7 @@ fn what_comes_in_is_what_is_there() {
             spec.sets.push(beyond("low", 0.2, -1.0));
             spec.sets.push(beyond("high", 1.8, 1.0));
             let value = text("5*y");
-            spec.transfers[0].conditions = vec![
+            spec.interactions.transfers[0].conditions = vec![
                 on("all", TransferKind::Source(text("x*y*t"))),
                 on("high", TransferKind::Flux { value, area: None }),
                 on(
@@ -90,9 +90,9 @@ fn what_comes_in_is_what_is_there() {
 fn areas_are_those_of_the_surface() {
     let supplied = |kind: TransferKind| {
         let mut spec = plate(EXPLICIT, false);
-        spec.section = 0.25;
+        spec.space.section = 0.25;
         spec.sets.push(beyond("skin", 1.9, 1.0));
-        spec.transfers[0].conditions = vec![on("skin", kind)];
+        spec.interactions.transfers[0].conditions = vec![on("skin", kind)];
         let mut sim = built(&spec);
         run(&mut *sim, 10);
         sim.transfers()[0].1.supplied
@@ -128,7 +128,7 @@ fn broken_bonds_do_not_conduct() {
         heat.initial = vec![("all".into(), text("1")), ("second".into(), text("3"))];
         let mut spec = still(1, cells(1, 0.1, [0.0; 3], [2.0; 3]), 3, 0.1, heat);
         spec.sets = vec![beyond("second", 1.0, 1.0)];
-        spec.precracks = vec![PrecrackSpec {
+        spec.damage.precracks = vec![PrecrackSpec {
             shape: CrackShape::Point { x: 1.0 },
             kind,
         }];
@@ -151,7 +151,7 @@ fn broken_bonds_do_not_conduct() {
 fn heat_of(spec: &Spec) -> TransferSpec {
     TransferSpec {
         initial: vec![],
-        ..spec.transfers[0].clone()
+        ..spec.interactions.transfers[0].clone()
     }
 }
 
@@ -168,7 +168,7 @@ fn breaking(across: bool) {
     heat.initial = vec![("second".into(), text("1"))];
     let body = cells(1, 1.0, [0.0; 3], [2.0; 3]);
     let mut spec = still(1, body, 1, 0.01, heat);
-    spec.schedule.stepper = Stepper::Verlet;
+    spec.run.schedule.stepper = Stepper::Verlet;
     spec.sets = vec![beyond("second", 1.0, 1.0), beyond("first", 1.0, -1.0)];
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.1),
@@ -176,7 +176,7 @@ fn breaking(across: bool) {
         rate: None,
         fatigue: None,
     });
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         ConditionSpec {
             set: "first".into(),
             kind: ConditionKind::Displacement([Some(text("0")), None, None]),
@@ -206,7 +206,7 @@ fn faces_that_open_conduct_like_those_that_were_cut() {
     let body = cells(2, 1.0, [0.0; 3], [15.0, 12.0, 0.0]);
     let mut spec = still(2, body, 3, 0.01, heat);
     let whole = spec.clone();
-    spec.precracks = vec![PrecrackSpec {
+    spec.damage.precracks = vec![PrecrackSpec {
         shape: CrackShape::Segment {
             from: [-1.0, 6.0, 0.0],
             to: [16.0, 6.0, 0.0],
@@ -216,10 +216,10 @@ fn faces_that_open_conduct_like_those_that_were_cut() {
     let mut cut = built(&spec);
     // in motion: the upper half begins so far away that every bond across breaks at once
     let mut moving = whole.clone();
-    moving.schedule.stepper = Stepper::Verlet;
-    moving.schedule.time_step = TimeStep::Fixed(0.01);
+    moving.run.schedule.stepper = Stepper::Verlet;
+    moving.run.schedule.time_step = TimeStep::Fixed(0.01);
     moving.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(1e-2)));
-    moving.transfers[0].initial = spec.transfers[0].initial.clone();
+    moving.interactions.transfers[0].initial = spec.interactions.transfers[0].initial.clone();
     let mut opened = build(&moving, Options::default()).unwrap();
     let x = opened.vectors("reference");
     let apart: Vec<_> = { x.iter() }
@@ -265,14 +265,14 @@ fn bonds_that_heal_conduct_again() {
     let mut heat = heat(EXPLICIT);
     heat.initial = vec![("second".into(), text("1"))];
     let mut spec = still(1, cells(1, 1.0, [0.0; 3], [2.0; 3]), 1, 0.01, heat);
-    spec.schedule.stepper = Stepper::Verlet;
+    spec.run.schedule.stepper = Stepper::Verlet;
     spec.sets = vec![beyond("second", 1.0, 1.0), beyond("first", 1.0, -1.0)];
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
-    spec.healing = Some(HealingSpec {
+    spec.damage.healing = Some(HealingSpec {
         below: text("0.05"),
         set: "all".into(),
     });
-    spec.conditions = [("first", "0"), ("second", "0.2*sin(31.4159265*t)")]
+    spec.loading.conditions = [("first", "0"), ("second", "0.2*sin(31.4159265*t)")]
         .map(|(set, u)| ConditionSpec {
             set: set.into(),
             kind: ConditionKind::Displacement([Some(text(u)), None, None]),
@@ -308,21 +308,25 @@ fn what_cannot_be_is_said() {
     let of = |path: &str, part: &str, found: (String, String)| {
         assert!(found.0 == path && found.1.contains(part), "{found:?}");
     };
-    let steady = |spec: &mut Spec| spec.transfers[0].method = STEADY;
+    let steady = |spec: &mut Spec| spec.interactions.transfers[0].method = STEADY;
     of("heat", "nothing there holds it", refused(&steady));
     let auto = |spec: &mut Spec| {
-        spec.transfers[0].method = EULER;
-        spec.schedule.time_step = TimeStep::Auto;
+        spec.interactions.transfers[0].method = EULER;
+        spec.run.schedule.time_step = TimeStep::Auto;
     };
     of("schedule.time_step", "must be said", refused(&auto));
-    let nothing = |spec: &mut Spec| spec.transfers.clear();
+    let nothing = |spec: &mut Spec| spec.interactions.transfers.clear();
     of("schedule.integrator", "nothing spreads", refused(&nothing));
-    let twice = |spec: &mut Spec| spec.transfers.push(spec.transfers[0].clone());
+    let twice = |spec: &mut Spec| {
+        spec.interactions
+            .transfers
+            .push(spec.interactions.transfers[0].clone())
+    };
     of("heat", "heat twice", refused(&twice));
-    let hot = |spec: &mut Spec| spec.transfers[0].initial[0].1 = text("1/(x - x)");
+    let hot = |spec: &mut Spec| spec.interactions.transfers[0].initial[0].1 = text("1/(x - x)");
     of("heat", "the temperature at the start is", refused(&hot));
     let moved = |spec: &mut Spec| {
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: "all".into(),
             kind: ConditionKind::Velocity([Some(text("1")), None, None]),
         }];

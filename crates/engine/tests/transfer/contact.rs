@@ -87,7 +87,7 @@ impl Two {
             .to_vec();
         heat.initial = vec![("upper".into(), text("1"))];
         let mut spec = still(self.d, BodySpec::Several(pieces.to_vec()), 2, self.dt, heat);
-        spec.section = if self.d == 3 { 1.0 } else { SECTION };
+        spec.space.section = if self.d == 3 { 1.0 } else { SECTION };
         spec.sets = names
             .map(|name| SetSpec {
                 name: name.into(),
@@ -104,7 +104,7 @@ impl Two {
                 ..spec.materials[0].clone()
             })
             .to_vec();
-        spec.contact = Some(ContactSpec {
+        spec.interactions.contact = Some(ContactSpec {
             bonded: 0.9,
             free: 1.35,
             stiffness: ContactStiffness::Laws,
@@ -236,7 +236,7 @@ fn what_repels_touches() {
     two.apart = 0.3;
     let mut spec = two.spec();
     for (gap, expected) in [(0.034, 1.0), (0.08, 0.0)] {
-        spec.initial = vec![InitialSpec {
+        spec.loading.initial = vec![InitialSpec {
             set: "upper".into(),
             displacement: [None, Some(text(&format!("{}", gap - 0.3))), None],
             velocity: [None, None, None],
@@ -276,8 +276,10 @@ fn a_foil_has_two_sides() {
     });
     spec.materials.truncate(1);
     spec.materials[0].set = "all".into();
-    spec.transfers[0].materials.truncate(1);
-    spec.transfers[0].initial.push(("below".into(), text("1")));
+    spec.interactions.transfers[0].materials.truncate(1);
+    spec.interactions.transfers[0]
+        .initial
+        .push(("below".into(), text("1")));
     let mut sim = built(&spec);
     run(&mut *sim, 1);
     let part = crossed(&*sim) / (two.conductance * two.area() * two.dt);
@@ -334,7 +336,7 @@ fn bars_in_series_resist_one_after_the_other() {
         // lines of the exact slope, which stand for what is beyond the ends
         let cold = format!("{:e} * (x - {low:e})", exact / k[0]);
         let hot = format!("1 + {:e} * (x - {high:e})", exact / k[1]);
-        spec.transfers[0].conditions = vec![
+        spec.interactions.transfers[0].conditions = vec![
             on("cold", TransferKind::Value(text(&cold))),
             on("hot", TransferKind::Value(text(&hot))),
         ];
@@ -383,12 +385,12 @@ fn thrown(method: TransferMethod) -> Spec {
     (two.apart, two.method) = (0.2, method);
     (two.conductivity, two.conductance) = ([1.0; 2], 50.0);
     let mut spec = two.spec();
-    spec.schedule.stepper = Stepper::Verlet;
-    spec.schedule.time_step = TimeStep::Auto;
+    spec.run.schedule.stepper = Stepper::Verlet;
+    spec.run.schedule.time_step = TimeStep::Auto;
     for m in &mut spec.materials {
         m.law = LawSpec::Pmb(PmbStiffness::Young(1.0));
     }
-    spec.initial = vec![InitialSpec {
+    spec.loading.initial = vec![InitialSpec {
         set: "upper".into(),
         displacement: [None, None, None],
         velocity: [None, Some(text("-0.1")), None],
@@ -468,7 +470,7 @@ fn what_is_apart_exchanges_nothing() {
     let mut sim = built(&spec);
     run(&mut *sim, 3);
     assert_eq!(crossed(&*sim), 0.0);
-    spec.contact.as_mut().unwrap().conductance = None;
+    spec.interactions.contact.as_mut().unwrap().conductance = None;
     let mut without = built(&spec);
     run(&mut *without, 3);
     assert_eq!(without.transfers()[0].1.through_contact, None);
@@ -490,16 +492,16 @@ fn faces_of_a_crack_exchange_nothing() {
         let mut heat = heat(EXPLICIT);
         heat.initial = vec![("right".into(), text("1"))];
         let mut spec = still(2, cells(2, 0.1, [0.0; 3], [1.0, 0.4, 0.0]), 3, 1e-4, heat);
-        spec.family = family;
+        spec.bonds.family = family;
         spec.sets = vec![beyond("right", 0.5, 1.0)];
-        spec.precracks = vec![PrecrackSpec {
+        spec.damage.precracks = vec![PrecrackSpec {
             shape: CrackShape::Segment {
                 from: [0.5, -1.0, 0.0],
                 to: [0.5, 1.0, 0.0],
             },
             kind,
         }];
-        spec.contact = Two::blocks(2).spec().contact;
+        spec.interactions.contact = Two::blocks(2).spec().interactions.contact;
         let mut sim = built(&spec);
         run(&mut *sim, 3);
         assert_eq!(crossed(&*sim), 0.0, "{family:?} {kind:?}");
@@ -513,15 +515,15 @@ fn implicit_steps_and_increments_conduct_alike() {
     (two.conductance, two.dt, two.conductivity) = (1e-3, 1.0, [1.0; 2]);
     let stands = two.spec();
     let hold = |spec: &mut Spec, set: &str| {
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: set.into(),
             kind: ConditionKind::Displacement([Some(text("0")), None, None]),
         }];
     };
     let mut steps = stands.clone();
     hold(&mut steps, "all");
-    steps.schedule.steps = 50;
-    steps.schedule.stepper = Stepper::Newmark(Newmark::default());
+    steps.run.schedule.steps = 50;
+    steps.run.schedule.stepper = Stepper::Newmark(Newmark::default());
     // the point in the middle of the lower bar is free, and pulled at by nobody
     let mut increments = stands.clone();
     increments.sets.push(SetSpec {
@@ -529,8 +531,8 @@ fn implicit_steps_and_increments_conduct_alike() {
         members: Members::Where(text("abs(x - 0.25) > 0.01")),
     });
     hold(&mut increments, "held");
-    increments.schedule.steps = 50;
-    increments.schedule.stepper = Stepper::Statics(Statics {
+    increments.run.schedule.steps = 50;
+    increments.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Relaxation,
         ..Statics::default()
     });

@@ -48,17 +48,17 @@ fn block(d: usize, law: LawSpec, cloud: bool, heat: TransferSpec) -> Spec {
         });
     }
     let mut spec = still(d, body, 2, 0.5, heat);
-    spec.horizon = match cloud {
+    spec.bonds.horizon = match cloud {
         true => Horizon::Length(2.3),
         false => Horizon::Ratio(2),
     };
-    spec.influence = Influence::Inverse;
+    spec.bonds.influence = Influence::Inverse;
     spec.materials[0].law = law;
     spec
 }
 
 fn statics(spec: &mut Spec) {
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-12,
         ..Statics::default()
@@ -101,7 +101,7 @@ fn statics_finds_the_free_expansion() {
                 members: Members::Where(text(&format!("{axis} < 1"))),
             })
             .to_vec();
-        spec.conditions = (0..2)
+        spec.loading.conditions = (0..2)
             .map(|a| {
                 let mut value = [const { None }; 3];
                 // the lowest rows glide where the expansion about the origin puts them
@@ -137,8 +137,8 @@ fn a_held_bar_is_under_pressure() {
         let body = cells(1, 0.5, [0.0; 3], [10.0; 3]);
         let mut spec = still(1, body, 3, 1.0, heat);
         spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(7.0));
-        spec.section = 0.3;
-        spec.periodic[0] = Some(10.0);
+        spec.space.section = 0.3;
+        spec.space.periodic[0] = Some(10.0);
         let mut sim = built(&spec);
         let volume = sim.info().volume;
         let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
@@ -168,7 +168,7 @@ fn tangents_know_the_temperature() {
                 cloud,
                 told(1e-3, "20 + 30*sin(x) + 20*cos(y)"),
             );
-            spec.plane = plane;
+            spec.space.plane = plane;
             let mut sim = built(&spec);
             let wave = |scale: f64, n: usize, a: usize| scale * ((3 * n + 2 * a) as f64).sin();
             let of = |scale: f64, more: f64| -> Vec<[f64; 3]> {
@@ -204,11 +204,11 @@ fn tangents_know_the_temperature() {
 /// The point in the middle of a block that follows these displacements, warm in plane strain or in space: stress, energy, temperature.
 fn strained(d: usize, law: LawSpec, u: [&str; 2], heat: TransferSpec) -> [f64; 5] {
     let mut spec = still(d, cells(d, 1.0, [0.0; 3], [9.0; 3]), 2, 0.5, heat);
-    spec.plane = Plane::Strain;
-    spec.influence = Influence::Inverse;
+    spec.space.plane = Plane::Strain;
+    spec.bonds.influence = Influence::Inverse;
     spec.materials[0].law = law;
-    spec.schedule.stepper = Stepper::Verlet;
-    spec.conditions = vec![ConditionSpec {
+    spec.run.schedule.stepper = Stepper::Verlet;
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement([Some(text(u[0])), Some(text(u[1])), Some(text("0"))]),
     }];
@@ -405,7 +405,7 @@ fn heating_is_work() {
             0.08 / parts as f64,
             heat,
         );
-        spec.schedule.stepper = Stepper::Verlet;
+        spec.run.schedule.stepper = Stepper::Verlet;
         spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(1.0));
         spec.sets = vec![beyond("hot", 2.0, -1.0)];
         let mut sim = built(&spec);
@@ -433,10 +433,10 @@ fn what_is_stretched_cools() {
         heat.materials[0].conductivity = 1e-9;
         let body = cells(1, 1.0, [0.0; 3], [40.0; 3]);
         let mut spec = still(1, body, 3, 0.1 / parts as f64, heat);
-        spec.schedule.stepper = Stepper::Verlet;
+        spec.run.schedule.stepper = Stepper::Verlet;
         spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(young));
         let pulled = format!("{stretch} * x * min(1, t)");
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: "all".into(),
             kind: ConditionKind::Displacement([Some(text(&pulled)), None, None]),
         }];
@@ -477,15 +477,15 @@ fn implicit_steps_and_increments_cool_what_is_stretched() {
         heat.materials[0].conductivity = 1e-9;
         let body = cells(1, 1.0, [0.0; 3], [40.0; 3]);
         let mut spec = still(1, body, 3, 0.1, heat);
-        spec.schedule.stepper = stepper;
-        spec.schedule.steps = 10;
+        spec.run.schedule.stepper = stepper;
+        spec.run.schedule.steps = 10;
         spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(young));
         spec.sets = vec![SetSpec {
             name: "ends".into(),
             members: Members::Where(text("abs(x - 20) > 17")),
         }];
         let pulled = format!("{stretch} * x * min(1, t)");
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: told.into(),
             kind: ConditionKind::Displacement([Some(text(&pulled)), None, None]),
         }];
@@ -546,14 +546,14 @@ fn cold_bonds_break() {
         1e-3,
         told(0.01, "20 - 10*t"),
     );
-    spec.schedule.stepper = Stepper::Verlet;
+    spec.run.schedule.stepper = Stepper::Verlet;
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.05),
         alpha: 0.0,
         rate: None,
         fatigue: None,
     });
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement([Some(text("0")), None, None]),
     }];
@@ -614,7 +614,7 @@ fn a_bar_swells_by_what_it_soaks_up() {
                 members: Members::Where(text(&format!("abs(x) < {}", 0.5 * h))),
             },
         ];
-        spec.conditions = vec![ConditionSpec {
+        spec.loading.conditions = vec![ConditionSpec {
             set: "left".into(),
             kind: ConditionKind::Displacement([Some(text("0")), None, None]),
         }];
@@ -663,8 +663,8 @@ fn laws_without_temperature_refuse() {
     assert!(error.message.contains("elastic_plastic"));
     let pmb = LawSpec::Pmb(PmbStiffness::Young(1.0));
     let error = refused(pmb, &|spec| {
-        spec.schedule.stepper = Stepper::Statics(Statics::default());
-        spec.schedule.time_step = TimeStep::Fixed(1.0);
+        spec.run.schedule.stepper = Stepper::Statics(Statics::default());
+        spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     });
     assert!(error.path == "statics.method" && error.help.unwrap().contains("newton"));
 }

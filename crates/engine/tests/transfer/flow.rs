@@ -62,13 +62,13 @@ fn warm(method: TransferMethod, conductivity: f64, at: &str) -> TransferSpec {
 fn bar(law: LawSpec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
     let body = cells(3, H, [0.0; 3], [7.0 * H, 3.0 * H, 3.0 * H]);
     let mut spec = Spec::new(3, body, DENSITY, law);
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     spec.sets = vec![beyond("left", 2.0 * H, -1.0), beyond("right", 5.0 * H, 1.0)];
     let held = |set: &str, x: String| ConditionSpec {
         set: set.into(),
         kind: ConditionKind::Displacement([Some(text(&x)), Some(text("0")), Some(text("0"))]),
     };
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         held("left", "0".into()),
         held("right", format!("{:e}*t", 0.01 * 7.0 * H / (6.0 * DT))),
     ];
@@ -79,10 +79,10 @@ fn bar(law: LawSpec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
 fn told(law: LawSpec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
     let body = cells(3, H, [0.0; 3], [4.0 * H; 3]);
     let mut spec = Spec::new(3, body, DENSITY, law);
-    spec.horizon = Horizon::Ratio(2);
+    spec.bonds.horizon = Horizon::Ratio(2);
     let rate = 1e-3 / DT;
     let along = |e: String| Some(text(&e));
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement([
             along(format!("x*{rate:e}*t")),
@@ -94,14 +94,14 @@ fn told(law: LawSpec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
 }
 
 fn timed(mut spec: Spec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
-    spec.schedule.stepper = stepper;
+    spec.run.schedule.stepper = stepper;
     let parts = if stepper == Stepper::Verlet {
         10.0
     } else {
         1.0
     };
-    spec.schedule.time_step = TimeStep::Fixed(DT / parts);
-    spec.transfers.extend(heat);
+    spec.run.schedule.time_step = TimeStep::Fixed(DT / parts);
+    spec.interactions.transfers.extend(heat);
     spec
 }
 
@@ -177,7 +177,7 @@ fn the_flow_stress_is_that_of_the_temperature_of_the_body() {
             for method in [EXPLICIT, EULER] {
                 let heat = Some(warm(method, 0.0, at));
                 let spec = bar(copper("family", None), stepper(), heat);
-                let TimeStep::Fixed(dt) = spec.schedule.time_step else {
+                let TimeStep::Fixed(dt) = spec.run.schedule.time_step else {
                     unreachable!()
                 };
                 let mut sim = built(&spec);
@@ -204,7 +204,7 @@ fn who_holds_the_temperature_holds_the_strength() {
                 let mut heat = warm(EXPLICIT, 1.0, "298");
                 heat.conditions = vec![on("all", TransferKind::Value(text("1000")))];
                 let spec = told(copper(gradient, capacity), stepper(), Some(heat));
-                let TimeStep::Fixed(dt) = spec.schedule.time_step else {
+                let TimeStep::Fixed(dt) = spec.run.schedule.time_step else {
                     unreachable!()
                 };
                 let mut sim = built(&spec);
@@ -240,7 +240,7 @@ fn what_is_molten_bears_no_shear() {
 /// Adds `T_r` to the temperature rise of a run without [heat].
 fn adiabatic(spec: &Spec, steps: u64) -> [Vec<f64>; 3] {
     let mut alone = spec.clone();
-    alone.transfers.clear();
+    alone.interactions.transfers.clear();
     let mut sim = built(&alone);
     run(&mut *sim, steps);
     let t = scalars(&mut *sim, "temperature_rise");
@@ -387,8 +387,8 @@ fn bodies_have_their_own_temperatures() {
         law: LawSpec::named("correspondence", elastic),
         ..spec.materials[0].clone()
     });
-    let own = spec.transfers[0].materials[0];
-    spec.transfers[0].materials.push(own);
+    let own = spec.interactions.transfers[0].materials[0];
+    spec.interactions.transfers[0].materials.push(own);
     let mut sim = built(&spec);
     let found = flown(&mut *sim, 50, 0.1 * DT);
     assert_eq!(found.len(), 64);

@@ -31,9 +31,9 @@ fn wave(d: usize, method: TransferMethod, dt: f64) -> Spec {
     let mut heat = heat(method);
     heat.initial = vec![("all".into(), text(&format!("3 + cos(2*pi*x/{long})")))];
     let mut spec = still(d, cells(d, H, [0.0; 3], [long; 3]), 3, dt, heat);
-    spec.volume_scaling = false;
+    spec.bonds.volume_scaling = false;
     for a in 0..d {
-        spec.periodic[a] = Some(long);
+        spec.space.periodic[a] = Some(long);
     }
     spec
 }

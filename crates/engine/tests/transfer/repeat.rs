@@ -21,8 +21,8 @@ fn block(method: TransferMethod, stepper: Stepper) -> Spec {
     };
     species.conditions.truncate(1);
     let mut spec = still(3, cells(3, 0.1, [0.0; 3], [3.0, 1.4, 1.2]), 2, 1e-3, heat);
-    spec.transfers.push(species);
-    spec.schedule.stepper = stepper;
+    spec.interactions.transfers.push(species);
+    spec.run.schedule.stepper = stepper;
     spec.sets = vec![beyond("low", 0.1, -1.0), beyond("high", 2.8, 1.0)];
     spec
 }

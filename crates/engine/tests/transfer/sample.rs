@@ -59,10 +59,10 @@ pub fn heat(method: TransferMethod) -> TransferSpec {
 /// Nothing moves; steps of `dt`.
 pub fn still(d: usize, body: BodySpec, horizon: u32, dt: f64, heat: TransferSpec) -> Spec {
     let mut spec = Spec::new(d, body, 1.0, SPRINGS);
-    spec.horizon = Horizon::Ratio(horizon);
-    spec.schedule.stepper = Stepper::Still;
-    spec.schedule.time_step = TimeStep::Fixed(dt);
-    spec.transfers = vec![heat];
+    spec.bonds.horizon = Horizon::Ratio(horizon);
+    spec.run.schedule.stepper = Stepper::Still;
+    spec.run.schedule.time_step = TimeStep::Fixed(dt);
+    spec.interactions.transfers = vec![heat];
     spec
 }
 

@@ -59,8 +59,8 @@ impl Live {
         spec: &Spec,
         corner: [f64; 3],
     ) -> Result<Live, FieldsError> {
-        let atoms = spec.potential().is_some() && spec.smooth.is_none();
-        let by_sites = match spec.family {
+        let atoms = spec.potential().is_some() && spec.bonds.smooth.is_none();
+        let by_sites = match spec.bonds.family {
             FamilyChoice::Auto | FamilyChoice::Neighbours | FamilyChoice::Reference => atoms,
             FamilyChoice::Stencil | FamilyChoice::List => false,
         };
@@ -71,7 +71,7 @@ impl Live {
                     .sites_of(spec)
                     .map_err(|e: BuildError| words(e))?;
                 let count = sim.info().points as usize;
-                let bonded = spec.bonded.as_deref().cloned();
+                let bonded = spec.interactions.bonded.as_deref().cloned();
                 let molecules = bonded.map(|b| Molecules::new(b, count)).transpose()?;
                 Forces::Sites {
                     sites,
@@ -91,18 +91,18 @@ impl Live {
         let mut live = Live {
             forces,
             atoms,
-            boltzmann: spec.boltzmann,
-            dimension: spec.dimension,
-            section: spec.section,
+            boltzmann: spec.loading.boltzmann,
+            dimension: spec.space.dimension,
+            section: spec.space.section,
             spacing: sim.info().spacing,
             corner,
-            periodic: spec.periodic,
-            resting: spec.schedule.statics().is_some(),
-            breaks: !spec.precracks.is_empty()
+            periodic: spec.space.periodic,
+            resting: spec.run.schedule.statics().is_some(),
+            breaks: !spec.damage.precracks.is_empty()
                 || spec.materials.iter().any(|m| m.fracture.is_some()),
             bounds,
         };
-        if spec.family == FamilyChoice::Reference && atoms {
+        if spec.bonds.family == FamilyChoice::Reference && atoms {
             let mut reference = live.frame(sim, &live.cell(&Place::Points(vec![]))?);
             reference.position = sim.vectors("reference");
             // a whole number of spacings is meant inclusively

@@ -304,6 +304,6 @@ fn of_spec(deck: &Deck, name: &str) -> Result<Model, ModelError> {
         name: name.to_string(),
         sites,
         kinds: (0..deck.spec.materials.len()).map(kind).collect(),
-        bonded: deck.spec.bonded.clone(),
+        bonded: deck.spec.interactions.bonded.clone(),
     })
 }

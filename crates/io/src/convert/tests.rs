@@ -120,7 +120,7 @@ fn what_maps_is_in_the_deck() {
     let found = found.unwrap();
     let deck = deck(dir.path(), &found);
     let spec = &deck.spec;
-    assert_eq!(spec.horizon, Horizon::Length(1.5));
+    assert_eq!(spec.bonds.horizon, Horizon::Length(1.5));
     assert_eq!(spec.materials.len(), 2);
     for m in &spec.materials {
         assert_eq!(m.density, 2440.0);
@@ -128,7 +128,7 @@ fn what_maps_is_in_the_deck() {
     }
     let set = |name: &str| spec.sets.iter().any(|s| s.name == name);
     assert!(set("Foot") && set("Head") && set("block_1") && set("block_2"));
-    let [hold, pull] = &spec.conditions[..] else {
+    let [hold, pull] = &spec.loading.conditions[..] else {
         panic!("{}", found.text)
     };
     assert_eq!((&*hold.set, &*pull.set), ("Foot", "Head"));
@@ -137,11 +137,11 @@ fn what_maps_is_in_the_deck() {
     };
     let value = value[1].as_ref().unwrap().eval(&[0.0; 3], 2.0);
     assert!((value - 0.2 * (-2.0f64).exp()).abs() < 1e-15);
-    assert_eq!(spec.schedule.time_step, TimeStep::Fixed(1e-5));
-    assert_eq!(spec.schedule.steps, 10);
+    assert_eq!(spec.run.schedule.time_step, TimeStep::Fixed(1e-5));
+    assert_eq!(spec.run.schedule.steps, 10);
     assert_eq!(deck.output.every, Some(5));
     assert_eq!(deck.output.exodus, Some("notch.e".into()));
-    let fields = spec.fields.as_ref().unwrap();
+    let fields = spec.run.fields.as_ref().unwrap();
     assert_eq!(fields[..], ["displacement", "damage"]);
     for part in [
         "polygon = [[0.5, 0.0, -1.0], [0.5, 0.25, -1.0], [0.5, 0.25, -3.0], [0.5, 0.0, -3.0]]",
@@ -307,17 +307,17 @@ fn lab(switch: &str) -> (tempfile::TempDir, Converted) {
 fn decks_of_perilab_are_flat_static_and_break_if_told_so() {
     let (dir, found) = lab("true");
     let deck = deck(dir.path(), &found);
-    assert_eq!(deck.spec.dimension, 2);
+    assert_eq!(deck.spec.space.dimension, 2);
     assert!(found.text.contains("plane = \"stress\""));
     assert!(deck.spec.materials[0].fracture.is_some());
     assert!(found.remarks.iter().any(|r| r.contains("Critical Energy")));
     // t from 0 to 1 is 1 to 3 there
-    let ConditionKind::Displacement(value) = &deck.spec.conditions[0].kind else {
+    let ConditionKind::Displacement(value) = &deck.spec.loading.conditions[0].kind else {
         panic!()
     };
     let value = value[1].as_ref().unwrap();
     assert_eq!([0.0, 1.0].map(|t| value.eval(&[0.0; 3], t)), [2.0, 6.0]);
-    assert_eq!(deck.spec.schedule.steps, 4);
+    assert_eq!(deck.spec.run.schedule.steps, 4);
     assert_eq!(deck.output.every, Some(2));
     let told: Vec<&str> = found.unmapped.iter().map(|u| &*u.why).collect();
     assert!(told.contains(&"there is no z in 2-D"), "{told:?}");

@@ -90,7 +90,7 @@ pub fn coarsened(deck: &Deck, file: &str, level: usize) -> Result<Rewritten, Str
     );
     table.insert(
         "dimension".into(),
-        Value::Integer(deck.spec.dimension as i64),
+        Value::Integer(deck.spec.space.dimension as i64),
     );
     let mut body = Table::new();
     body.insert("file".into(), file.into());

@@ -39,10 +39,12 @@ pub fn doubts(spec: &Spec, info: &Info, units: UnitSystem) -> Vec<Doubt> {
             continue;
         }
         names.push(&m.name);
-        let of_all = (info.horizon, spec.influence);
+        let of_all = (info.horizon, spec.bonds.influence);
         let (horizon, influence) = info.families.get(n).copied().unwrap_or(of_all);
-        let moments = Moments::continuum(spec.dimension, horizon, spec.section, influence);
-        let Some(nominal) = nominal_moduli(&m.law, spec.dimension, spec.plane, moments) else {
+        let moments =
+            Moments::continuum(spec.space.dimension, horizon, spec.space.section, influence);
+        let Some(nominal) = nominal_moduli(&m.law, spec.space.dimension, spec.space.plane, moments)
+        else {
             continue;
         };
         let place = names.len() - 1;

@@ -62,7 +62,7 @@ pub struct Deck {
     pub units: UnitSystem,
     /// Threads asked for.
     pub threads: Option<usize>,
-    /// Duration asked for where the step is estimated: `spec.schedule.steps` is then 0, and [`Deck::steps`] has it.
+    /// Duration asked for where the step is estimated: `spec.run.schedule.steps` is then 0, and [`Deck::steps`] has it.
     pub duration: Option<f64>,
     /// Modes of vibration asked for.
     pub modes: usize,
@@ -235,7 +235,7 @@ impl Deck {
 
     /// Mass of an atom of each material, in units of computation; `None` where points have different volumes.
     pub fn masses(&self) -> Vec<Option<f64>> {
-        let volume = lower::point_volume(&self.spec.body, self.spec.dimension);
+        let volume = lower::point_volume(&self.spec.body, self.spec.space.dimension);
         let each = self.spec.materials.iter();
         each.map(|m| volume.map(|v| m.density * v)).collect()
     }
@@ -266,15 +266,17 @@ impl Deck {
 
     /// Steps of the run once the time step is known; increments of statics before motion are among them.
     pub fn steps(&self, time_step: f64) -> u64 {
-        let steps = self.duration.map_or(self.spec.schedule.steps, |duration| {
-            lower::steps(duration, time_step)
-        });
+        let steps = self
+            .duration
+            .map_or(self.spec.run.schedule.steps, |duration| {
+                lower::steps(duration, time_step)
+            });
         self.increments() + steps
     }
 
     /// Increments of statics before motion.
     pub fn increments(&self) -> u64 {
-        self.spec.preload.as_ref().map_or(0, |p| p.increments)
+        self.spec.run.preload.as_ref().map_or(0, |p| p.increments)
     }
 
     /// Where an entry of the spec (`"materials[0].density"`, `"body.region"`) stands in the deck, in bytes; the
@@ -301,7 +303,7 @@ impl Deck {
     /// What to say about the length of a run whose time step is known.
     fn long_run(&self, time_step: f64) -> Option<String> {
         let steps = self.steps(time_step);
-        (self.spec.schedule.statics().is_none() && steps > lower::MANY_STEPS).then(|| {
+        (self.spec.run.schedule.statics().is_none() && steps > lower::MANY_STEPS).then(|| {
             let step = self.units.write(time_step, Dim::TIME);
             format!(
                 "{steps} steps of {step}: check the unit of run.duration (\"50 us\") or run.time_step, or the number of steps"

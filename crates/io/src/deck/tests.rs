@@ -40,7 +40,7 @@ fn with(key: &str, value: &str) -> Result<Deck, DeckError> {
 #[test]
 fn a_deck_becomes_a_spec() {
     let spec = parse(IMPACT).spec;
-    assert_eq!(spec.dimension, 3);
+    assert_eq!(spec.space.dimension, 3);
     assert!(matches!(spec.body, BodySpec::Lattice { spacing, .. } if spacing == 0.5e-3));
     assert_eq!(
         spec.materials[0].law,
@@ -55,9 +55,9 @@ fn a_deck_becomes_a_spec() {
             fatigue: None,
         })
     );
-    assert_eq!(spec.horizon, Horizon::Ratio(3));
+    assert_eq!(spec.bonds.horizon, Horizon::Ratio(3));
     assert_eq!(
-        spec.contact,
+        spec.interactions.contact,
         Some(ContactSpec {
             bonded: 0.9,
             free: 1.35,
@@ -67,15 +67,15 @@ fn a_deck_becomes_a_spec() {
             conductance: None,
         })
     );
-    assert_eq!(spec.schedule.time_step, TimeStep::Fixed(1e-7));
-    let velocity = spec.initial[0].velocity[1].as_ref().unwrap();
+    assert_eq!(spec.run.schedule.time_step, TimeStep::Fixed(1e-7));
+    let velocity = spec.loading.initial[0].velocity[1].as_ref().unwrap();
     assert_eq!(velocity.eval(&[0.02, 0.0, 0.0], 0.0), -100.0);
-    assert!(spec.initial[0].velocity[0].is_none());
-    let RigidShape::Sphere { radius } = spec.indenters[0].shape else {
+    assert!(spec.loading.initial[0].velocity[0].is_none());
+    let RigidShape::Sphere { radius } = spec.loading.indenters[0].shape else {
         panic!()
     };
     assert_eq!(radius, 0.005);
-    let IndenterMotion::Kinematic(center) = &spec.indenters[0].motion else {
+    let IndenterMotion::Kinematic(center) = &spec.loading.indenters[0].motion else {
         panic!()
     };
     assert!((center[1].eval(&[0.0; 3], 1e-5) - 0.0015).abs() < 1e-15);
@@ -89,14 +89,21 @@ fn overrides_lie_over_the_deck_and_are_blamed_for_their_mistakes() {
         LawSpec::Pmb(PmbStiffness::Bulk(20e9))
     );
     assert_eq!(
-        with("initial.0.velocity.y", "7").unwrap().spec.initial[0].velocity[1]
+        with("initial.0.velocity.y", "7")
+            .unwrap()
+            .spec
+            .loading
+            .initial[0]
+            .velocity[1]
             .as_ref()
             .unwrap()
             .as_constant(),
         Some(7.0)
     );
     assert_eq!(with("output.every", "5").unwrap().output.every, Some(5));
-    assert!(with("horizon", "{ m_ratio = 4 }").is_ok_and(|d| d.spec.horizon == Horizon::Ratio(4)));
+    assert!(
+        with("horizon", "{ m_ratio = 4 }").is_ok_and(|d| d.spec.bonds.horizon == Horizon::Ratio(4))
+    );
     for (key, value, message) in [
         ("body.spacing", "-1 mm", "the spacing must be positive"),
         ("body.spacin", "1 mm", "unknown key `spacin`"),
@@ -163,7 +170,8 @@ fn a_periodic_body_is_one_period_long() {
     ) + "\n";
     let deck = Deck::parse(&text, "f", &[("periodic".into(), "[\"x\"]".into())]).unwrap();
     assert!(
-        (deck.spec.periodic[0].unwrap() - 0.01).abs() < 1e-15 && deck.spec.periodic[1].is_none()
+        (deck.spec.space.periodic[0].unwrap() - 0.01).abs() < 1e-15
+            && deck.spec.space.periodic[1].is_none()
     );
     let BodySpec::Lattice {
         kind,
@@ -200,7 +208,7 @@ fn metal_units_are_made_consistent() {
     };
     assert!((k - 0.474354689).abs() < 1e-6, "{k}"); // eV/Å³
     assert!((deck.spec.materials[0].density - 2.7 * 6.02214076e-1 * 1.036426966e-4).abs() < 1e-10);
-    let ConditionKind::Traction { value, .. } = &deck.spec.conditions[0].kind else {
+    let ConditionKind::Traction { value, .. } = &deck.spec.loading.conditions[0].kind else {
         panic!()
     };
     assert!((value[0].as_ref().unwrap().eval(&[0.0; 3], 2.0) - 2e4 * 6.241509074e-7).abs() < 1e-12);
@@ -279,7 +287,10 @@ fn flags_make_a_deck_and_are_named_where_they_are_wrong() {
         })
     };
     let deck = Deck::of_flags(&flags("0.25")).unwrap();
-    assert_eq!((deck.spec.dimension, deck.spec.schedule.steps), (1, 5));
+    assert_eq!(
+        (deck.spec.space.dimension, deck.spec.run.schedule.steps),
+        (1, 5)
+    );
     let text = upscaled::copied(&deck).unwrap().text;
     assert_eq!(
         format!("{:?}", parse(&text).spec),
@@ -305,7 +316,7 @@ fn value(key: &str, text: &str, statics: bool) -> Result<f64, (String, String)> 
     );
     match Deck::parse(&deck, "f.toml", &[]) {
         Ok(deck) => {
-            let value = match &deck.spec.conditions[0].kind {
+            let value = match &deck.spec.loading.conditions[0].kind {
                 ConditionKind::Displacement(v) | ConditionKind::Velocity(v) => v[0].clone(),
                 ConditionKind::Traction { value, .. } => value[0].clone(),
                 other => panic!("{other:?}"),
@@ -550,7 +561,7 @@ fn expressions_in_metal_units_are_computed_in_those() {
     let text = "units = \"metal\"\nhorizon = 9\n[constants]\nK = \"76 GPa\"\n[body]\nlattice = \"fcc\"\nspacing = \"0.4 nm\"\nregion = { block = { low = [0,0,0], high = [40,40,40] } }\n[material]\ndensity = \"2*1.35 g/cm^3\"\nlaw = { pmb = { bulk = \"0.5*K\" } }\n[run]\nduration = 1\n[[condition]]\ntraction = { x = \"TEXT\" }\n";
     let traction = |t: &str| {
         let deck = Deck::parse(&text.replace("TEXT", t), "f", &[])?;
-        let ConditionKind::Traction { value, .. } = &deck.spec.conditions[0].kind else {
+        let ConditionKind::Traction { value, .. } = &deck.spec.loading.conditions[0].kind else {
             panic!()
         };
         Ok::<f64, DeckError>(value[0].as_ref().unwrap().eval(&[8.0, 0.0, 0.0], 2.0))

@@ -108,7 +108,7 @@ pub fn upscaled(
         .into(),
     );
     upscale_body(deck, coarse, factor, &mut table)?;
-    let horizon = match coarse.horizon {
+    let horizon = match coarse.bonds.horizon {
         Horizon::Ratio(m) => {
             let mut ratio = Table::new();
             ratio.insert("m_ratio".into(), Value::Integer(i64::from(m)));
@@ -156,7 +156,7 @@ fn upscale_body(deck: &Deck, coarse: &Spec, factor: u32, table: &mut Table) -> R
         && !body.contains_key("origin")
         && *origin != [0.0; 3]
     {
-        let along = origin[..coarse.dimension].iter();
+        let along = origin[..coarse.space.dimension].iter();
         let along = along.map(|c| plain(deck, *c, Dim::LENGTH));
         body.insert("origin".into(), Value::Array(along.collect()));
     }
@@ -176,7 +176,7 @@ fn upscale_body(deck: &Deck, coarse: &Spec, factor: u32, table: &mut Table) -> R
 
 /// The family of atoms, their density, and the numbers of their potentials.
 fn upscale_potentials(deck: &Deck, coarse: &Spec, table: &mut Table) -> Result<(), String> {
-    match coarse.family {
+    match coarse.bonds.family {
         FamilyChoice::Neighbours => {
             // of atoms that are near now the cut-off is the potential's
             table.remove("horizon");
@@ -202,7 +202,12 @@ fn upscale_potentials(deck: &Deck, coarse: &Spec, table: &mut Table) -> Result<(
         }
     }
     if let Some(Value::Array(pairs)) = table.get_mut("pair") {
-        let both = deck.spec.potentials.iter().zip(&coarse.potentials);
+        let both = deck
+            .spec
+            .interactions
+            .potentials
+            .iter()
+            .zip(&coarse.interactions.potentials);
         for (pair, (fine, new)) in pairs.iter_mut().zip(both) {
             let law = pair.as_table_mut().and_then(|p| inner(p, "law"));
             if let Some(law) = law {
@@ -217,19 +222,22 @@ fn upscale_potentials(deck: &Deck, coarse: &Spec, table: &mut Table) -> Result<(
 fn upscale_times(deck: &Deck, coarse: &Spec, factor: u32, end: Option<f64>, table: &mut Table) {
     // statics have increments of load, which stay
     if let Some(run) = inner(table, "run") {
-        if let TimeStep::Fixed(dt) = coarse.schedule.time_step {
+        if let TimeStep::Fixed(dt) = coarse.run.schedule.time_step {
             run.insert("time_step".into(), plain(deck, dt, Dim::TIME));
         }
         if let Some(end) = end {
             run.remove("steps");
             run.insert("duration".into(), plain(deck, end, Dim::TIME));
         } else if run.contains_key("steps") {
-            run.insert("steps".into(), Value::Integer(coarse.schedule.steps as i64));
+            run.insert(
+                "steps".into(),
+                Value::Integer(coarse.run.schedule.steps as i64),
+            );
         }
     }
-    let [before, after] = [&deck.spec, coarse].map(|spec| spec.schedule.steps as f64);
+    let [before, after] = [&deck.spec, coarse].map(|spec| spec.run.schedule.steps as f64);
     let fewer = match deck.duration {
-        _ if deck.spec.schedule.statics().is_some() => 1.0,
+        _ if deck.spec.run.schedule.statics().is_some() => 1.0,
         // their number is not known before they run
         Some(_) => 1.0 / f64::from(factor),
         None => after / before,

@@ -30,34 +30,34 @@ impl RigidBodies {
     /// Of a spec; and the spec with probes of how free bodies are turned, for whoever builds the model.
     pub fn watched(spec: &Spec) -> (RigidBodies, Cow<'_, Spec>) {
         let mut bodies = RigidBodies {
-            dimension: spec.dimension,
+            dimension: spec.space.dimension,
             ..RigidBodies::default()
         };
-        let form = |i: &IndenterSpec| Form::of(&i.shape, spec.dimension);
+        let form = |i: &IndenterSpec| Form::of(&i.shape, spec.space.dimension);
         let tracked = |i: &IndenterSpec| Tracked {
             spec: i.clone(),
             form: form(i),
             probe: None,
         };
-        let before = spec.preload.iter().flat_map(|p| &p.indenters);
+        let before = spec.run.preload.iter().flat_map(|p| &p.indenters);
         bodies.statics = before.map(tracked).collect();
-        bodies.motion = spec.indenters.iter().map(tracked).collect();
+        bodies.motion = spec.loading.indenters.iter().map(tracked).collect();
         let mut whole = Cow::Borrowed(spec);
         for (n, body) in bodies.motion.iter_mut().enumerate() {
             let free = matches!(body.spec.motion, IndenterMotion::Free(_));
             // nobody sees a ball turn
-            if !free || !matches!(body.form, Form::Surface(_)) || spec.dimension < 2 {
+            if !free || !matches!(body.form, Form::Surface(_)) || spec.space.dimension < 2 {
                 continue;
             }
             let whole = whole.to_mut();
-            if whole.indenters[n].name.is_empty() {
-                whole.indenters[n].name = format!("indenter {}", n + 1);
+            if whole.loading.indenters[n].name.is_empty() {
+                whole.loading.indenters[n].name = format!("indenter {}", n + 1);
             }
-            whole.probes.push(ProbeSpec {
+            whole.run.probes.push(ProbeSpec {
                 name: format!("rotation of indenter {}", n + 1),
                 set: "all".into(),
                 measure: Measure::Indenter {
-                    indenter: whole.indenters[n].name.clone(),
+                    indenter: whole.loading.indenters[n].name.clone(),
                     of: Some(RigidQuantity::Turn),
                 },
             });

@@ -3,9 +3,9 @@
 use peridyne::family::stencil::Stencil;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
-    BodySpec, Calibration, Cloud, ContactSpec, Criterion, FamilyChoice, FractureSpec, Horizon,
-    Influence, InterfaceRule, MaterialSpec, Members, Plane, Release, Schedule, SetSpec, Spec,
-    Stepper, TimeStep,
+    BodySpec, BondsSpec, Calibration, Cloud, ContactSpec, Criterion, DamageSpec, FractureSpec,
+    Horizon, Influence, InteractionsSpec, LoadingSpec, MaterialSpec, Members, Release, RunSpec,
+    Schedule, SetSpec, SpaceSpec, Spec, Stepper, TimeStep,
 };
 
 use super::engine::in_plane;
@@ -56,15 +56,12 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         members: Members::Mark(*kind as i32),
     };
     Ok(Spec {
-        bonded: None,
-        boltzmann: 1.0,
-        thermal: None,
-        fields: None,
-        probes: vec![],
         title: setup.title.clone(),
-        dimension: setup.dimension,
-        plane: Plane::Stress,
-        section: 1.0,
+        space: SpaceSpec {
+            dimension: setup.dimension,
+            periodic,
+            ..SpaceSpec::default()
+        },
         body,
         sets: if several {
             types.materials().iter().map(set).collect()
@@ -72,45 +69,40 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
             vec![]
         },
         materials: types.materials().iter().map(material).collect(),
-        interface: InterfaceRule::Series,
-        interfaces: vec![],
-        pairs: types.table(),
-        potentials: vec![],
-        mixing: None,
-        toughness: vec![],
-        healing: None,
-        release: Release::AfterForce,
-        horizon: Horizon::Length(types.horizon()),
-        volume_scaling: true,
-        calibration: Calibration::Continuum,
-        influence,
-        periodic,
-        surface: None,
-        bonds: vec![],
-        precracks: vec![],
-        contact: Some(ContactSpec {
-            // distances below which LAMMPS's points repel: fraction of the reference distance, and lattice constants
-            bonded: 0.9,
-            free: 1.35,
-            stiffness: types.contact(),
-            friction: None,
-            cohesion: None,
-            conductance: None,
-        }),
-        initial: vec![],
-        conditions: vec![],
-        indenters: vec![],
-        transfers: vec![],
-        family: FamilyChoice::Auto,
-        smooth: None,
-        preload: None,
-        own_horizon: None,
-        schedule: Schedule {
-            steps: setup.steps,
-            time_step: TimeStep::Fixed(setup.time_step),
-            // LAMMPS runs any step; a warning is given at the start of the run
-            force_unstable: true,
-            stepper: Stepper::Verlet,
+        bonds: BondsSpec {
+            horizon: Horizon::Length(types.horizon()),
+            volume_scaling: true,
+            calibration: Calibration::Continuum,
+            influence,
+            ..BondsSpec::default()
+        },
+        interactions: InteractionsSpec {
+            pairs: types.table(),
+            contact: Some(ContactSpec {
+                // distances below which LAMMPS's points repel: fraction of the reference distance, and lattice constants
+                bonded: 0.9,
+                free: 1.35,
+                stiffness: types.contact(),
+                friction: None,
+                cohesion: None,
+                conductance: None,
+            }),
+            ..InteractionsSpec::default()
+        },
+        damage: DamageSpec {
+            release: Release::AfterForce,
+            ..DamageSpec::default()
+        },
+        loading: LoadingSpec::default(),
+        run: RunSpec {
+            schedule: Schedule {
+                steps: setup.steps,
+                time_step: TimeStep::Fixed(setup.time_step),
+                // LAMMPS runs any step; a warning is given at the start of the run
+                force_unstable: true,
+                stepper: Stepper::Verlet,
+            },
+            ..RunSpec::default()
         },
     })
 }

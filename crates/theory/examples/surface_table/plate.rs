@@ -39,9 +39,9 @@ fn spec(
         volume: None,
     };
     let mut spec = Spec::new(2, body, 1.0, law);
-    spec.horizon = Horizon::Ratio(m);
-    spec.periodic = periodic;
-    spec.surface = method.map(|method| {
+    spec.bonds.horizon = Horizon::Ratio(m);
+    spec.space.periodic = periodic;
+    spec.bonds.surface = method.map(|method| {
         let (factors, report) = correct(&spec, method).expect("a lattice body");
         if let Some(report) = report.filter(|r| !r.exact) {
             eprintln!("not exact: {report:?}");
@@ -91,7 +91,7 @@ impl Plate {
             })
             .collect();
         let spec = spec(&points, m, [None; 3], law.clone(), method);
-        let factors = match &spec.surface {
+        let factors = match &spec.bonds.surface {
             None => (1.0, 1.0),
             Some(s) => s
                 .rows

@@ -41,7 +41,7 @@ impl Points {
             material: { all.iter() }
                 .map(|(x, material)| (lattice.quarter(x), *material))
                 .collect(),
-            period: std::array::from_fn(|a| spec.periodic[a].map(|p| quarters(a, p) as i32)),
+            period: std::array::from_fn(|a| spec.space.periodic[a].map(|p| quarters(a, p) as i32)),
             lattice,
         })
     }

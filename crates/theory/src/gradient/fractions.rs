@@ -17,14 +17,14 @@ pub fn fractions(spec: &Spec, terms: usize) -> Option<Vec<Q>> {
     else {
         return None;
     };
-    let Horizon::Ratio(m) = spec.horizon else {
+    let Horizon::Ratio(m) = spec.bonds.horizon else {
         return None;
     };
     let [material] = spec.materials.as_slice() else {
         return None;
     };
     let m = i64::from(m);
-    let weight = |j: i64| match (&material.law, spec.influence) {
+    let weight = |j: i64| match (&material.law, spec.bonds.influence) {
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Constant) => Some(Q::ratio(1, 1)),
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Inverse) => Some(Q::ratio(1, j)),
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Conical) => Some(Q::ratio(m - j, m)),
@@ -42,7 +42,16 @@ pub fn fractions(spec: &Spec, terms: usize) -> Option<Vec<Q>> {
             _,
         ) => None,
     };
-    let part = |j: i64| Q::ratio(1, if spec.volume_scaling && j == m { 2 } else { 1 });
+    let part = |j: i64| {
+        Q::ratio(
+            1,
+            if spec.bonds.volume_scaling && j == m {
+                2
+            } else {
+                1
+            },
+        )
+    };
     let stiffness: Option<Vec<Q>> = (1..=m)
         .map(|j| Some(weight(j)? * part(j) / Q::whole(j)))
         .collect();

@@ -312,7 +312,7 @@ pub fn of_spec(
             let reach = upscale::reach(self.spec);
             let chain = PotentialChain::new(potential, self.spacing, reach)?;
             let equation = universal::expansion(self.terms, chain.embedded());
-            let per_section = 1.0 / self.spec.section;
+            let per_section = 1.0 / self.spec.space.section;
             let at = |stretch: &f64| {
                 let e = put_in(&equation, &chain, stretch).ok()?;
                 let orders = e.orders.iter().map(|p| p.scale(&per_section)).collect();

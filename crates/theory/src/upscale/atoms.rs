@@ -17,7 +17,7 @@ const INCLUSIVE: f64 = 1.0 + 1e-9;
 
 /// Has it several kinds of atoms, or terms of more than two? Theory knows such potentials by names.
 pub fn has_basis_or_fans(spec: &Spec) -> bool {
-    let several = spec.materials.len() > 1 || !spec.potentials.is_empty();
+    let several = spec.materials.len() > 1 || !spec.interactions.potentials.is_empty();
     spec.potential()
         .is_some_and(|p| several || fan::is_known(&p.name))
 }
@@ -35,7 +35,7 @@ impl<const D: usize> Atoms<D> {
     pub fn of(spec: &Spec) -> Result<Self, UpscaleError> {
         let (kind, spacing) = lattice(spec)?;
         let found = arrangement::<D>(spec)?;
-        let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
+        let volume = kind.site_volume() * spacing.powi(D as i32) * spec.space.section;
         let atom = |(place, kind): &([f64; D], usize)| Atom {
             place: *place,
             kind: *kind,
@@ -48,7 +48,7 @@ impl<const D: usize> Atoms<D> {
             true => None,
             false if given.len() > 1 => return Err(CrystalError::FixedNeighbours.into()),
             false => {
-                let horizon = INCLUSIVE * spec.horizon.length(spacing);
+                let horizon = INCLUSIVE * spec.bonds.horizon.length(spacing);
                 Some(neighbours(&found.cell, &atoms, horizon, |_, _| horizon)?)
             }
         };
@@ -122,7 +122,7 @@ impl<const D: usize> Atoms<D> {
 /// # Errors
 /// The kinds do not lie there as they lie here.
 pub(super) fn grow(fine: &Spec, coarse: &mut Spec, n: f64) -> Result<(), UpscaleError> {
-    let energy = n.powi(fine.dimension as i32);
+    let energy = n.powi(fine.space.dimension as i32);
     for material in &mut coarse.materials {
         if let LawSpec::Atoms(potential) = &mut material.law {
             *potential = potential
@@ -130,16 +130,16 @@ pub(super) fn grow(fine: &Spec, coarse: &mut Spec, n: f64) -> Result<(), Upscale
                 .map_err(CrystalError::Potential)?;
         }
     }
-    for acting in &mut coarse.potentials {
+    for acting in &mut coarse.interactions.potentials {
         let scaled = acting.potential.scaled(n, energy);
         acting.potential = scaled.map_err(CrystalError::Potential)?;
     }
     if current(fine) {
-        coarse.family = FamilyChoice::Neighbours;
-    } else if let Horizon::Length(d) = &mut coarse.horizon {
+        coarse.bonds.family = FamilyChoice::Neighbours;
+    } else if let Horizon::Length(d) = &mut coarse.bonds.horizon {
         *d *= n;
     }
-    let alike = match fine.dimension {
+    let alike = match fine.space.dimension {
         1 => alike::<1>(fine, coarse, n),
         2 => alike::<2>(fine, coarse, n),
         _ => alike::<3>(fine, coarse, n),

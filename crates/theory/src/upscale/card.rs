@@ -114,7 +114,7 @@ const WAVES: usize = 200;
 
 /// Compare a model with its upscaling.
 pub fn card(fine: &Spec, coarse: &Spec, factor: u32, rule: Rule) -> Result<Card, UpscaleError> {
-    match fine.dimension {
+    match fine.space.dimension {
         1 => card_in::<1>(fine, coarse, factor, rule),
         2 => card_in::<2>(fine, coarse, factor, rule),
         _ => card_in::<3>(fine, coarse, factor, rule),
@@ -220,13 +220,13 @@ fn card_in<const D: usize>(
             .enumerate()
             .map(|(p, (x, y))| GradientRow {
                 order: 2 * p + 2,
-                fine: x[0][0] / fine.section,
-                coarse: y[0][0] / fine.section,
+                fine: x[0][0] / fine.space.section,
+                coarse: y[0][0] / fine.space.section,
             })
             .collect(),
         _ => vec![],
     };
-    let statics = fine.schedule.statics().is_some();
+    let statics = fine.run.schedule.statics().is_some();
     let cost = |s: &Side| match statics {
         true => s.points * s.bonds as f64,
         false => s.points * s.bonds as f64 / s.stable_step,
@@ -316,7 +316,7 @@ fn side<const D: usize>(
     reference: Option<crate::crystal::Reference>,
 ) -> Result<Side, UpscaleError> {
     let (kind, spacing) = lattice(spec)?;
-    let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
+    let volume = kind.site_volume() * spacing.powi(D as i32) * spec.space.section;
     let stiffness = crystal
         .elastic_constants()
         .unwrap_or_else(|| crystal.rigid_elastic_constants());
@@ -326,10 +326,14 @@ fn side<const D: usize>(
         bonds: crystal.bonds.len() / crystal.basis.len(),
         points: 1.0 / volume,
         stable_step: crystal.largest(if D == 3 { 8 } else { 32 }).time_step(),
-        pressure: reference.map_or(0.0, |r| r.pressure / spec.section),
+        pressure: reference.map_or(0.0, |r| r.pressure / spec.space.section),
         energy: reference.map_or(0.0, |r| r.energy / volume),
         stiffness: (0..n)
-            .map(|i| (0..n).map(|j| stiffness.c[i][j] / spec.section).collect())
+            .map(|i| {
+                (0..n)
+                    .map(|j| stiffness.c[i][j] / spec.space.section)
+                    .collect()
+            })
             .collect(),
         anisotropy: if D == 1 {
             None
@@ -351,7 +355,7 @@ type Strained<'a> = Box<dyn Fn([[f64; 3]; 3]) -> f64 + 'a>;
 /// Of a perfect crystal, its sites carried along; where neighbours are fixed, of a periodic block.
 fn strained(spec: &Spec) -> Option<Strained<'_>> {
     if has_basis_or_fans(spec) {
-        return match spec.dimension {
+        return match spec.space.dimension {
             1 => cell_under_strain::<1>(spec),
             2 => cell_under_strain::<2>(spec),
             _ => cell_under_strain::<3>(spec),
@@ -368,13 +372,13 @@ fn strained(spec: &Spec) -> Option<Strained<'_>> {
 fn cell_under_strain<const D: usize>(spec: &Spec) -> Option<Strained<'_>> {
     let atoms = Atoms::<D>::of(spec).ok()?;
     Some(Box::new(move |strain| {
-        atoms.energy_density(strain).unwrap_or(f64::NAN) / spec.section
+        atoms.energy_density(strain).unwrap_or(f64::NAN) / spec.space.section
     }))
 }
 
 /// Energies of both models under homogeneous strains.
 fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<Message>) -> Vec<EnergyRow> {
-    let d = fine.dimension;
+    let d = fine.space.dimension;
     let [Some(a), Some(b)] = [fine, coarse].map(strained) else {
         notes.push(
             "Energies under strain are left out: no periodic block holds the neighbours.".into(),
@@ -421,11 +425,11 @@ fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<Message>) -> Vec<EnergyR
 fn block(spec: &Spec) -> Option<Spec> {
     let (kind, spacing) = lattice(spec).ok()?;
     let d = kind.dimension();
-    let horizon = match (spec.potential(), spec.family) {
+    let horizon = match (spec.potential(), spec.bonds.family) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours) => {
             Horizon::Length(super::reference::REACH * p.cut_off())
         }
-        _ => spec.horizon,
+        _ => spec.bonds.horizon,
     };
     let length = horizon.length(spacing);
     let cells = (length / spacing).ceil() as usize + 1;
@@ -455,15 +459,15 @@ fn block(spec: &Spec) -> Option<Spec> {
         volume: None,
     };
     let mut block = Spec::new(d, body, spec.materials[0].density, law);
-    block.plane = spec.plane;
-    block.section = spec.section;
-    block.horizon = horizon;
-    block.influence = spec.influence;
-    block.volume_scaling = spec.volume_scaling;
-    block.calibration = spec.calibration;
-    block.family = FamilyChoice::Stencil;
-    block.schedule.time_step = TimeStep::Fixed(1.0);
-    block.periodic =
+    block.space.plane = spec.space.plane;
+    block.space.section = spec.space.section;
+    block.bonds.horizon = horizon;
+    block.bonds.influence = spec.bonds.influence;
+    block.bonds.volume_scaling = spec.bonds.volume_scaling;
+    block.bonds.calibration = spec.bonds.calibration;
+    block.bonds.family = FamilyChoice::Stencil;
+    block.run.schedule.time_step = TimeStep::Fixed(1.0);
+    block.space.periodic =
         std::array::from_fn(|a| (a < d).then(|| spacing * kind.edges()[a] * cells as f64));
     Some(block)
 }

@@ -36,7 +36,7 @@ pub fn crystal<const D: usize>(
         }
         None if spec.materials.len() > 1 => Err(UpscaleError::SeveralMaterials),
         Some(potential) => {
-            let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
+            let volume = kind.site_volume() * spacing.powi(D as i32) * spec.space.section;
             let of = OfPotential::<D> {
                 kind,
                 spacing,
@@ -47,12 +47,16 @@ pub fn crystal<const D: usize>(
             Ok((crystal, Some(reference)))
         }
         None => {
-            let mut solid = LatticeSolid::new(kind, spacing, spec.horizon);
-            solid.section = spec.section;
+            let mut solid = LatticeSolid::new(kind, spacing, spec.bonds.horizon);
+            solid.section = spec.space.section;
             solid.density = density;
-            solid.influence = spec.influence;
-            solid.volume_scaling = spec.volume_scaling;
-            let crystal = solid.of_law(&spec.materials[0].law, spec.plane, spec.calibration)?;
+            solid.influence = spec.bonds.influence;
+            solid.volume_scaling = spec.bonds.volume_scaling;
+            let crystal = solid.of_law(
+                &spec.materials[0].law,
+                spec.space.plane,
+                spec.bonds.calibration,
+            )?;
             Ok((crystal, None))
         }
     }

@@ -12,7 +12,7 @@ use peridyne::spec::Spec;
 /// energy, or that which an embedded-atom model in closed form is made for; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
 pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
     if has_basis_or_fans(spec) {
-        return match spec.dimension {
+        return match spec.space.dimension {
             1 => of_kinds::<1>(spec),
             2 => of_kinds::<2>(spec),
             _ => of_kinds::<3>(spec),
@@ -130,8 +130,8 @@ mod tests {
         let a = equilibrium_spacing(&spec(LatticeKind::Fcc, lj.clone(), 16.0)).unwrap();
         assert!((a / (2.0 * 1.0902 * 2f64.sqrt()) - 1.0).abs() < 2e-3, "{a}");
         let mut chain = spec(LatticeKind::Chain, lj, f64::INFINITY);
-        chain.family = FamilyChoice::Stencil;
-        chain.horizon = Horizon::Ratio(1);
+        chain.bonds.family = FamilyChoice::Stencil;
+        chain.bonds.horizon = Horizon::Ratio(1);
         let a = equilibrium_spacing(&chain).unwrap();
         assert!(
             (a / (2.0 * 2f64.powf(1.0 / 6.0)) - 1.0).abs() < 1e-12,

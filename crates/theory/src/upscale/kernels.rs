@@ -57,7 +57,7 @@ pub fn kernels(fine: &Spec, coarse: &Spec) -> Result<Vec<Kernel>, UpscaleError> 
             | LawSpec::Named(_) => {}
         }
     }
-    match fine.dimension {
+    match fine.space.dimension {
         1 => kernels_in::<1>(fine, coarse),
         2 => kernels_in::<2>(fine, coarse),
         _ => kernels_in::<3>(fine, coarse),
@@ -69,19 +69,19 @@ fn kernels_in<const D: usize>(fine: &Spec, coarse: &Spec) -> Result<Vec<Kernel>,
     let (lattice, spacing) = super::reference::lattice(coarse)?;
     let family = |horizon| Stencil::new(lattice, spacing, horizon);
     let end = shortest(coarse)?;
-    let kept = coarse.horizon.length(spacing);
+    let kept = coarse.bonds.horizon.length(spacing);
     let most = (2.0 * kept / spacing).floor() as u32;
     let mut all = vec![];
     let mut influences = Influence::ALL.to_vec();
     // the deck's own, where it has none of these
-    if !influences.contains(&coarse.influence) {
-        influences.push(coarse.influence);
+    if !influences.contains(&coarse.bonds.influence) {
+        influences.push(coarse.bonds.influence);
     }
     for influence in influences {
         let one = |horizon: Horizon, kept: bool| -> Result<Option<Kernel>, UpscaleError> {
             let mut spec = coarse.clone();
-            spec.influence = influence;
-            spec.horizon = horizon;
+            spec.bonds.influence = influence;
+            spec.bonds.horizon = horizon;
             let (found, _) = crystal::<D>(&spec)?;
             Ok(
                 kernel(&reference, &found, &spec, fine, end).map(|k| Kernel {
@@ -91,11 +91,11 @@ fn kernels_in<const D: usize>(fine: &Spec, coarse: &Spec) -> Result<Vec<Kernel>,
                 }),
             )
         };
-        let at_kept = one(coarse.horizon, true)?;
+        let at_kept = one(coarse.bonds.horizon, true)?;
         let mut best = at_kept.clone();
         for m in 1..=most {
             // the same family again
-            if family(Horizon::Ratio(m)) == family(coarse.horizon) {
+            if family(Horizon::Ratio(m)) == family(coarse.bonds.horizon) {
                 continue;
             }
             if let Some(k) = one(Horizon::Ratio(m), false)?
@@ -140,8 +140,8 @@ fn kernel<const D: usize>(
             .collect()
     };
     let (a, b) = (
-        stiffness(fine, fine_spec.section),
-        stiffness(coarse, spec.section),
+        stiffness(fine, fine_spec.space.section),
+        stiffness(coarse, spec.space.section),
     );
     let along = directions::<D>();
     let first = |c: &Crystal<D>| -> Option<[f64; 2]> {
@@ -169,7 +169,7 @@ fn kernel<const D: usize>(
         }
     }
     Some(Kernel {
-        influence: spec.influence,
+        influence: spec.bonds.influence,
         horizon: f64::NAN,
         kept: false,
         bonds: bonds.len() / coarse.basis.len(),

@@ -26,14 +26,14 @@ pub fn lattice(spec: &Spec) -> Result<(LatticeKind, f64), UpscaleError> {
 
 pub(super) fn current(spec: &Spec) -> bool {
     let own = spec.materials.iter().filter_map(|m| m.law.potential());
-    let all = own.chain(spec.potentials.iter().map(|p| &p.potential));
+    let all = own.chain(spec.interactions.potentials.iter().map(|p| &p.potential));
     let longest = all.map(PotentialSpec::cut_off).fold(0.0, f64::max);
-    match spec.family {
+    match spec.bonds.family {
         _ if spec.potential().is_none() => false,
         FamilyChoice::Auto | FamilyChoice::Neighbours => true,
         // about the reference nobody can tell, if families hold all that feel each other
         FamilyChoice::Reference => {
-            lattice(spec).is_ok_and(|(_, a)| spec.horizon.length(a) >= longest)
+            lattice(spec).is_ok_and(|(_, a)| spec.bonds.horizon.length(a) >= longest)
         }
         FamilyChoice::Stencil | FamilyChoice::List => false,
     }
@@ -43,6 +43,6 @@ pub(super) fn current(spec: &Spec) -> bool {
 pub(crate) fn reach(spec: &Spec) -> Reach {
     match current(spec) {
         true => Reach::Cutoff,
-        false => Reach::Horizon(spec.horizon),
+        false => Reach::Horizon(spec.bonds.horizon),
     }
 }

@@ -89,7 +89,7 @@ pub fn upscale_keeping(
         BodySpec::Lattice { spacing, .. } | BodySpec::Sites { spacing, .. } => *spacing *= n,
         BodySpec::Cloud(_) | BodySpec::Several(_) => return Err(UpscaleError::NoLattice),
     }
-    coarse.family = FamilyChoice::Stencil;
+    coarse.bonds.family = FamilyChoice::Stencil;
     let divided = |horizon: Horizon| -> Result<Horizon, UpscaleError> {
         match horizon {
             Horizon::Ratio(m) if m.is_multiple_of(factor) => Ok(Horizon::Ratio(m / factor)),
@@ -125,12 +125,12 @@ pub fn upscale_keeping(
         LawSpec::Atoms(potential) => {
             let fixed = !current(spec) && potential.cut_off().is_infinite();
             let kept = match fixed && !shells {
-                true => keeping_reach(potential, (kind, fine, n), spec.horizon, &divided)?,
+                true => keeping_reach(potential, (kind, fine, n), spec.bonds.horizon, &divided)?,
                 false => None,
             };
             match kept {
                 Some((potential, horizon)) => {
-                    coarse.horizon = horizon;
+                    coarse.bonds.horizon = horizon;
                     coarse.materials[0].law = LawSpec::Atoms(potential);
                     Rule::Reduced
                 }
@@ -140,9 +140,9 @@ pub fn upscale_keeping(
                     let scaled = potential.scaled(n, energy);
                     coarse.materials[0].law =
                         LawSpec::Atoms(scaled.map_err(CrystalError::Potential)?);
-                    coarse.horizon = match current(spec) {
+                    coarse.bonds.horizon = match current(spec) {
                         true => Horizon::Length(REACH * n * potential.cut_off()),
-                        false => grown(spec.horizon),
+                        false => grown(spec.bonds.horizon),
                     };
                     Rule::Shells
                 }
@@ -154,33 +154,33 @@ pub fn upscale_keeping(
             return Err(UpscaleError::Micromodulus);
         }
         _ if shells => {
-            coarse.horizon = grown(spec.horizon);
+            coarse.bonds.horizon = grown(spec.bonds.horizon);
             Rule::Shells
         }
         _ => {
-            coarse.horizon = divided(spec.horizon)?;
+            coarse.bonds.horizon = divided(spec.bonds.horizon)?;
             Rule::Horizon
         }
     };
     // increments of a load are not steps in time
-    if spec.schedule.statics().is_none() {
-        let longer = match spec.dimension {
+    if spec.run.schedule.statics().is_none() {
+        let longer = match spec.space.dimension {
             1 => longer::<1>(spec, &coarse)?,
             2 => longer::<2>(spec, &coarse)?,
             _ => longer::<3>(spec, &coarse)?,
         };
-        coarse.schedule = Schedule {
+        coarse.run.schedule = Schedule {
             // as near to the same end as whole steps are
-            steps: match spec.schedule.steps {
+            steps: match spec.run.schedule.steps {
                 0 => 0,
                 steps => ((steps as f64 / longer).round() as u64).max(1),
             },
-            time_step: match spec.schedule.time_step {
+            time_step: match spec.run.schedule.time_step {
                 TimeStep::Fixed(dt) => TimeStep::Fixed(dt * longer),
                 TimeStep::Fraction(x) => TimeStep::Fraction(x),
                 TimeStep::Auto => TimeStep::Auto,
             },
-            ..spec.schedule
+            ..spec.run.schedule
         };
     }
     crate::homogenize::surface::renew(&mut coarse)?;
@@ -198,7 +198,7 @@ fn longer<const D: usize>(fine: &Spec, coarse: &Spec) -> Result<f64, UpscaleErro
     let ([bound, limit], [coarse_bound, coarse_limit]) = (of(fine)?, of(coarse)?);
     let sharp = coarse_limit / limit;
     let by_bounds = coarse_bound / bound;
-    let safe = match fine.schedule.time_step {
+    let safe = match fine.run.schedule.time_step {
         TimeStep::Fixed(dt) => dt * by_bounds <= SAFE * coarse_limit,
         TimeStep::Fraction(_) | TimeStep::Auto => false,
     };

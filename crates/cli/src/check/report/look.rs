@@ -48,7 +48,7 @@ fn stiffness(found: &Findings) -> Option<String> {
 /// Is the run as long as what happens in it?
 fn time(found: &Findings) -> Option<String> {
     let (info, spec) = (&found.info, found.spec);
-    if let Some(statics) = spec.schedule.statics() {
+    if let Some(statics) = spec.run.schedule.statics() {
         return Some(format!(
             "equilibrium: {} {}, each to a residual of {}",
             found.steps,
@@ -60,7 +60,7 @@ fn time(found: &Findings) -> Option<String> {
     let shown = found.units.show(lasts, Dim::TIME);
     let long = (0..info.dimension).map(|a| found.long(a));
     let long = long.fold(0.0, f64::max);
-    let still = found.spec.schedule.stepper == Stepper::Still;
+    let still = found.spec.run.schedule.stepper == Stepper::Still;
     let speeds = found.materials.iter().map(|m| m.pressure_wave);
     let fastest = speeds.filter(|c| c.is_finite() && !still);
     let fastest = fastest.fold(0.0, f64::max);

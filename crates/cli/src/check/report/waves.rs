@@ -42,7 +42,7 @@ fn equilibrium(out: &mut String, name: &str, statics: &Statics, increments: u64)
 pub(super) fn waves(found: &Findings) -> String {
     let (info, units) = (&found.info, found.units);
     let mut out = String::from("Waves and step\n");
-    if found.spec.schedule.stepper == Stepper::Still {
+    if found.spec.run.schedule.stepper == Stepper::Still {
         out = String::from("Step\n");
         row(&mut out, "integrator", "none, no point moves");
         let step = units.show(info.time_step, Dim::TIME);
@@ -77,7 +77,7 @@ pub(super) fn waves(found: &Findings) -> String {
             format!("{prefix}{kind}{speeds}{shear}"),
         );
         let crossing = long / m.pressure_wave;
-        let steps = match found.spec.schedule.statics() {
+        let steps = match found.spec.run.schedule.statics() {
             Some(_) => String::new(),
             None => format!(
                 " = {} steps",
@@ -93,11 +93,11 @@ pub(super) fn waves(found: &Findings) -> String {
             ),
         );
     }
-    if let Some(statics) = found.spec.schedule.statics() {
+    if let Some(statics) = found.spec.run.schedule.statics() {
         equilibrium(&mut out, "equilibrium", &statics, found.steps);
         return out;
     }
-    if let Some(preload) = &found.spec.preload {
+    if let Some(preload) = &found.spec.run.preload {
         equilibrium(
             &mut out,
             "before motion",
@@ -105,7 +105,7 @@ pub(super) fn waves(found: &Findings) -> String {
             found.increments,
         );
     }
-    if let Stepper::Newmark(n) = found.spec.schedule.stepper {
+    if let Stepper::Newmark(n) = found.spec.run.schedule.stepper {
         row(
             &mut out,
             "integrator",
@@ -197,7 +197,7 @@ pub(super) fn fracture(found: &Findings) -> String {
 }
 
 pub(super) fn contact(found: &Findings) -> String {
-    let Some(contact) = &found.spec.contact else {
+    let Some(contact) = &found.spec.interactions.contact else {
         return String::new();
     };
     let units = found.units;

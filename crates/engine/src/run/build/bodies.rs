@@ -39,7 +39,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
         warnings: &mut Warnings,
     ) -> Result<Self, BuildError> {
         let (mut parts, mut body) = parts::<D>(spec)?;
-        match (potentials, spec.family) {
+        match (potentials, spec.bonds.family) {
             (Some(potentials), _) if current_neighbours(spec) => {
                 atoms::check_box(potentials, &body.period)?;
                 parts[0].horizon = potentials.reach;
@@ -55,7 +55,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             let atoms = current_neighbours(spec);
             enough_memory(own, part.stencil.as_ref(), part.horizon, atoms)?;
         }
-        let smoothed = match &spec.smooth {
+        let smoothed = match &spec.bonds.smooth {
             None => None,
             Some(smooth) => {
                 let (nodes, carried) = Nodes::new(&body, smooth)?;
@@ -80,7 +80,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             let own = body.slots.iter().map(|s| body.horizon[*s as usize]);
             least_horizon = own.fold(least_horizon, f64::min);
         }
-        let by_length = |p: &&Part| matches!(p.spec.horizon, Horizon::Length(_));
+        let by_length = |p: &&Part| matches!(p.spec.bonds.horizon, Horizon::Length(_));
         let ends = parts.iter().filter(by_length).flat_map(|p| &p.stencil);
         let ends = ends.map(|s| s.near_horizon as u64).sum();
         if let (Some(potentials), BodySpec::Lattice { kind, spacing, .. }) =

@@ -46,7 +46,7 @@ impl<const D: usize> Bonds<D> {
             }
         };
         let cell_volume = body.volume.uniform();
-        if let Some(factors) = &spec.surface {
+        if let Some(factors) = &spec.bonds.surface {
             surface::scale(factors, body, interaction.as_mut())?;
             warnings.extend(factors.warning.clone());
         }
@@ -79,7 +79,7 @@ impl<const D: usize> Bonds<D> {
         warnings.extend(meant::regions(spec, body));
         warnings.extend(meant::periods(spec, body)?);
         warnings.extend(meant::sets(spec, body, &bodies.names.sets));
-        if { spec.contact.as_ref() }.is_some_and(|c| c.conductance.is_some())
+        if { spec.interactions.contact.as_ref() }.is_some_and(|c| c.conductance.is_some())
             && spec.materials.iter().any(|m| m.fracture.is_some())
         {
             warnings.push(

@@ -93,7 +93,7 @@ impl<const D: usize> Made<D> {
             contact,
             toughness: None,
             healing: None,
-            release: spec.release,
+            release: spec.damage.release,
             stop: || false,
             constitutive: bonds.constitutive,
             interaction: bonds.interaction,
@@ -122,40 +122,40 @@ impl<const D: usize> Made<D> {
         potentials: Option<&AnyPotentials>,
     ) -> Result<(), BuildError> {
         let (system, names) = (&mut self.system, &self.names);
-        if let Some(thermal) = &spec.thermal {
+        if let Some(thermal) = &spec.loading.thermal {
             atoms::heat(system, thermal)?;
         }
         if let Some(velocity) = own_velocities(spec, &system.body) {
             system.body.scatter(&mut system.v, &velocity);
         }
         initial(spec, names, system)?;
-        if let (TimeStep::Auto, Some(potentials)) = (spec.schedule.time_step, potentials) {
+        if let (TimeStep::Auto, Some(potentials)) = (spec.run.schedule.time_step, potentials) {
             let dt = self.dt.min(atoms::step_of_speeds(system, potentials)?);
             system.clock = Clock::new(dt);
             system.info.time_step = dt;
         }
         let mut maker = Maker { system, names };
         maker.make(spec)?;
-        if spec.schedule.stepper.rests() {
+        if spec.run.schedule.stepper.rests() {
             maker.stand_for(spec)?;
         }
         system.info.bytes = system.bytes();
-        let fields = spec.fields.as_deref().unwrap_or_default();
-        View::of(system, &names.shelf, spec.boltzmann).check_fields(fields)
+        let fields = spec.run.fields.as_deref().unwrap_or_default();
+        View::of(system, &names.shelf, spec.loading.boltzmann).check_fields(fields)
     }
 
     /// What acts.
     pub fn act(&mut self, spec: &Spec) -> Result<(), BuildError> {
         let (system, names) = (&mut self.system, &self.names);
         indenters::check(spec, &system.body)?;
-        let (conditions, sets) = (&spec.conditions, &names.sets);
-        let acting = names.acting(&system.body, conditions, &spec.indenters, sets)?;
+        let (conditions, sets) = (&spec.loading.conditions, &names.sets);
+        let acting = names.acting(&system.body, conditions, &spec.loading.indenters, sets)?;
         let (forces, constraints) = acting;
         system.set_acting(forces, constraints);
         system.toughness = system.toughness_of(spec, sets)?;
         system.healing = system.healing_of(spec, sets)?;
         // how long a run of a given duration is, its caller knows
-        let steps = match spec.schedule.steps {
+        let steps = match spec.run.schedule.steps {
             0 => 1000,
             steps => steps,
         };
@@ -179,13 +179,13 @@ fn limits<const D: usize>(
     repulsion: Option<&Rules>,
 ) -> Result<(Option<Inertia<D>>, Limits), BuildError> {
     let (body, interaction) = (&bodies.body, bonds.interaction.as_mut());
-    if spec.healing.is_some() {
+    if spec.damage.healing.is_some() {
         // a step is stable when all is whole again
         let rest = body.at_rest();
         interaction.mend(body, &rest, &|_, _, _| true);
     }
     let inertia = Inertia::of(spec, body)?;
-    let limits = match trust || !spec.schedule.stepper.has_inertia() {
+    let limits = match trust || !spec.run.schedule.stepper.has_inertia() {
         true => Limits::UNKNOWN,
         false => Limits::of(
             spec,
@@ -197,7 +197,7 @@ fn limits<const D: usize>(
         )?,
     };
     interaction.begin_steps(body);
-    if spec.healing.is_some() {
+    if spec.damage.healing.is_some() {
         precracks::cut(spec, body, interaction, &mut Warnings::default())?;
     }
     Ok((inertia, limits))
@@ -231,7 +231,7 @@ fn info<const D: usize>(
         near_horizon: bonds.near_horizon,
         horizon: bodies.horizon,
         spacing: body.spacing,
-        section: spec.section,
+        section: spec.space.section,
         mass: body.mass(),
         volume: body.slots.iter().map(|s| body.volume.at(*s as usize)).sum(),
         // bonds of several kinds have no single one
@@ -242,12 +242,12 @@ fn info<const D: usize>(
         critical_stretch: constitutive.critical_stretches(spec.materials.len()),
         families: constitutive.families(spec.materials.len()),
         time_step: dt,
-        stepper: spec.schedule.stepper,
+        stepper: spec.run.schedule.stepper,
         stable_step: limits.stable(),
         contact_step: limits.contact,
         contact_stiffness: repulsion.map_or(vec![], |r| r.stiffness()),
         parts: 1,
-        conserves: bonds.asymmetry <= SYMMETRIC && !spec.schedule.force_unstable,
+        conserves: bonds.asymmetry <= SYMMETRIC && !spec.run.schedule.force_unstable,
         bodies: names(spec, body),
         gaps: vec![],
         transfers: vec![],

@@ -39,7 +39,7 @@ pub fn build_with(
     shelf: &Shelf,
 ) -> Result<Box<dyn Simulation>, BuildError> {
     possible(spec, options.simd)?;
-    match spec.dimension {
+    match spec.space.dimension {
         1 => Ok(Box::new(build_in::<1>(spec, options, shelf)?)),
         2 => Ok(Box::new(build_in::<2>(spec, options, shelf)?)),
         3 => Ok(Box::new(build_in::<3>(spec, options, shelf)?)),
@@ -89,7 +89,7 @@ pub fn build_in<const D: usize>(
         dt,
     } = made;
     let stepper = stepper(spec, simd, &mut system, (&limits, dt))?;
-    let stages = match &spec.preload {
+    let stages = match &spec.run.preload {
         Some(preload) => system.prepare_preload(preload, &names, stepper)?,
         None => {
             system.regime = stepper.regime();
@@ -102,8 +102,8 @@ pub fn build_in<const D: usize>(
         stale: false,
         probes: vec![],
         names,
-        boltzmann: spec.boltzmann,
+        boltzmann: spec.loading.boltzmann,
     };
-    model.probes = model.probes_of(&spec.probes)?;
+    model.probes = model.probes_of(&spec.run.probes)?;
     Ok(model)
 }

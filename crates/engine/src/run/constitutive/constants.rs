@@ -53,7 +53,7 @@ pub(super) fn constants<const D: usize>(
     for (n, m) in spec.materials.iter().enumerate() {
         kinds
             .solid
-            .extend(Solid::of_law(D, spec.plane, m.law.linear()));
+            .extend(Solid::of_law(D, spec.space.plane, m.law.linear()));
         possible(spec, n, m)?;
         let (value, hard) = kinds.take::<D>(spec, n, &m.law, &to)?;
         sound(spec, n, &m.law, value, moments)?;
@@ -78,14 +78,14 @@ fn possible(spec: &Spec, n: usize, m: &MaterialSpec) -> Result<(), BuildError> {
         ));
     }
     let linear = matches!(m.law, LawSpec::Springs(_) | LawSpec::Micromoduli(_));
-    if linear && (spec.contact.is_some() || super::breaks(spec)) {
+    if linear && (spec.interactions.contact.is_some() || super::breaks(spec)) {
         return Err(BuildError::unsupported(
             at(n, "law"),
             "springs and micromoduli have no bonds that break and no contact of their own",
         )
         .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
     }
-    if matches!(m.law, LawSpec::Atoms(_)) && spec.contact.is_some() {
+    if matches!(m.law, LawSpec::Atoms(_)) && spec.interactions.contact.is_some() {
         return Err(BuildError::unsupported(
             at(n, "law"),
             "how atoms repel each other is what their potential says, and no stiffness of contact follows from it",
@@ -103,7 +103,7 @@ fn sound(
     value: f64,
     moments: Moments,
 ) -> Result<(), BuildError> {
-    if let Influence::Formula(formula) = spec.influence
+    if let Influence::Formula(formula) = spec.bonds.influence
         && !(moments.first > 0.0 && moments.first.is_finite())
         && matches!(law.linear(), LawSpec::Pmb(s) | LawSpec::Springs(s) if !matches!(s, PmbStiffness::Micromodulus(_)))
     {
@@ -146,9 +146,9 @@ impl<'a> Kinds<'a> {
         to: &Calibration,
     ) -> Result<(f64, f64), BuildError> {
         let moments = to.moments;
-        let c = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
+        let c = |stiffness| micromodulus(D, spec.space.plane, stiffness, moments);
         // contact knows no influence function
-        let hard = |stiffness| micromodulus(D, spec.plane, stiffness, to.alike);
+        let hard = |stiffness| micromodulus(D, spec.space.plane, stiffness, to.alike);
         Ok(match law.linear() {
             LawSpec::Pmb(stiffness) => {
                 let stiffness = *stiffness;

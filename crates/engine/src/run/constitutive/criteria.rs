@@ -103,7 +103,7 @@ fn across_known<const D: usize>(
     m: &MaterialSpec,
     shelf: &Shelf,
 ) -> Result<(), BuildError> {
-    if D != 2 || spec.plane == Plane::Stress {
+    if D != 2 || spec.space.plane == Plane::Stress {
         return Ok(());
     }
     let known = match &m.law {
@@ -135,7 +135,7 @@ fn across_known<const D: usize>(
 pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
     let mut all = spec.materials.iter();
     let wears = all.position(|m| m.fracture.is_some_and(|f| f.fatigue.is_some()));
-    let cycles = spec.schedule.statics().and_then(|s| s.cycles);
+    let cycles = spec.run.schedule.statics().and_then(|s| s.cycles);
     match (wears, cycles) {
         (None, None) | (Some(_), Some(_)) => Ok(()),
         (Some(n), None) => Err(unsupported(

@@ -32,7 +32,7 @@ pub(in crate::run) fn knows_directions(spec: &Spec) -> bool {
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => &[],
     };
     let mut own = pieces.iter().filter_map(|p| p.influence);
-    spec.influence.is_directed() || own.any(Influence::is_directed)
+    spec.bonds.influence.is_directed() || own.any(Influence::is_directed)
 }
 
 /// Where an influence function knows directions, `lps` is a law of `law/material`: its own kernel weighs a bond alike at both ends. Were laws

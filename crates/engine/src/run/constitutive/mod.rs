@@ -74,7 +74,7 @@ pub(super) struct ConstitutiveModels {
 /// Do bonds break, or are some cut? Where the spec says so.
 pub(super) fn breaking(spec: &Spec) -> Option<String> {
     let material = { spec.materials.iter() }.position(|m| m.fracture.is_some());
-    let crack = (!spec.precracks.is_empty()).then(|| "precracks[0]".to_string());
+    let crack = (!spec.damage.precracks.is_empty()).then(|| "precracks[0]".to_string());
     material
         .map(|n| format!("materials[{n}].fracture"))
         .or(crack)
@@ -176,9 +176,9 @@ impl ConstitutiveModel {
         shelf: &Shelf,
         simd: Simd,
     ) -> Result<ConstitutiveModel, BuildError> {
-        let continuum = |kind| Moments::continuum(D, horizon, spec.section, kind);
-        let moments = match spec.calibration {
-            Calibration::Continuum => continuum(spec.influence),
+        let continuum = |kind| Moments::continuum(D, horizon, spec.space.section, kind);
+        let moments = match spec.bonds.calibration {
+            Calibration::Continuum => continuum(spec.bonds.influence),
             Calibration::Discrete => bulk.moments,
         };
         let alike = continuum(Influence::Constant);
@@ -193,7 +193,7 @@ impl ConstitutiveModel {
             })
             .collect::<Result<Vec<_>, _>>()?;
         let criteria = criteria::criteria::<D>(spec, moments, shelf)?;
-        let repulsion = match &spec.contact {
+        let repulsion = match &spec.interactions.contact {
             Some(contact_spec) => Some(Repulsion {
                 stiffness: contact_stiffness(&contact_spec.stiffness, &contact)?,
                 bonded: contact_spec.bonded,
@@ -221,12 +221,12 @@ impl ConstitutiveModel {
             stencil,
             horizon,
             spacing,
-            influence: spec.influence,
-            scaling: spec.volume_scaling,
-            ratio: matches!(spec.horizon, Horizon::Ratio(_)),
-            held: spec.family == FamilyChoice::Reference,
+            influence: spec.bonds.influence,
+            scaling: spec.bonds.volume_scaling,
+            ratio: matches!(spec.bonds.horizon, Horizon::Ratio(_)),
+            held: spec.bonds.family == FamilyChoice::Reference,
             breaks: breaks(spec),
-            rule: spec.interface,
+            rule: spec.interactions.interface,
             pairs,
             named,
             simd,

@@ -17,30 +17,33 @@ pub(super) fn bond_table(
     spacing: f64,
 ) -> Result<Option<BondTable>, BuildError> {
     let materials = spec.materials.len();
-    if spec.pairs.is_empty() {
+    if spec.interactions.pairs.is_empty() {
         return Ok(None);
     }
     let invalid = |message: Message| Err(BuildError::invalid("pairs", message));
     let unsupported = |message: &str| Err(BuildError::unsupported("pairs", message));
-    if spec.pairs.len() != materials * materials {
+    if spec.interactions.pairs.len() != materials * materials {
         return invalid(message![format!(
             "{} pairs of {materials} materials, expected {}",
-            spec.pairs.len(),
+            spec.interactions.pairs.len(),
             materials * materials
         )]);
     }
-    if !matches!(spec.influence, Influence::Constant | Influence::Inverse) {
+    if !matches!(
+        spec.bonds.influence,
+        Influence::Constant | Influence::Inverse
+    ) {
         return unsupported(
             "an influence function other than constant and inverse, with horizons of pairs",
         );
     }
     let mut pairs = vec![];
-    for (n, p) in spec.pairs.iter().enumerate() {
+    for (n, p) in spec.interactions.pairs.iter().enumerate() {
         let (of, with) = (n / materials, n % materials);
         let (stiffness, volume) = match (laws, &p.law) {
             (Laws::Bond(_), LawSpec::Pmb(PmbStiffness::Micromodulus(c))) => (*c, 0.0),
             (Laws::Solid(_), law @ LawSpec::LpsAsTyped { .. }) => {
-                let Some(solid) = Solid::of_law(spec.dimension, spec.plane, law) else {
+                let Some(solid) = Solid::of_law(spec.space.dimension, spec.space.plane, law) else {
                     return unsupported("a law that is no solid");
                 };
                 (solid.beta, solid.kappa)
@@ -51,7 +54,7 @@ pub(super) fn bond_table(
                 );
             }
         };
-        let mirrored = &spec.pairs[with * materials + of];
+        let mirrored = &spec.interactions.pairs[with * materials + of];
         let fine = |x: f64| x >= 0.0 && x.is_finite();
         if !fine(stiffness) || !fine(p.horizon) || p.horizon > horizon * (1.0 + 1e-9) {
             return invalid(message![
@@ -79,7 +82,7 @@ pub(super) fn bond_table(
             },
         });
     }
-    let scaling = spec.volume_scaling.then_some(spacing);
+    let scaling = spec.bonds.volume_scaling.then_some(spacing);
     Ok(Some(BondTable::new(materials, pairs, scaling)))
 }
 

@@ -51,15 +51,19 @@ pub(super) fn toughness<const D: usize>(
             }
             let energy = shelf.brittle_energy(&m.law, energy);
             let bonds = |stiffness| {
-                let c = micromodulus(D, spec.plane, stiffness, moments);
+                let c = micromodulus(D, spec.space.plane, stiffness, moments);
                 fracture_energy::bond_based(D, c, moments)
             };
             let of_unit_stretch = match m.law.linear() {
                 LawSpec::Pmb(s) => bonds(*s),
                 LawSpec::Lps(m) if D == 1 => bonds(PmbStiffness::Young(m.young)),
-                LawSpec::Lps(m) => {
-                    fracture_energy::state_based(D, spec.plane, m, horizon, spec.influence)
-                }
+                LawSpec::Lps(m) => fracture_energy::state_based(
+                    D,
+                    spec.space.plane,
+                    m,
+                    horizon,
+                    spec.bonds.influence,
+                ),
                 LawSpec::Atoms(_) => {
                     return Err(BuildError::unsupported(
                         path,

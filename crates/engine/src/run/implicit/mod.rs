@@ -8,7 +8,11 @@ use crate::spec::{Control, Method, Newmark, Spec, Statics};
 /// Can bonds break?
 pub(super) fn breaks(spec: &Spec) -> bool {
     spec.materials.iter().any(|m| m.fracture.is_some())
-        || spec.interfaces.iter().any(|i| i.fracture.is_some())
+        || spec
+            .interactions
+            .interfaces
+            .iter()
+            .any(|i| i.fracture.is_some())
 }
 
 /// What the equations of a step are solved by.

@@ -40,7 +40,7 @@ impl<const D: usize> Inertia<D> {
         let Some(masses) = linear.as_ref().and_then(Masses::of) else {
             return Ok(None);
         };
-        if spec.thermal.is_some() {
+        if spec.loading.thermal.is_some() {
             return Err(BuildError::unsupported(
                 "thermal",
                 "points whose masses are coupled have no velocities that are independent of each other, which a Maxwell-Boltzmann distribution of points is",

@@ -38,7 +38,7 @@ pub(super) fn possible(spec: &Spec, preload: &PreloadSpec) -> Result<(), BuildEr
             ),
         ));
     }
-    match spec.schedule.stepper {
+    match spec.run.schedule.stepper {
         Kind::Verlet | Kind::Newmark(_) => Ok(()),
         Kind::Still | Kind::Statics(_) => Err(BuildError::unsupported(
             "schedule.integrator",

@@ -129,7 +129,7 @@ impl<const D: usize> Increments<D> {
     /// # Errors
     /// Nothing brings it into equilibrium.
     pub fn of(options: Statics, spec: &Spec, system: &mut System<D>) -> Result<Self, BuildError> {
-        if spec.schedule.steps > 0 {
+        if spec.run.schedule.steps > 0 {
             system.check_statics(options)?;
             match options.control {
                 Control::Load => {}

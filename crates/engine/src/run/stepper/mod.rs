@@ -62,7 +62,7 @@ pub(super) fn stepper<const D: usize>(
     system: &mut System<D>,
     (limits, dt): (&Limits, f64),
 ) -> Result<Box<dyn Stepper<D>>, BuildError> {
-    Ok(match spec.schedule.stepper {
+    Ok(match spec.run.schedule.stepper {
         Kind::Verlet => Box::new(VelocityVerlet::new(spec, simd, system, limits, dt)),
         Kind::Still => Box::new(Rest),
         Kind::Newmark(options) => Box::new(NewmarkStepper::of(options, spec, system, limits, dt)?),

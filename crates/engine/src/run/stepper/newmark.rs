@@ -143,7 +143,7 @@ impl<const D: usize> NewmarkStepper<D> {
         dt: f64,
     ) -> Result<Self, BuildError> {
         system.check_implicit(options)?;
-        let breaks = implicit::breaks(spec) || spec.healing.is_some();
+        let breaks = implicit::breaks(spec) || spec.damage.healing.is_some();
         let reach = system.info.horizon / system.info.spacing;
         if breaks && dt > reach * limits.bond {
             system.info.warnings.push(message![

@@ -180,7 +180,7 @@ impl VelocityVerlet {
             verlet: Verlet::new(simd, &system.body),
             path: 0.0,
             pending: false,
-            fraction: match spec.schedule.time_step {
+            fraction: match spec.run.schedule.time_step {
                 TimeStep::Fixed(_) => None,
                 TimeStep::Fraction(_) | TimeStep::Auto => {
                     Some(dt / limits.bond).filter(|x| *x > 0.0)

@@ -23,7 +23,7 @@ pub(super) fn of(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
 
 fn of_bodies(spec: &Spec) -> Vec<Lack> {
     let mut all = vec![];
-    if !spec.pairs.is_empty() {
+    if !spec.interactions.pairs.is_empty() {
         let says = "the constants of pairs of materials are one table for all bonds of a body";
         all.push(Lack::new(
             Property::ConstantsOfPoints,
@@ -35,23 +35,28 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
         let says = "materials of unlike constants with each other pull at each other unlike: action is not reaction";
         all.push(Lack::new(Property::Symmetric, says, ""));
     }
-    if spec.surface.is_some() {
+    if spec.bonds.surface.is_some() {
         let says = "factors of bonds near the surface are those of one lattice";
         all.push(Lack::new(Property::SideBySide, says, "leave surface out").at("surface"));
     }
-    if spec.own_horizon.is_some() {
+    if spec.bonds.own_horizon.is_some() {
         let says = "points with horizons of their own are those of one cloud";
         let lack = Lack::new(Property::SideBySide, says, "leave own_horizon out");
         all.push(lack.at("own_horizon"));
         let says = "points have horizons of their own";
         all.push(Lack::new(Property::OneHorizon, says, "leave own_horizon out").at("own_horizon"));
     }
-    if !spec.interfaces.is_empty() {
+    if !spec.interactions.interfaces.is_empty() {
         let says = "an interface bonds points of two bodies";
         let instead = "take the interfaces away";
         all.push(Lack::new(Property::Unbonded, says, instead));
     }
-    if spec.interfaces.iter().any(|i| i.fracture.is_some()) {
+    if spec
+        .interactions
+        .interfaces
+        .iter()
+        .any(|i| i.fracture.is_some())
+    {
         let says = "bonds of an interface let go while they bear";
         let instead = "leave the fracture of the interface out, or write control = \"breaking\"";
         all.push(Lack::new(Property::Fades, says, instead).at("statics.control"));
@@ -64,7 +69,7 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
         let says = "bodies that touch answer to half a load by more or less than half";
         all.push(Lack::new(Property::InProportion, says, ""));
     }
-    if !spec.indenters.is_empty() {
+    if !spec.loading.indenters.is_empty() {
         let says = "what touches an indenter answers to half a load by more or less than half";
         all.push(Lack::new(
             Property::InProportion,
@@ -72,7 +77,7 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
             "leave the indenters out",
         ));
     }
-    if let Some(n) = (spec.conditions.iter()).position(|c| c.kind.depends_on_time()) {
+    if let Some(n) = (spec.loading.conditions.iter()).position(|c| c.kind.depends_on_time()) {
         let says = "this condition depends on t";
         let instead = "leave t out of it; increments count cycles, whose number is in history.csv";
         let lack = Lack::new(Property::SameInCycles, says, instead);
@@ -84,21 +89,23 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
 /// Has every pair of materials the same constants both ways round?
 fn mirrored(spec: &Spec) -> bool {
     let n = spec.materials.len();
-    let fits = spec.pairs.len() == n * n;
-    let alike = |a: usize, b: usize| spec.pairs[a * n + b].law == spec.pairs[b * n + a].law;
+    let fits = spec.interactions.pairs.len() == n * n;
+    let alike = |a: usize, b: usize| {
+        spec.interactions.pairs[a * n + b].law == spec.interactions.pairs[b * n + a].law
+    };
     !fits || (0..n).all(|a| (0..a).all(|b| alike(a, b)))
 }
 
 fn of_transfers(spec: &Spec) -> Vec<Lack> {
     let mut all = vec![];
-    if !spec.transfers.is_empty() {
+    if !spec.interactions.transfers.is_empty() {
         let says = "heat or a species spreads in time";
         let instead = "leave out what spreads";
         all.push(Lack::new(Property::TwoStages, says, instead));
         all.push(Lack::new(Property::Proportional, says, instead));
     }
     let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
-    if spec.transfers.iter().any(expands) {
+    if spec.interactions.transfers.iter().any(expands) {
         let says = "a body that expands has left its reference";
         let instead = "leave expansion and swelling out";
         all.push(Lack::new(Property::Memoryless, says, instead));
@@ -106,7 +113,7 @@ fn of_transfers(spec: &Spec) -> Vec<Lack> {
     let steady = |t: &TransferSpec| {
         t.quantity == Quantity::Heat && matches!(t.method, TransferMethod::Steady { .. })
     };
-    if spec.transfers.iter().any(steady) {
+    if spec.interactions.transfers.iter().any(steady) {
         let says = "a steady temperature is that which the held places and the bonds of now say";
         let instead = "write method = \"implicit\" in [heat] with steps as long as you like";
         all.push(Lack::new(Property::Transient, says, instead));
@@ -117,17 +124,17 @@ fn of_transfers(spec: &Spec) -> Vec<Lack> {
 /// Of statics, and of what is in equilibrium before it moves.
 fn of_statics(spec: &Spec) -> Vec<Lack> {
     let mut all = vec![];
-    if let Some(preload) = &spec.preload {
+    if let Some(preload) = &spec.run.preload {
         all.extend(of_preload(preload));
         let free = |motion: &IndenterMotion| matches!(motion, IndenterMotion::Free(_));
         if let Some(n) = (preload.indenters.iter()).position(|i| free(&i.motion)) {
             let says = "an indenter with a mass goes where forces push it";
             let instead = "leave mass and density out, or write stage = \"motion\"";
-            let lack = Lack::new(Property::Rest, says, instead);
+            let lack = Lack::new(Property::Motionless, says, instead);
             all.push(lack.at(format!("preload.indenters[{n}]")));
         }
     }
-    let Some(statics) = spec.schedule.statics() else {
+    let Some(statics) = spec.run.schedule.statics() else {
         return all;
     };
     let says = "statics looks for one state that is at rest";
@@ -199,14 +206,14 @@ fn of_atoms(spec: &Spec) -> Vec<Lack> {
             "give the atoms one material",
         ));
     }
-    if spec.thermal.is_some() {
+    if spec.loading.thermal.is_some() {
         let says = "atoms that are carried along have no thermal motion of their own";
         all.push(Lack::new(Property::Carried, says, "remove thermal").at("thermal"));
     }
     let says = "what breaks are bonds between the atoms, and points are nodes";
     for (path, there) in [
-        ("toughness[0]", !spec.toughness.is_empty()),
-        ("healing", spec.healing.is_some()),
+        ("toughness[0]", !spec.damage.toughness.is_empty()),
+        ("healing", spec.damage.healing.is_some()),
     ] {
         if there {
             all.push(Lack::new(Property::Carried, says, "leave it out").at(path));
@@ -228,25 +235,34 @@ fn of_strength(spec: &Spec) -> Vec<Lack> {
         ToughnessFactor::Temperature(_) => true,
         ToughnessFactor::NoFailure => false,
     };
-    if let Some(n) = (spec.toughness.iter()).position(|t| changes(&t.factor)) {
+    if let Some(n) = (spec.damage.toughness.iter()).position(|t| changes(&t.factor)) {
         let says = "this toughness changes with t";
         let lack = Lack::new(Property::ConstantStrength, says, "leave t out of it");
         all.push(lack.at(format!("toughness[{n}]")));
     }
     let breaks = spec.materials.iter().any(|m| m.fracture.is_some())
-        || spec.interfaces.iter().any(|i| i.fracture.is_some());
-    if breaks && spec.release == Release::AfterForce {
+        || spec
+            .interactions
+            .interfaces
+            .iter()
+            .any(|i| i.fracture.is_some());
+    if breaks && spec.damage.release == Release::AfterForce {
         let says = "bonds that pull once more after they broke";
         let lack = Lack::new(Property::EndsAtOnce, says, "leave release out");
         all.push(lack.at("materials[0].fracture"));
     }
-    if spec.precracks.iter().any(|p| p.kind == CrackKind::Absent) {
+    if spec
+        .damage
+        .precracks
+        .iter()
+        .any(|p| p.kind == CrackKind::Absent)
+    {
         let says =
             "a bond that is absent from the start cannot be told from one that was never there";
         let instead = "write kind = \"broken\" in [[precrack]]";
         all.push(Lack::new(Property::Heals, says, instead));
     }
-    if spec.schedule.stepper == Stepper::Still {
+    if spec.run.schedule.stepper == Stepper::Still {
         let says = "points stand still";
         let instead = "take [run] with integrator = \"verlet\" or \"newmark\"";
         for property in [Property::Motion, Property::Deformation] {
@@ -313,7 +329,7 @@ fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, shelf: &Shelf) -> Vec<La
 fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
     let mut all = vec![];
     let path = format!("materials[{n}].law");
-    if Solid::of_law(spec.dimension, spec.plane, &m.law).is_some() {
+    if Solid::of_law(spec.space.dimension, spec.space.plane, &m.law).is_some() {
         let says = "in a state-based law a bond also acts through the pressure of its ends";
         let instead = "write law = { pmb = ... } or springs, or give parts of the body materials of their own";
         all.push(Lack::new(Property::BondByBond, says, instead));
@@ -348,7 +364,7 @@ fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
                 let lack = Lack::new(Property::OtherMeasures, says, instead);
                 all.push(lack.at(format!("materials[{n}].fracture")));
             }
-            if spec.contact.is_some() {
+            if spec.interactions.contact.is_some() {
                 let says = "how atoms repel each other is what their potential says, and no stiffness of contact follows from it";
                 let instead = "remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps";
                 all.push(Lack::new(Property::Separates, says, instead).at(path));

@@ -21,7 +21,7 @@ pub(super) enum Property {
     /// Action is reaction: forces are the slope of an energy.
     Symmetric,
     /// Goes without motion.
-    Rest,
+    Motionless,
     /// May come to an equilibrium at all.
     Balance,
     /// Answers alike however fast it is deformed.

@@ -9,7 +9,7 @@ pub(super) fn of(spec: &Spec) -> Vec<Need> {
     all.extend(of_contact(spec));
     all.extend(of_strength(spec));
     all.extend(of_stages(spec));
-    if let Some(statics) = spec.schedule.statics() {
+    if let Some(statics) = spec.run.schedule.statics() {
         all.extend(of_statics(statics));
     }
     all
@@ -22,7 +22,7 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
         all.push(Need::new(Property::SideBySide, "body", why, ""));
         all.push(Need::new(Property::ConstantsOfPoints, "pairs", why, ""));
     }
-    if !spec.bonds.is_empty() {
+    if !spec.bonds.factors.is_empty() {
         let why = ", and factors of bonds need a bond-based law";
         all.push(Need::new(Property::BondByBond, "bonds[0]", why, ""));
         let why = ", and factors of bonds are those of one";
@@ -33,15 +33,15 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
         let why = ": its influence function knows no directions";
         all.push(Need::new(Property::Directed, "influence", why, ""));
     }
-    if spec.contact.is_some() || breaks(spec) {
+    if spec.interactions.contact.is_some() || breaks(spec) {
         all.push(Need::new(Property::Separates, "materials", "", ""));
     }
-    for transfer in &spec.transfers {
+    for transfer in &spec.interactions.transfers {
         let why = ", through which heat and species go";
         let name = transfer.quantity.name();
         all.push(Need::new(Property::Continuum, name, why, ""));
     }
-    if spec.smooth.is_some() {
+    if spec.bonds.smooth.is_some() {
         let why = ", and these are carried along by nodes";
         all.push(Need::new(
             Property::Carried,
@@ -50,7 +50,7 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
             "leave smooth out",
         ));
     }
-    if let Some(heat) = spec.transfers.iter().find(|t| t.deformation) {
+    if let Some(heat) = spec.interactions.transfers.iter().find(|t| t.deformation) {
         all.push(Need::new(
             Property::Deformation,
             heat.quantity.name(),
@@ -58,11 +58,14 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
             "leave deformation out",
         ));
     }
-    if spec.surface.is_some() || !spec.bonds.is_empty() || !spec.pairs.is_empty() {
+    if spec.bonds.surface.is_some()
+        || !spec.bonds.factors.is_empty()
+        || !spec.interactions.pairs.is_empty()
+    {
         let why = ", and factors of bonds are those of one";
         all.push(Need::new(Property::OneHorizon, "own_horizon", why, ""));
     }
-    if spec.own_horizon.is_some() {
+    if spec.bonds.own_horizon.is_some() {
         all.push(Need::new(
             Property::StretchAtEveryHorizon,
             "own_horizon",
@@ -75,7 +78,7 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
 
 fn of_contact(spec: &Spec) -> Vec<Need> {
     let mut all = vec![];
-    let Some(contact) = &spec.contact else {
+    let Some(contact) = &spec.interactions.contact else {
         return all;
     };
     if contact.cohesion.is_some() {
@@ -124,7 +127,7 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
             "give critical_stretch or energy alone",
         ));
     }
-    if !spec.toughness.is_empty() {
+    if !spec.damage.toughness.is_empty() {
         let why = ", which a toughness of places gives to points";
         let need = |property| {
             let instead = "leave toughness out";
@@ -134,7 +137,7 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
         all.push(need(Property::StrengthOfPoints));
     }
     let factor = |factor: &ToughnessFactor| !matches!(factor, ToughnessFactor::NoFailure);
-    if let Some(n) = (spec.toughness.iter()).position(|t| factor(&t.factor)) {
+    if let Some(n) = (spec.damage.toughness.iter()).position(|t| factor(&t.factor)) {
         all.push(Need::new(
             Property::StrengthTimesFactor,
             format!("toughness[{n}]"),
@@ -142,7 +145,7 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
             "write no_failure = true, or leave toughness out",
         ));
     }
-    if spec.healing.is_some() {
+    if spec.damage.healing.is_some() {
         let need = |property, why| Need::new(property, "healing", why, "leave healing out");
         all.push(need(
             Property::Motion,
@@ -156,7 +159,7 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
 /// Of statics before motion, and of implicit steps.
 fn of_stages(spec: &Spec) -> Vec<Need> {
     let mut all = vec![];
-    if spec.preload.is_some() {
+    if spec.run.preload.is_some() {
         all.push(Need::new(
             Property::TwoStages,
             "preload.statics",
@@ -164,13 +167,13 @@ fn of_stages(spec: &Spec) -> Vec<Need> {
             "leave [statics] out and load the body in time",
         ));
         all.push(Need::new(
-            Property::Rest,
+            Property::Motionless,
             "preload.statics",
             ", and in equilibrium nothing moves",
             "",
         ));
     }
-    let explicit = spec.schedule.stepper == Stepper::Verlet && spec.preload.is_none();
+    let explicit = spec.run.schedule.stepper == Stepper::Verlet && spec.run.preload.is_none();
     if !explicit {
         all.push(Need::new(
             Property::Symmetric,
@@ -179,7 +182,7 @@ fn of_stages(spec: &Spec) -> Vec<Need> {
             "take integrator = \"verlet\" without [statics]",
         ));
     }
-    match spec.schedule.stepper {
+    match spec.run.schedule.stepper {
         Stepper::Newmark(_) => all.push(Need::new(
             Property::EndsAtOnce,
             "schedule.integrator",

@@ -15,7 +15,7 @@ pub(in crate::run) fn of_statics<const D: usize>(
     options: Statics,
 ) -> Result<(), BuildError> {
     let mut needs = vec![Need::new(
-        Property::Rest,
+        Property::Motionless,
         "statics",
         ", and in equilibrium nothing moves",
         "",
@@ -152,13 +152,13 @@ fn lacks<const D: usize>(system: &System<D>) -> Vec<Lack> {
         let says = "an indenter with a mass goes where forces push it";
         let instead =
             "leave mass and velocity out, and write center as a function of t from 0 to 1";
-        lacks.push(Lack::new(Property::Rest, says, instead).at("indenter"));
+        lacks.push(Lack::new(Property::Motionless, says, instead).at("indenter"));
     }
     let mut constraints = system.prescribed.constraints.iter();
     if constraints.any(|c| c.is_velocity()) {
         let says = "a prescribed velocity moves its points on and on";
         let instead = "prescribe a displacement, as a function of t from 0 to 1";
-        lacks.push(Lack::new(Property::Rest, says, instead).at("conditions"));
+        lacks.push(Lack::new(Property::Motionless, says, instead).at("conditions"));
     }
     let replaces = |kind: &LoadKind<D>| matches!(kind, LoadKind::Replace(_));
     if applied.loads.iter().any(|l| replaces(&l.kind)) {
@@ -205,7 +205,7 @@ fn of_law((memory, name): (Memory, &str)) -> Vec<Lack> {
             let says = format!("{answers} and bears no shear at rest");
             let instead = "write [run] with a duration, without integrator";
             vec![
-                Lack::new(Property::Rest, says.as_str(), instead),
+                Lack::new(Property::Motionless, says.as_str(), instead),
                 Lack::new(Property::Slow, says, ""),
                 remembers(),
             ]

@@ -27,7 +27,12 @@ impl<const D: usize> Maker<'_, D> {
     pub(super) fn make_contact(&mut self, spec: &Spec) -> Result<(), BuildError> {
         let system = &mut *self.system;
         const PATH: &str = "contact.conductance";
-        let Some(h) = spec.contact.as_ref().and_then(|c| c.conductance) else {
+        let Some(h) = spec
+            .interactions
+            .contact
+            .as_ref()
+            .and_then(|c| c.conductance)
+        else {
             return Ok(());
         };
         if !(h > 0.0 && h.is_finite()) {

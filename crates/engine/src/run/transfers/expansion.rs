@@ -10,7 +10,7 @@ use crate::spec::{Spec, TransferSpec};
 /// Where a material expands, `pmb` and `lps` are laws of `law/material`: their own kernels know no temperature. Were laws changed?
 pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
     let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
-    if !spec.transfers.iter().any(expands) {
+    if !spec.interactions.transfers.iter().any(expands) {
         return false;
     }
     let mut changed = false;
@@ -27,7 +27,7 @@ impl<const D: usize> Maker<'_, D> {
     /// Bodies that expand: can their bonds?
     pub(super) fn make_expansion(&mut self, spec: &Spec) -> Result<(), BuildError> {
         let system = &mut *self.system;
-        for (n, t) in spec.transfers.iter().enumerate() {
+        for (n, t) in spec.interactions.transfers.iter().enumerate() {
             let strains: Vec<f64> = t.materials.iter().map(|m| m.expansion).collect();
             if strains.iter().any(|x| *x != 0.0) {
                 system.transfers.grown.push((n, t.reference, strains));
@@ -36,7 +36,7 @@ impl<const D: usize> Maker<'_, D> {
         let Some((n, ..)) = system.transfers.grown.first() else {
             return Ok(());
         };
-        let name = spec.transfers[*n].quantity.name();
+        let name = spec.interactions.transfers[*n].quantity.name();
         system.transfers.strain = vec![0.0; system.body.len];
         if !system
             .interaction
@@ -54,7 +54,7 @@ impl<const D: usize> Maker<'_, D> {
     /// What deformation heats.
     pub(super) fn make_heated(&mut self, spec: &Spec) -> Result<(), BuildError> {
         let system = &mut *self.system;
-        let transfers = &spec.transfers;
+        let transfers = &spec.interactions.transfers;
         let Some(n) = transfers.iter().position(|t| t.deformation) else {
             return Ok(());
         };

@@ -26,7 +26,7 @@ pub(in crate::run) struct Maker<'a, const D: usize> {
 impl<const D: usize> Maker<'_, D> {
     /// All that spreads, from a spec.
     pub(in crate::run) fn make(&mut self, spec: &Spec) -> Result<(), BuildError> {
-        let transfers = &spec.transfers;
+        let transfers = &spec.interactions.transfers;
         for (n, t) in transfers.iter().enumerate() {
             if transfers[..n].iter().any(|o| o.quantity == t.quantity) {
                 let name = t.quantity.name();
@@ -72,13 +72,13 @@ impl<const D: usize> Maker<'_, D> {
             )
             .help("add [heat] or [species], or take another integrator"));
         }
-        if !spec.conditions.is_empty() {
+        if !spec.loading.conditions.is_empty() {
             return refused("conditions[0]", "this moves or loads them");
         }
-        if !spec.indenters.is_empty() {
+        if !spec.loading.indenters.is_empty() {
             return refused("indenters[0]", "this pushes them");
         }
-        let part = match spec.schedule.time_step {
+        let part = match spec.run.schedule.time_step {
             TimeStep::Fixed(_) => return Ok(()),
             TimeStep::Fraction(part) => part,
             TimeStep::Auto => 1.0,
@@ -122,7 +122,7 @@ impl<const D: usize> Maker<'_, D> {
             model.weight_within(own.copied().unwrap_or(model.horizon), xi, r)
         };
         let ends_at_points = |f: &&SurfaceFactors| f.ends_at_points();
-        let exact = spec.surface.as_ref().filter(ends_at_points);
+        let exact = spec.bonds.surface.as_ref().filter(ends_at_points);
         let exact = exact.map(|f| (Factors::new(f, body), family(spec, body.spacing)));
         let factor = |i: usize, j: usize, xi: &[f64; D]| {
             exact.as_ref().map_or(1.0, |(factors, _)| {
@@ -342,7 +342,7 @@ fn steady(made: &Transfer) -> Result<(), BuildError> {
 fn family<const D: usize>(spec: &Spec, spacing: f64) -> Vec<[f64; D]> {
     match &spec.body {
         BodySpec::Lattice { kind, .. } | BodySpec::Sites { kind, .. } => {
-            let stencil = Stencil::new(*kind, spacing, spec.horizon);
+            let stencil = Stencil::new(*kind, spacing, spec.bonds.horizon);
             let cells = stencil.offsets()[0].iter().map(|o| o.cell);
             cells
                 .map(|c| std::array::from_fn(|a| spacing * f64::from(c[a])))

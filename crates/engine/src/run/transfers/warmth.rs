@@ -19,14 +19,14 @@ impl<const D: usize> Maker<'_, D> {
     /// Laws that know a temperature take that of the body.
     pub(super) fn make_warmth(&mut self, spec: &Spec) -> Result<(), BuildError> {
         let is_heat = |t: &TransferSpec| t.quantity == Quantity::Heat;
-        let Some(heat) = spec.transfers.iter().position(is_heat) else {
+        let Some(heat) = spec.interactions.transfers.iter().position(is_heat) else {
             return Ok(());
         };
         let above = vec![0.0; self.system.body.len];
         if !self.system.interaction.warm(&self.system.body, &above) {
             return Ok(());
         }
-        let t = &spec.transfers[heat];
+        let t = &spec.interactions.transfers[heat];
         let softens = self.system.constitutive.softens(spec.materials.len());
         for (n, softens) in softens.iter().enumerate() {
             alike(t, n, softens)?;

@@ -116,15 +116,13 @@ impl Case {
             vec![]
         };
         Spec {
-            bonded: None,
-            boltzmann: 1.0,
-            thermal: None,
-            fields: None,
-            probes: vec![],
             title: self.name(),
-            dimension: d,
-            plane,
-            section: if d == 3 { 1.0 } else { 0.25 },
+            space: SpaceSpec {
+                dimension: d,
+                plane,
+                section: if d == 3 { 1.0 } else { 0.25 },
+                ..SpaceSpec::default()
+            },
             body: BodySpec::Sites {
                 kind,
                 spacing: H,
@@ -157,36 +155,22 @@ impl Case {
                     }),
                 })
                 .collect(),
-            interface: InterfaceRule::Series,
-            interfaces: vec![],
-            pairs: vec![],
-            potentials: vec![],
-            mixing: None,
-            toughness: vec![],
-            healing: None,
-            release: Release::AtOnce,
-            horizon: Horizon::Ratio(ratio),
-            volume_scaling: true,
-            calibration: Calibration::Discrete,
-            influence: self.material.influence,
-            periodic: [None; 3],
-            surface: None,
-            bonds: vec![],
-            precracks: vec![],
-            contact: None,
-            initial: vec![],
-            conditions: vec![],
-            indenters: vec![],
-            transfers: vec![],
-            family: FamilyChoice::Auto,
-            smooth: None,
-            preload: None,
-            own_horizon: None,
-            schedule: Schedule {
-                steps: 0,
-                time_step: TimeStep::Fraction(0.5),
-                force_unstable: true,
-                stepper: Stepper::Verlet,
+            bonds: BondsSpec {
+                horizon: Horizon::Ratio(ratio),
+                volume_scaling: true,
+                influence: self.material.influence,
+                ..BondsSpec::default()
+            },
+            interactions: InteractionsSpec::default(),
+            damage: DamageSpec::default(),
+            loading: LoadingSpec::default(),
+            run: RunSpec {
+                schedule: Schedule {
+                    time_step: TimeStep::Fraction(0.5),
+                    force_unstable: true,
+                    ..Schedule::default()
+                },
+                ..RunSpec::default()
             },
         }
     }
@@ -195,7 +179,8 @@ impl Case {
     pub fn periodic(&self) -> Spec {
         let mut spec = self.spec();
         for a in 0..self.d() {
-            spec.periodic[a] = Some(H * self.place.kind.edges()[a] * self.place.cells[a] as f64);
+            spec.space.periodic[a] =
+                Some(H * self.place.kind.edges()[a] * self.place.cells[a] as f64);
         }
         spec
     }
@@ -238,7 +223,7 @@ pub fn made(spec: &Spec) -> Box<dyn Simulation> {
 /// Built without a look at the stable step; for bodies that do not move, with a step as good as any.
 pub fn at_rest(spec: &Spec) -> Box<dyn Simulation> {
     let mut spec = spec.clone();
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let options = Options {
         trust_time_step: true,
         ..Options::default()

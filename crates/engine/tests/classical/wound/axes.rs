@@ -66,7 +66,7 @@ fn a_constant_expression_is_a_constant() {
                     quarters,
                     volume: None,
                 };
-                spec.horizon = Horizon::Ratio(2);
+                spec.bonds.horizon = Horizon::Ratio(2);
             }
             if two {
                 spec.sets = vec![
@@ -180,7 +180,7 @@ fn a_turned_body_rests_turned() {
             kind,
         };
         let [fx, fy, _] = load.map(|c| Some(e(&format!("{c:e}*t"))));
-        spec.conditions = vec![
+        spec.loading.conditions = vec![
             on(
                 "held",
                 ConditionKind::Displacement([Some(e("0")), Some(e("0")), None]),
@@ -279,8 +279,8 @@ fn a_large_lattice_has_the_stable_step_of_its_own_places() {
             volume: None,
         };
         let mut spec = Spec::new(2, body, 2.0, ply(fibre, given(UP), false));
-        spec.plane = Plane::Stress;
-        spec.horizon = Horizon::Ratio(2);
+        spec.space.plane = Plane::Stress;
+        spec.bonds.horizon = Horizon::Ratio(2);
         build(&spec, Options::default()).unwrap().info().stable_step
     };
     // as a block at the origin sees it fibres lie along x; most of the body has them along the diagonal

@@ -54,9 +54,9 @@ fn cloud(d: usize, position: Vec<Point>, volume: Vec<f64>, horizon: f64, law: La
         ..Cloud::default()
     });
     let mut spec = Spec::new(d, body, 2.0, law);
-    spec.plane = Plane::Stress;
-    spec.horizon = Horizon::Length(horizon);
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.space.plane = Plane::Stress;
+    spec.bonds.horizon = Horizon::Length(horizon);
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     spec
 }
 
@@ -78,7 +78,7 @@ fn set(name: &str, ids: impl Iterator<Item = usize>) -> SetSpec {
 
 /// At rest under its conditions, about the reference.
 fn solved(spec: &mut Spec) -> Box<dyn Simulation> {
-    spec.schedule.stepper = Stepper::Statics(Statics {
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-10,
         ..Statics::default()

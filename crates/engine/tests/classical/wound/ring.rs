@@ -93,7 +93,7 @@ fn patch(n: i32, bonds: bool) -> [f64; 2] {
         ring.a, ring.k, ring.b, ring.k
     );
     let component = |axis: &str| Some(e(&format!("{radial}*{axis}")));
-    spec.conditions = vec![ConditionSpec {
+    spec.loading.conditions = vec![ConditionSpec {
         set: "rim".into(),
         kind: ConditionKind::Displacement([component("x"), component("y"), None]),
     }];
@@ -173,7 +173,7 @@ fn ring(rings: usize) -> f64 {
         set: set.into(),
         kind,
     };
-    spec.conditions = vec![
+    spec.loading.conditions = vec![
         on(
             "inside",
             ConditionKind::BodyForce([force("x"), force("y"), None]),

@@ -146,7 +146,7 @@ fn disks_are_open_and_perilab_squares_their_radius() {
     let deck =
         perilab(material, "", &times(0.0, 0.01)).replace("  Models:", &format!("{text}  Models:"));
     let (found, deck) = read(&cube(), &deck);
-    let CrackShape::Disk { radius, .. } = deck.spec.precracks[0].shape else {
+    let CrackShape::Disk { radius, .. } = deck.spec.damage.precracks[0].shape else {
         panic!("{}", found.text)
     };
     assert!((radius - 1.44).abs() < 1e-6, "{radius}");
@@ -200,7 +200,7 @@ fn planes_of_flat_bodies_are_lines() {
         let deck = perilab(material, "", &times(0.0, 0.01))
             .replace("  Models:", &format!("{text}  Models:"));
         let (found, deck) = read(SHEET, &deck.replace("r  ", "r "));
-        let CrackShape::Segment { from, to: end } = &deck.spec.precracks[0].shape else {
+        let CrackShape::Segment { from, to: end } = &deck.spec.damage.precracks[0].shape else {
             panic!("{}", found.text)
         };
         let (low, high) = (from[1].min(end[1]), from[1].max(end[1]));

@@ -97,8 +97,8 @@ fn condition(kind: &str, set: &str, value: &str) -> String {
 
 /// The displacement along x of the first condition at a place after a time.
 fn displaced(deck: &Deck, x: [f64; 3], t: f64) -> f64 {
-    let ConditionKind::Displacement(value) = &deck.spec.conditions[0].kind else {
-        panic!("{:?}", deck.spec.conditions)
+    let ConditionKind::Displacement(value) = &deck.spec.loading.conditions[0].kind else {
+        panic!("{:?}", deck.spec.loading.conditions)
     };
     value[0].as_ref().unwrap().eval(&x, t)
 }
@@ -170,7 +170,7 @@ fn what_no_expression_says_of_a_prescribed_displacement_is_refused() {
 fn initial_values_are_those_at_time_0() {
     let conditions = condition("Initial Velocity", "Left Node Set", "3*t + 1");
     let (_, deck) = read(&cube(), &peridigm("", &conditions, &times(2.0, 2.01)));
-    let value = deck.spec.initial[0].velocity[0].as_ref().unwrap();
+    let value = deck.spec.loading.initial[0].velocity[0].as_ref().unwrap();
     near(value.eval(&[0.0; 3], 0.0), 1.0);
     // PeriLab has them at time 0 alone
     let lab = |from: f64| {
@@ -249,10 +249,10 @@ fn families_are_those_of_the_other_program() {
 fn steps_are_counted_as_there() {
     let steps = |deck: &str| {
         let (_, deck) = read(&cube(), deck);
-        let TimeStep::Fixed(dt) = deck.spec.schedule.time_step else {
-            panic!("{:?}", deck.spec.schedule)
+        let TimeStep::Fixed(dt) = deck.spec.run.schedule.time_step else {
+            panic!("{:?}", deck.spec.run.schedule)
         };
-        (deck.spec.schedule.steps, dt)
+        (deck.spec.run.schedule.steps, dt)
     };
     // Peridigm shortens a step that is given: 0.01 / (3e-3 · 0.5) = 6.67
     let solver =
@@ -266,7 +266,7 @@ fn steps_are_counted_as_there() {
     let solver = "    QuasiStatic:\n      Time Steps: \"1.0 2.0 3.0 4.0\"";
     let pull = condition("Prescribed Displacement", "Right Node Set", "t");
     let (_, deck) = read(&cube(), &peridigm("", &pull, solver));
-    assert_eq!(deck.spec.schedule.steps, 3);
+    assert_eq!(deck.spec.run.schedule.steps, 3);
     near(displaced(&deck, [0.0; 3], 1.0), 3.0);
     let uneven = solver.replace("3.0 4.0", "3.5 4.0");
     let found = told(&cube(), &peridigm("", &pull, &uneven)).1.unwrap();

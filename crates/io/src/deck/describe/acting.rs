@@ -8,7 +8,7 @@ use peridyne::spec::{
 
 pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
     let mut lines = vec![];
-    for t in &spec.toughness {
+    for t in &spec.damage.toughness {
         let of = match &t.factor {
             ToughnessFactor::Stretch(e) => format!("critical stretch times {}", e.source()),
             ToughnessFactor::Energy(e) => format!("fracture energy times {}", e.source()),
@@ -22,22 +22,22 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
         };
         lines.push(format!("toughness  on {}: {of}", t.set));
     }
-    if let Some(healing) = &spec.healing {
+    if let Some(healing) = &spec.damage.healing {
         lines.push(format!(
             "healing    of bonds of {} below a stretch of {}",
             healing.set,
             healing.below.source()
         ));
     }
-    lines.extend(spec.contact.iter().map(|c| touching(c, units)));
-    let rigid = spec.indenters.iter();
-    lines.extend(rigid.map(|i| indenter(i, units, spec.dimension)));
-    lines.extend(spec.transfers.iter().map(spreading));
+    lines.extend(spec.interactions.contact.iter().map(|c| touching(c, units)));
+    let rigid = spec.loading.indenters.iter();
+    lines.extend(rigid.map(|i| indenter(i, units, spec.space.dimension)));
+    lines.extend(spec.interactions.transfers.iter().map(spreading));
     lines.push(format!(
         "acting     {}, {}, {}",
-        counted(spec.initial.len() as u64, "initial value"),
-        counted(spec.conditions.len() as u64, "condition"),
-        counted(spec.precracks.len() as u64, "pre-crack")
+        counted(spec.loading.initial.len() as u64, "initial value"),
+        counted(spec.loading.conditions.len() as u64, "condition"),
+        counted(spec.damage.precracks.len() as u64, "pre-crack")
     ));
     lines
 }

@@ -31,20 +31,26 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
 /// The body and its materials.
 fn of_what(spec: &Spec, units: UnitSystem) -> Vec<String> {
     let mut lines = vec![];
-    let plane = match (spec.dimension, spec.plane) {
+    let plane = match (spec.space.dimension, spec.space.plane) {
         (2, Plane::Stress) => " plane stress",
         (2, Plane::Strain) => " plane strain",
         _ => "",
     };
-    let section = match spec.dimension {
-        1 => format!(", cross-section {}", units.write(spec.section, Dim::AREA)),
-        2 => format!(", thickness {}", units.write(spec.section, Dim::LENGTH)),
+    let section = match spec.space.dimension {
+        1 => format!(
+            ", cross-section {}",
+            units.write(spec.space.section, Dim::AREA)
+        ),
+        2 => format!(
+            ", thickness {}",
+            units.write(spec.space.section, Dim::LENGTH)
+        ),
         _ => String::new(),
     };
     lines.push(format!(
         "body       {}-D{plane}{section}, {}",
-        spec.dimension,
-        body(&spec.body, units, spec.dimension)
+        spec.space.dimension,
+        body(&spec.body, units, spec.space.dimension)
     ));
     lines.extend(
         spec.materials
@@ -52,14 +58,14 @@ fn of_what(spec: &Spec, units: UnitSystem) -> Vec<String> {
             .map(|m| format!("material   {}", material(m, units))),
     );
     if spec.materials.iter().any(|m| m.fracture.is_some()) {
-        lines.push(match spec.release {
+        lines.push(match spec.damage.release {
             Release::AtOnce => "release    bonds let go at once past their critical stretch".into(),
             Release::AfterForce => {
                 "release    bonds pull once more past their critical stretch".into()
             }
         });
     }
-    if !spec.pairs.is_empty() {
+    if !spec.interactions.pairs.is_empty() {
         lines.push(
             "pairs      of materials have stiffness, horizon and critical stretch of their own"
                 .into(),
@@ -73,7 +79,8 @@ fn of_what(spec: &Spec, units: UnitSystem) -> Vec<String> {
 pub fn sources(spec: &Spec) -> Vec<String> {
     let shelf = Shelf::standard();
     let own = spec.materials.iter().map(|m| m.law.clone());
-    let pairs = { spec.potentials.iter() }.map(|a| LawSpec::Atoms(a.potential.clone()));
+    let pairs =
+        { spec.interactions.potentials.iter() }.map(|a| LawSpec::Atoms(a.potential.clone()));
     let mut all = vec![];
     for law in own.chain(pairs) {
         if let Some((descriptor, _)) = shelf.written(&law) {

@@ -11,7 +11,7 @@ use peridyne::spec::{
 /// Families, what is periodic, factors of bonds.
 pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
     let mut lines = vec![reach(spec, units)];
-    if let Some(smooth) = &spec.smooth {
+    if let Some(smooth) = &spec.bonds.smooth {
         let nodes = match smooth.spacing {
             Some(spacing) => format!("every {}", units.write(spacing, Dim::LENGTH)),
             None => "at the places of the atoms".into(),
@@ -23,26 +23,26 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
     }
     if let BodySpec::Several(pieces) = &spec.body {
         let own = |p: &&PieceSpec| {
-            p.horizon.is_some_and(|h| h != spec.horizon)
-                || p.influence.is_some_and(|i| i != spec.influence)
+            p.horizon.is_some_and(|h| h != spec.bonds.horizon)
+                || p.influence.is_some_and(|i| i != spec.bonds.influence)
         };
         lines.extend(pieces.iter().filter(own).map(|p| {
             format!(
                 "           of {}: {}, influence {}",
                 p.name,
-                length(p.horizon.unwrap_or(spec.horizon), units),
-                influence(p.influence.unwrap_or(spec.influence))
+                length(p.horizon.unwrap_or(spec.bonds.horizon), units),
+                influence(p.influence.unwrap_or(spec.bonds.influence))
             )
         }));
     }
-    if let Some(own) = &spec.own_horizon {
+    if let Some(own) = &spec.bonds.own_horizon {
         lines.push(format!(
             "           of each point {}, at most that: dual horizon",
             own.source()
         ));
     }
     lines.extend(interfaces(spec, units));
-    for (axis, period) in ["x", "y", "z"].iter().zip(spec.periodic) {
+    for (axis, period) in ["x", "y", "z"].iter().zip(spec.space.periodic) {
         if let Some(period) = period {
             lines.push(format!(
                 "periodic   {axis} with {}",
@@ -50,15 +50,15 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
             ));
         }
     }
-    if let Some(factors) = &spec.surface {
-        lines.push(surface(factors, !spec.transfers.is_empty()));
+    if let Some(factors) = &spec.bonds.surface {
+        lines.push(surface(factors, !spec.interactions.transfers.is_empty()));
     }
-    for bonds in &spec.bonds {
+    for bonds in &spec.bonds.factors {
         lines.push(match bonds {
             BondFactorSpec::Field(field) => format!(
                 "bonds      stiffness times {}, between unlike ends {}",
                 field.source(),
-                words(&spec.interface)
+                words(&spec.interactions.interface)
             ),
             BondFactorSpec::Crossing { factor, .. } => {
                 format!("bonds      stiffness times {factor} across a flat shape")
@@ -70,14 +70,17 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
 
 /// How far bonds reach, and what they weigh.
 fn reach(spec: &Spec, units: UnitSystem) -> String {
-    let horizon = length(spec.horizon, units);
+    let horizon = length(spec.bonds.horizon, units);
     match spec.potential() {
         Some(_) => {
             let cutoffs = potentials(spec).map(PotentialSpec::cut_off);
             let cutoff = cutoffs.fold(0.0, f64::max);
             let mut names: Vec<&str> = potentials(spec).map(|p| &*p.name).collect();
             names.dedup();
-            let current = matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours);
+            let current = matches!(
+                spec.bonds.family,
+                FamilyChoice::Auto | FamilyChoice::Neighbours
+            );
             format!(
                 "potential  {}, {}, {}",
                 names.join(" and "),
@@ -95,9 +98,13 @@ fn reach(spec: &Spec, units: UnitSystem) -> String {
         }
         None => format!(
             "horizon    {horizon}, influence {}, volume scaling {}, constants {}",
-            influence(spec.influence),
-            if spec.volume_scaling { "on" } else { "off" },
-            match spec.calibration {
+            influence(spec.bonds.influence),
+            if spec.bonds.volume_scaling {
+                "on"
+            } else {
+                "off"
+            },
+            match spec.bonds.calibration {
                 Calibration::Continuum => "of the continuum",
                 Calibration::Discrete => "of this body's own sums",
             }
@@ -108,7 +115,7 @@ fn reach(spec: &Spec, units: UnitSystem) -> String {
 /// Bonds between bodies.
 fn interfaces(spec: &Spec, units: UnitSystem) -> Vec<String> {
     let mut lines = vec![];
-    for i in &spec.interfaces {
+    for i in &spec.interactions.interfaces {
         let fracture = match i.fracture.map(|f| f.criterion) {
             None => "never breaks".into(),
             Some(Criterion::Stretch(s)) => format!("critical stretch {s}"),

@@ -8,19 +8,19 @@ use peridyne::spec::{Acting, Criterion, LawSpec, MaterialSpec, Parameter, Potent
 /// All potentials between atoms that a spec names.
 pub(super) fn potentials(spec: &Spec) -> impl Iterator<Item = &PotentialSpec> {
     let own = spec.materials.iter().filter_map(|m| m.law.potential());
-    own.chain(spec.potentials.iter().map(|a| &a.potential))
+    own.chain(spec.interactions.potentials.iter().map(|a| &a.potential))
 }
 
 /// What atoms of several kinds have with each other.
 pub(super) fn between_atoms(spec: &Spec, units: UnitSystem) -> Vec<String> {
     let mut lines = vec![];
-    for acting in &spec.potentials {
+    for acting in &spec.interactions.potentials {
         let Acting::Between(pair) = acting.on;
         let [a, b] = pair.map(|n| spec.materials.get(n).map_or("", |m| &*m.name));
         let said = constants(&LawSpec::Atoms(acting.potential.clone()), units);
         lines.push(format!("pair       {a} and {b}: {said}"));
     }
-    if let Some(rule) = spec.mixing {
+    if let Some(rule) = spec.interactions.mixing {
         lines.push(format!("mixing     {}", rule.name()));
     }
     lines

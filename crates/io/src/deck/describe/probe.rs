@@ -5,11 +5,11 @@ use peridyne::spec::{Fold, Measure, Part, ProbeSpec, RigidQuantity, Spec};
 
 pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
     let mut lines = vec![];
-    for probe in &spec.probes {
+    for probe in &spec.run.probes {
         let ProbeSpec { name, set, measure } = probe;
         lines.push(format!(
             "probe      {name}: {}",
-            measured(measure, set, units, spec.dimension)
+            measured(measure, set, units, spec.space.dimension)
         ));
     }
     lines

@@ -5,11 +5,11 @@ use peridyne::spec::{Control, Spec, Statics, Stepper, TimeStep};
 
 pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
     let mut lines = vec![];
-    if let Some(statics) = &spec.schedule.statics() {
-        lines.push(equilibrium(statics, spec.schedule.steps, units));
+    if let Some(statics) = &spec.run.schedule.statics() {
+        lines.push(equilibrium(statics, spec.run.schedule.steps, units));
         return lines;
     }
-    if let Some(preload) = &spec.preload {
+    if let Some(preload) = &spec.run.preload {
         lines.push(format!(
             "{}, under {}",
             equilibrium(&preload.statics, preload.increments, units),
@@ -22,9 +22,9 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
             ));
         }
     }
-    let step = match spec.schedule.time_step {
+    let step = match spec.run.schedule.time_step {
         TimeStep::Fixed(step) => units.write(step, Dim::TIME),
-        TimeStep::Auto if spec.schedule.stepper == Stepper::Still => {
+        TimeStep::Auto if spec.run.schedule.stepper == Stepper::Still => {
             "the longest explicit one of what spreads".into()
         }
         TimeStep::Auto if spec.potential().is_some() => {
@@ -33,11 +33,11 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
         TimeStep::Auto => "0.8 of the stability limit".into(),
         TimeStep::Fraction(fraction) => format!("{fraction} of the stability limit"),
     };
-    let steps = match spec.schedule.steps {
+    let steps = match spec.run.schedule.steps {
         0 => "as many steps as the duration takes".to_string(),
         steps => format!("{steps} steps"),
     };
-    let how = stepper(spec.schedule.stepper);
+    let how = stepper(spec.run.schedule.stepper);
     lines.push(format!("run        {steps} of {step}{how}"));
     lines
 }

@@ -1,5 +1,6 @@
 //! All of a deck.
 
+use super::atoms::AtomsPotentials;
 use super::context::{Context, Result};
 use super::section::{plane, section};
 use super::stage::{Entries, Stages};
@@ -15,7 +16,9 @@ use crate::deck::error::DeckError;
 use crate::deck::source::Source;
 use crate::deck::units::Dim;
 use crate::read::Cells;
-use peridyne::spec::{PreloadSpec, Spec};
+use peridyne::spec::{
+    BondsSpec, DamageSpec, InteractionsSpec, LoadingSpec, PreloadSpec, RunSpec, SpaceSpec, Spec,
+};
 
 pub(in crate::deck) struct Lowered {
     pub spec: Spec,
@@ -72,67 +75,65 @@ pub(in crate::deck) fn lower(
     let probes = all(&document.probe, |at| probes::probe(&context, at, &sets))?;
     let first = bodies::own(&context, document, &mut body, &materials, &sets)?;
     let run = schedule::schedule(&context, document)?;
+    let horizon = match first {
+        Some(first) => first,
+        None => family::horizon_of(&context, document, &body, current)?,
+    };
     let mut spec = Spec {
         title: document.title.clone().unwrap_or_default(),
-        dimension: context.dimension,
-        plane: plane(document),
-        section,
-        horizon: match first {
-            Some(first) => first,
-            None => family::horizon_of(&context, document, &body, current)?,
+        space: SpaceSpec {
+            dimension: context.dimension,
+            plane: plane(document),
+            section,
+            periodic,
         },
-        own_horizon: optional(&document.own_horizon, |e| {
-            context.expression(e, Dim::LENGTH)
-        })?,
-        bonded: atoms::molecules(&context, document, files)?,
-        thermal: optional(&document.thermal, |t| atoms::thermal(&context, t))?,
-        interface: interface::rule(&context, document, &materials)?,
-        interfaces: interface::interfaces(&context, document, &body)?,
-        pairs: vec![],
-        potentials: atoms::pairs(&context, document, &body, &potentials, files)?,
-        mixing: atoms::mixing(&context, document, &potentials)?,
-        release: material::release(&context, &document.material)?,
-        volume_scaling: document.volume_scaling.unwrap_or(true),
-        calibration: family::calibration(document),
-        influence: family::influence(&context, document.influence.as_ref(), &materials)?,
-        periodic,
-        surface: None,
-        bonds: all(&document.bond_factor, |b| motion::bond_factor(&context, b))?,
-        toughness: all(&document.toughness, |t| {
-            motion::toughness(&context, t, &sets)
-        })?,
-        healing: optional(&document.healing, |h| motion::healing(&context, h, &sets))?,
-        precracks: precracks.before,
-        contact: contact::contact(&context, document, &materials)?,
-        initial,
-        preload: run.preload.map(|p| PreloadSpec {
-            statics: p.statics,
-            increments: p.increments,
-            duration: p.duration,
-            conditions: conditions.before,
-            indenters: indenters.before,
-            cuts: precracks.then,
-        }),
-        conditions: conditions.then,
-        transfers,
-        indenters: indenters.then,
-        family: family::choice(document),
-        smooth: optional(&document.smooth, |s| fields::smooth(&context, s))?,
-        schedule: run.schedule,
-        fields: written_fields(document),
-        probes,
-        boltzmann: atoms::boltzmann(units),
         body,
         sets,
         materials,
+        bonds: BondsSpec {
+            horizon,
+            volume_scaling: document.volume_scaling.unwrap_or(true),
+            calibration: family::calibration(document),
+            family: family::choice(document),
+            ..BondsSpec::default()
+        },
+        interactions: InteractionsSpec {
+            transfers,
+            ..InteractionsSpec::default()
+        },
+        damage: DamageSpec {
+            precracks: precracks.before,
+            ..DamageSpec::default()
+        },
+        loading: LoadingSpec {
+            initial,
+            boltzmann: atoms::boltzmann(units),
+            thermal: None,
+            conditions: conditions.then,
+            indenters: indenters.then,
+        },
+        run: RunSpec {
+            preload: run.preload.map(|p| PreloadSpec {
+                statics: p.statics,
+                increments: p.increments,
+                duration: p.duration,
+                conditions: conditions.before,
+                indenters: indenters.before,
+                cuts: precracks.then,
+            }),
+            schedule: run.schedule,
+            fields: written_fields(document),
+            probes,
+        },
     };
+    between_points(&context, document, files, &potentials, &mut spec)?;
     if let Some(surface) = &document.surface {
-        spec.surface = family::surface_factors(&context, surface, &spec)?;
+        spec.bonds.surface = family::surface_factors(&context, surface, &spec)?;
     }
     indenter::of_material(&mut context, document, &mut spec)?;
     let species = potentials.into_values().map(|p| p.element);
     names::folders(&context, &document.output, &document.fields)?;
-    let moves = spec.schedule.statics().is_none();
+    let moves = spec.run.schedule.statics().is_none();
     let kinds = [spec.potential().is_some(), moves];
     let output = schedule::output(&context, &document.output, kinds)?;
     Ok(Lowered {
@@ -153,6 +154,35 @@ pub(in crate::deck) fn lower(
             precracks: precracks.entries,
         },
     })
+}
+
+/// What bonds have, and what points exchange; of several mistakes in it the first of this order is reported.
+fn between_points(
+    context: &Context,
+    document: &Document,
+    files: &Files,
+    potentials: &AtomsPotentials,
+    spec: &mut Spec,
+) -> Result<()> {
+    let (bonds, interactions, damage) = (&mut spec.bonds, &mut spec.interactions, &mut spec.damage);
+    let (body, sets, materials) = (&spec.body, &spec.sets, &spec.materials);
+    bonds.own_horizon = optional(&document.own_horizon, |e| {
+        context.expression(e, Dim::LENGTH)
+    })?;
+    interactions.bonded = atoms::molecules(context, document, files)?;
+    spec.loading.thermal = optional(&document.thermal, |t| atoms::thermal(context, t))?;
+    interactions.interface = interface::rule(context, document, materials)?;
+    interactions.interfaces = interface::interfaces(context, document, body)?;
+    interactions.potentials = atoms::pairs(context, document, body, potentials, files)?;
+    interactions.mixing = atoms::mixing(context, document, potentials)?;
+    damage.release = material::release(context, &document.material)?;
+    bonds.influence = family::influence(context, document.influence.as_ref(), materials)?;
+    bonds.factors = all(&document.bond_factor, |b| motion::bond_factor(context, b))?;
+    damage.toughness = all(&document.toughness, |t| motion::toughness(context, t, sets))?;
+    damage.healing = optional(&document.healing, |h| motion::healing(context, h, sets))?;
+    interactions.contact = contact::contact(context, document, materials)?;
+    bonds.smooth = optional(&document.smooth, |s| fields::smooth(context, s))?;
+    Ok(())
 }
 
 fn all<T, U>(written: &[T], made: impl Fn(&T) -> Result<U>) -> Result<Vec<U>> {

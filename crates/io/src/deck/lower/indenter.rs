@@ -30,9 +30,9 @@ pub(super) fn of_material(
     document: &Document,
     spec: &mut Spec,
 ) -> Result<()> {
-    let before = spec.preload.iter_mut().flat_map(|p| &mut p.indenters);
+    let before = spec.run.preload.iter_mut().flat_map(|p| &mut p.indenters);
     let all: Vec<&mut IndenterSpec> = before
-        .chain(&mut spec.indenters)
+        .chain(&mut spec.loading.indenters)
         .filter(|i| i.stiffness.is_nan())
         .collect();
     if all.is_empty() {
@@ -44,14 +44,14 @@ pub(super) fn of_material(
             .reduce(f64::min),
         one => one
             .spacing()
-            .or_else(|| mean_spacing(one, spec.dimension, spec.section)),
+            .or_else(|| mean_spacing(one, spec.space.dimension, spec.space.section)),
     };
-    let horizon = spacing.map(|s| spec.horizon.length(s));
+    let horizon = spacing.map(|s| spec.bonds.horizon.length(s));
     let bulk = horizon.and_then(|horizon| {
-        let d = spec.dimension;
-        let moments = Moments::continuum(d, horizon, spec.section, spec.influence);
+        let d = spec.space.dimension;
+        let moments = Moments::continuum(d, horizon, spec.space.section, spec.bonds.influence);
         { spec.materials.iter() }
-            .filter_map(|m| nominal_moduli(&m.law, d, spec.plane, moments))
+            .filter_map(|m| nominal_moduli(&m.law, d, spec.space.plane, moments))
             .map(|m| if d == 1 { m.young } else { m.bulk() })
             .reduce(f64::max)
     });

@@ -60,20 +60,20 @@ impl Marks {
     /// Of what a spec does to a body until the time `end`.
     pub fn of(spec: &Spec, sim: &mut dyn Simulation, end: f64) -> Marks {
         let mut marks = Marks::default();
-        for crack in &spec.precracks {
+        for crack in &spec.damage.precracks {
             marks.cracks.extend(corners(&crack.shape));
         }
         let reference = sim.vectors("reference");
         let spacing = sim.info().spacing;
-        for condition in &spec.conditions {
+        for condition in &spec.loading.conditions {
             let members = sim.members(&condition.set).unwrap_or_default();
             let there = members.iter().map(|i| *i as usize);
             let members: Vec<usize> = there.filter(|i| *i < reference.len()).collect();
-            for point in spread(&reference, &members, spec.dimension) {
+            for point in spread(&reference, &members, spec.space.dimension) {
                 let mark = made(condition, (point, reference[point]), end);
                 put(&mut marks.supports, &mut marks.loads, mark);
             }
-            if spec.dimension == 3 {
+            if spec.space.dimension == 3 {
                 let [supports, loads] = &mut marks.section;
                 for point in along_cut(&reference, &members, spacing) {
                     let mark = made(condition, (point, reference[point]), end);

@@ -132,7 +132,13 @@ impl Report {
         let clock = history::clock(&history);
         match scene::of_dumps(dir, &setting, &clock) {
             Ok(scene) => scenes.extend(scene.map(|s| (s, "Frames of the dumps", "Points"))),
-            Err(e) => notes.push(format!("Frames of dumps are left out: {e}")),
+            Err(mut e) => {
+                // by its name in the folder: a report is the same wherever that stands
+                if let Ok(own) = Path::new(&e.file).strip_prefix(dir) {
+                    e.file = own.display().to_string();
+                }
+                notes.push(format!("Frames of dumps are left out: {e}"));
+            }
         }
         if has("points.pvd") {
             let label = match scenes.is_empty() {

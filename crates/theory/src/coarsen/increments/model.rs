@@ -37,11 +37,11 @@ pub struct Model<const D: usize> {
 /// itself, and reactions are those of the coarse equations.
 pub fn alone(spec: &Spec) -> Spec {
     let mut spec = spec.clone();
-    for initial in &mut spec.initial {
+    for initial in &mut spec.loading.initial {
         initial.velocity = [None, None, None];
     }
-    spec.thermal = None;
-    spec.conditions.retain(|c| match c.kind {
+    spec.loading.thermal = None;
+    spec.loading.conditions.retain(|c| match c.kind {
         ConditionKind::BodyForce(_) | ConditionKind::Traction { .. } => true,
         ConditionKind::Displacement(_)
         | ConditionKind::Velocity(_)
@@ -49,15 +49,15 @@ pub fn alone(spec: &Spec) -> Spec {
         | ConditionKind::Damping(_)
         | ConditionKind::Force(_) => false,
     });
-    spec.probes.retain(|p| match p.measure {
+    spec.run.probes.retain(|p| match p.measure {
         Measure::Energy | Measure::Over { .. } | Measure::Value { .. } => true,
         Measure::Reaction
         | Measure::Moment { .. }
         | Measure::Indenter { .. }
         | Measure::Contour(_) => false,
     });
-    spec.schedule.stepper = Stepper::Verlet;
-    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.stepper = Stepper::Verlet;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
     spec
 }
 
@@ -83,7 +83,7 @@ impl<const D: usize> Model<D> {
     /// `sim` is made of what [`alone`] leaves of the specification, trusting its time step. `linear`: the body is the linear one about
     /// the reference, whatever its law. `None`: a condition names a set that is not there, or the dimension is another.
     pub fn new(spec: &Spec, mut sim: Box<dyn Simulation>, linear: bool) -> Option<Self> {
-        if spec.dimension != D {
+        if spec.space.dimension != D {
             return None;
         }
         let begin = sim.displacements();
@@ -92,7 +92,7 @@ impl<const D: usize> Model<D> {
         let body = about(sim.as_mut());
         sim.set_displacements(&begin);
         let (mut prescribed, mut supports) = (vec![], Vec::<Support>::new());
-        for c in &spec.conditions {
+        for c in &spec.loading.conditions {
             let ConditionKind::Displacement(all) = &c.kind else {
                 continue;
             };

@@ -205,7 +205,7 @@ fn started(spec: &Spec, body: &LinearBody<1>, velocity: f64) -> Box<dyn Simulati
 
 fn stepped(body: &LinearBody<1>, dt: f64, change: impl Fn(&mut Spec)) -> Spec {
     let mut spec = Spec::of_linear(body);
-    spec.schedule.time_step = TimeStep::Fixed(dt);
+    spec.run.schedule.time_step = TimeStep::Fixed(dt);
     change(&mut spec);
     spec
 }
@@ -260,7 +260,7 @@ fn prescribed_ends_pull_what_is_coupled_to_them() {
             members,
         });
         let kind = ConditionKind::Displacement(told("1e-3*t*t/100"));
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: "left".into(),
             kind,
         });
@@ -330,14 +330,14 @@ fn damped_chains_move_explicitly_as_implicitly() {
     let body = small();
     let damped = |spec: &mut Spec| {
         let kind = ConditionKind::Damping(Expression::constant(0.02));
-        spec.conditions.push(ConditionSpec {
+        spec.loading.conditions.push(ConditionSpec {
             set: "all".into(),
             kind,
         });
     };
     let implicit = |spec: &mut Spec| {
         damped(spec);
-        spec.schedule.stepper = Stepper::Newmark(Newmark::default());
+        spec.run.schedule.stepper = Stepper::Newmark(Newmark::default());
     };
     let end = |dt: f64, change: &dyn Fn(&mut Spec)| {
         let mut sim = started(&stepped(&body, dt, change), &body, 0.0);
@@ -409,7 +409,7 @@ fn what_coupled_masses_cannot_do_is_refused() {
     };
     let hot = |spec: &mut Spec| {
         let energy = Expression::constant(1e-3);
-        spec.thermal = Some(ThermalSpec { energy, seed: 1 });
+        spec.loading.thermal = Some(ThermalSpec { energy, seed: 1 });
     };
     let said = refused(&stepped(&body, 1.0, hot));
     assert!(said.contains("independent of each other"), "{said}");

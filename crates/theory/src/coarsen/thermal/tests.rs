@@ -70,8 +70,8 @@ fn fcc(potential: PotentialSpec, a: f64, cells: i32) -> Spec {
     };
     let lattice = BodySpec::lattice(LatticeKind::Fcc, a, region);
     let mut spec = Spec::new(3, lattice, 4.0 / a.powi(3), LawSpec::Atoms(potential));
-    spec.periodic = [Some(long); 3];
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.space.periodic = [Some(long); 3];
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     spec
 }
 
@@ -200,8 +200,8 @@ fn small_motions_about_a_vacancy_give_the_hessian() {
     );
     let lattice = BodySpec::lattice(LatticeKind::Triangular, a, region);
     let mut spec = Spec::new(2, lattice, 1.0, LawSpec::Atoms(lennard_jones(2.0)));
-    spec.periodic = [Some(period[0]), Some(period[1]), None];
-    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.space.periodic = [Some(period[0]), Some(period[1]), None];
+    spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
     let (found, hessian) = small_motions::<2>(&spec, 40, 1e-6, true);
     assert_eq!(hessian.points(), 63);
     // twelve neighbours, and all others

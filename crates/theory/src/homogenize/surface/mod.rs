@@ -143,16 +143,21 @@ struct LatticeBody {
 
 impl LatticeBody {
     fn new(spec: &Spec) -> Result<LatticeBody, SurfaceError> {
-        let solid = |m: &MaterialSpec| Solid::of_law(spec.dimension, spec.plane, &m.law).is_some();
+        let solid = |m: &MaterialSpec| {
+            Solid::of_law(spec.space.dimension, spec.space.plane, &m.law).is_some()
+        };
         let bond_based = |m: &MaterialSpec| matches!(m.law, LawSpec::Pmb(_) | LawSpec::Springs(_));
         let state_based = spec.materials.iter().all(solid);
         if !state_based && !spec.materials.iter().all(bond_based) {
             return Err(SurfaceError::Law);
         }
-        if state_based && spec.influence.is_directed() {
+        if state_based && spec.bonds.influence.is_directed() {
             return Err(SurfaceError::Directed);
         }
-        if !matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Stencil) {
+        if !matches!(
+            spec.bonds.family,
+            FamilyChoice::Auto | FamilyChoice::Stencil
+        ) {
             return Err(SurfaceError::Lattice);
         }
         let (lattice, quarters) = match &spec.body {
@@ -195,18 +200,18 @@ impl LatticeBody {
             return Err(SurfaceError::Lattice);
         }
         let h = lattice.spacing;
-        let horizon = spec.horizon.length(h);
-        let stencil = Stencil::new(lattice.kind, h, spec.horizon);
+        let horizon = spec.bonds.horizon.length(h);
+        let stencil = Stencil::new(lattice.kind, h, spec.bonds.horizon);
         let bonds = stencil.offsets()[0]
             .iter()
             .map(|o| {
                 let r = h * (o.squared as f64).sqrt() / 4.0;
-                let nu = match spec.volume_scaling {
+                let nu = match spec.bonds.volume_scaling {
                     true => volume_fraction(r, horizon, h),
                     false => 1.0,
                 };
                 let xi = o.cell.map(|c| h * f64::from(c));
-                let omega = mean_influence(spec.influence, &xi, r, horizon);
+                let omega = mean_influence(spec.bonds.influence, &xi, r, horizon);
                 let (weight, length) = (nu * omega, r / h);
                 StencilBond {
                     offset: o.cell,
@@ -219,13 +224,13 @@ impl LatticeBody {
             .iter()
             .map(|q| q.map(|q| q.div_euclid(4)))
             .collect();
-        let periodic = spec.periodic.map(|p| p.is_some());
+        let periodic = spec.space.periodic.map(|p| p.is_some());
         Ok(LatticeBody {
-            sites: Sites::new(spec.dimension, &points, periodic),
+            sites: Sites::new(spec.space.dimension, &points, periodic),
             lattice,
             bonds,
             state_based,
-            conducts: !spec.transfers.is_empty(),
+            conducts: !spec.interactions.transfers.is_empty(),
         })
     }
 
@@ -439,8 +444,8 @@ pub fn correct(
 /// # Errors
 /// As [`correct`].
 pub fn renew(spec: &mut Spec) -> Result<(), SurfaceError> {
-    if let Some(old) = &spec.surface {
-        spec.surface = Some(correct(spec, old.method)?.0);
+    if let Some(old) = &spec.bonds.surface {
+        spec.bonds.surface = Some(correct(spec, old.method)?.0);
     }
     Ok(())
 }

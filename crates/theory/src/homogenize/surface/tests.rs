@@ -22,7 +22,7 @@ fn block(d: usize, n: [i32; 3], m: u32) -> Spec {
     };
     let law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
     let mut spec = Spec::new(d, body, 1.0, law);
-    spec.horizon = Horizon::Ratio(m);
+    spec.bonds.horizon = Horizon::Ratio(m);
     spec
 }
 
@@ -59,7 +59,7 @@ fn blocks_have_factors_without_negative_ones() {
 fn horizon_two_in_the_plane_is_the_closed_form_along_an_edge() {
     for (scaling, inward) in [(false, 2.0), (true, 1.5)] {
         let mut spec = block(2, [20, 20, 1], 2);
-        spec.volume_scaling = scaling;
+        spec.bonds.volume_scaling = scaling;
         let (factors, _) = correct(&spec, SurfaceMethod::Exact).unwrap();
         // half a cell, far from corners
         let row = factors.row[10] as usize;
@@ -104,7 +104,7 @@ fn state_based_plates_and_blocks_are_exact_with_factors_of_any_sign() {
     ] {
         let mut spec = block(d, n, m);
         spec.materials[0].law = LPS;
-        spec.influence = peridyne::spec::Influence::Inverse;
+        spec.bonds.influence = peridyne::spec::Influence::Inverse;
         let report = found(&spec);
         let [low, high] = report.shares.unwrap();
         assert!(
@@ -131,10 +131,10 @@ fn refused_with_a_reason() {
     let volume = correct(&spec, SurfaceMethod::Volume).unwrap_err();
     assert_eq!(volume, SurfaceError::Published);
     let mut spec = block(2, [10, 10, 1], 2);
-    spec.family = FamilyChoice::List;
+    spec.bonds.family = FamilyChoice::List;
     assert_eq!(refused(&spec), SurfaceError::Lattice);
     // a disk of radius 6: four points stick out
-    spec.family = FamilyChoice::Auto;
+    spec.bonds.family = FamilyChoice::Auto;
     spec.body = BodySpec::Lattice {
         kind: LatticeKind::Square,
         spacing: 1.0,
@@ -154,7 +154,7 @@ fn refused_with_a_reason() {
 #[test]
 fn a_body_and_its_period_have_no_surface_there() {
     let mut spec = block(2, [9, 12, 1], 2);
-    spec.periodic = [Some(9.0), None, None];
+    spec.space.periodic = [Some(9.0), None, None];
     let (factors, report) = correct(&spec, SurfaceMethod::Exact).unwrap();
     assert!(report.unwrap().exact);
     // all points of a row are alike

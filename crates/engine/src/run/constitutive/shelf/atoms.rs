@@ -249,7 +249,7 @@ impl Shelf {
     pub(crate) fn potentials(&self, spec: &Spec) -> Result<Option<AnyPotentials>, BuildError> {
         let laws = spec.materials.iter().map(|m| m.law.potential());
         let Some(own) = laws.collect::<Option<Vec<_>>>().filter(|o| !o.is_empty()) else {
-            return match spec.potentials.is_empty() {
+            return match spec.interactions.potentials.is_empty() {
                 true => Ok(None),
                 false => Err(BuildError::conflict(
                     "potentials",
@@ -262,7 +262,7 @@ impl Shelf {
             parts: vec![],
             reach: 0.0,
         };
-        if spec.potentials.is_empty() && own.iter().all(|p| *p == own[0]) {
+        if spec.interactions.potentials.is_empty() && own.iter().all(|p| *p == own[0]) {
             let given = Given::one(own[0].parameters.clone());
             made.push(self.named(own[0], 0)?, given)?;
             return Ok(Some(made));
@@ -294,7 +294,7 @@ impl Shelf {
             match parts.iter_mut().find(free) {
                 Some((_, given)) => given.set(i, j, between),
                 None => {
-                    let mut given = Given::nothing(kinds, spec.mixing);
+                    let mut given = Given::nothing(kinds, spec.interactions.mixing);
                     given.set(i, j, between);
                     parts.push((entry, given));
                 }
@@ -308,7 +308,7 @@ impl Shelf {
             }
         }
         let mut named = vec![false; kinds * kinds];
-        for (n, acting) in spec.potentials.iter().enumerate() {
+        for (n, acting) in spec.interactions.potentials.iter().enumerate() {
             let Acting::Between([i, j]) = acting.on;
             let path = || format!("potentials[{n}]");
             if i >= kinds || j >= kinds {
@@ -336,7 +336,7 @@ impl Shelf {
                 let mixed = match unlike {
                     Unlike::Whole => alike,
                     _ if named[i * kinds + j] => continue,
-                    Unlike::Mixed => alike && spec.mixing.is_some(),
+                    Unlike::Mixed => alike && spec.interactions.mixing.is_some(),
                     Unlike::Given => false,
                 };
                 if mixed {

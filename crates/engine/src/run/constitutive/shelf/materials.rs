@@ -193,8 +193,8 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
             .help("give all materials the same kind of law: bonds across need one"));
         };
         let of = &spec.materials[n].law;
-        let solid = Solid::of_law(D, spec.plane, of.linear());
-        let modulus = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
+        let solid = Solid::of_law(D, spec.space.plane, of.linear());
+        let modulus = |stiffness| micromodulus(D, spec.space.plane, stiffness, moments);
         let micromodulus = match of.linear() {
             LawSpec::Pmb(stiffness) => Some(modulus(*stiffness)),
             _ => None,
@@ -223,10 +223,10 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
     let chosen = Chosen {
         entry: entry.clone(),
         materials,
-        plane: spec.plane,
-        weighted_volume: match spec.calibration {
+        plane: spec.space.plane,
+        weighted_volume: match spec.bonds.calibration {
             // points with horizons of their own have balls of their own
-            Calibration::Continuum if spec.own_horizon.is_none() => Some(moments.second),
+            Calibration::Continuum if spec.bonds.own_horizon.is_none() => Some(moments.second),
             Calibration::Continuum | Calibration::Discrete => None,
         },
         first_moment: moments.first,

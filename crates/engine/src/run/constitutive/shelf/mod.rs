@@ -294,7 +294,7 @@ impl Shelf {
             self.look_up(&mut m.law)
                 .map_err(|e| e.at(format!("materials[{n}].law")))?;
         }
-        for (n, acting) in spec.potentials.iter_mut().enumerate() {
+        for (n, acting) in spec.interactions.potentials.iter_mut().enumerate() {
             let mut law = LawSpec::Atoms(acting.potential.clone());
             self.look_up(&mut law)
                 .map_err(|e| e.at(format!("potentials[{n}].potential")))?;
