@@ -74,7 +74,7 @@ impl Described for Foundation {
 const BARS: f64 = 40.0;
 
 /// A bar on the foundation, pulled at its end by what grows from 0 to 1 and falls to 0 again in `end`.
-pub fn pulled(stepper: Stepper, steps: u64, end: f64) -> Box<dyn Simulation> {
+pub fn bar(stepper: Stepper, steps: u64, end: f64) -> Box<dyn Simulation> {
     let bar = Region::Block {
         low: [0.0; 3],
         high: [BARS - 1.0, 0.0, 0.0],
@@ -109,7 +109,12 @@ pub fn pulled(stepper: Stepper, steps: u64, end: f64) -> Box<dyn Simulation> {
     spec.run.schedule.time_step = TimeStep::Fixed(end / steps as f64);
     spec.run.schedule.steps = steps;
     let shelf = Shelf::standard().with_force::<Foundation>();
-    let mut sim = build_with(&spec, Options::default(), &shelf).expect("a bar");
+    build_with(&spec, Options::default(), &shelf).expect("a bar")
+}
+
+/// The same at the end.
+pub fn pulled(stepper: Stepper, steps: u64, end: f64) -> Box<dyn Simulation> {
+    let mut sim = bar(stepper, steps, end);
     sim.start(true);
     for _ in 0..steps {
         sim.step().expect("a step");

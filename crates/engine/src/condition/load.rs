@@ -136,6 +136,8 @@ impl<const D: usize> Owner for Load<D> {
     fn archive(&mut self, archive: &mut Archive<'_>) {
         archive.all("force", &mut self.last);
         archive.all("memory", &mut self.named.memory);
+        // loads are asked for before the next increment begins
+        archive.all("memory_before", &mut self.named.began);
         archive.one("before", &mut self.before);
         archive.one("work", &mut self.work);
     }
