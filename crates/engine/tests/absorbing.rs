@@ -137,6 +137,9 @@ fn what_comes_back_is_what_the_wave_equation_says_and_nearly_what_was_asked_for(
         };
         let exact = reflected(&layer);
         let explicit = left(&layer, Stepper::Verlet, 0.25);
+        println!(
+            "R = {reflection}, n = {exponent}, {thick} spacings: {explicit:.3e} of the energy, by the wave equation {exact:.3e}"
+        );
         assert!((explicit / exact - 1.0).abs() < 0.03, "{explicit} {exact}");
         // thick layers do what the profile was made for
         if thick > 2.0 * WAVE {

@@ -48,7 +48,9 @@ fn stepper(stepper: Stepper) -> String {
         return ", no point moves".into();
     }
     let Stepper::Newmark(n) = stepper else {
-        return String::new();
+        // the usual one, and what is no integrator, need no word
+        let name = stepper.name().filter(|name| *name != "verlet");
+        return name.map_or(String::new(), |name| format!(", by {name}"));
     };
     let tolerance = short(n.tolerance);
     match n.alpha != 0.0 {
