@@ -215,6 +215,45 @@ fn fields_of_a_body_are_written_as_those_of_atoms() {
     }
 }
 
+/// Frames along a line are tables. A run goes on only if those of before are as it left them, and then ends as one that was never cut off.
+#[test]
+fn a_frame_that_was_changed_is_told_and_others_are_those_of_a_whole_run() {
+    let dir = TempDir::new().unwrap();
+    let at = dir.path();
+    let deck = "horizon = { m_ratio = 3 }\nplane = \"strain\"\nthickness = \"2 mm\"\n\
+         body = { lattice = \"square\", spacing = \"1 mm\", cells = [13, 11] }\n\
+         material = { density = \"2500 kg/m^3\", law = { lps = { young = \"70 GPa\", poisson = 0.22 } } }\n\
+         initial = [{ velocity = [0, \"10 m/s * (y - 5e-3) / (5 mm)\"] }]\n\
+         run = { steps = 8 }\noutput = { vtu = false }\n\
+         [[fields]]\nname = \"profile\"\nkernel = \"bspline\"\nwidth = \"3 mm\"\nevery = 2\neach = true\n\
+         line = { from = [\"6 mm\", \"2 mm\"], to = [\"6 mm\", \"8 mm\"], count = 5 }\n";
+    run(at, deck);
+    let cut = ["run", "deck.toml", "--out", "cut", "--stop-after", "4"];
+    let (code, _, error) = peridyne(at, &cut);
+    assert_eq!(code, Some(0), "{error}");
+    let first = at.join("cut/profile/frame.000000.csv");
+    let frame = std::fs::read(&first).unwrap();
+    let mut bytes = frame.clone();
+    let digit = bytes.iter().rposition(u8::is_ascii_digit).unwrap();
+    bytes[digit] ^= 1;
+    std::fs::write(&first, bytes).unwrap();
+    let (code, _, error) = peridyne(at, &["resume", "cut"]);
+    assert_eq!(code, Some(2), "{error}");
+    let said = error.replace("\n  │ ", " ");
+    assert!(
+        said.contains("frame.000000.csv`: it is not as the run left it"),
+        "{said}"
+    );
+    std::fs::write(&first, frame).unwrap();
+    let (code, _, error) = peridyne(at, &["resume", "cut"]);
+    assert_eq!(code, Some(0), "{error}");
+    for n in 0..5 {
+        let name = format!("profile/frame.{n:06}.csv");
+        let [whole, cut] = ["out", "cut"].map(|out| std::fs::read(at.join(out).join(&name)));
+        assert_eq!(whole.unwrap(), cut.unwrap(), "{name}");
+    }
+}
+
 /// A potential on the families of the reference, in every partition and with both pair forces: σ, q_K, q_U, q_C, z of the run and of its frames.
 #[test]
 fn fields_of_the_reference_are_those_of_its_frames() {

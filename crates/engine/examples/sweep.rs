@@ -1,7 +1,7 @@
 //! Time per directed bond of the force sweep, on one thread or as many as asked for:
 //! `cargo run --release --example sweep [threads] [words]`. Only cases whose line has every word run, for example
 //! `sweep avx2 cube lps/stencil mixed`; bodies are calm where no word says otherwise.
-use peridyne::body::{Body, zeros};
+use peridyne::body::{Body, view, view_mut, zeros};
 use peridyne::execute::simd::Simd;
 use peridyne::family::{horizon::HorizonList, stencil::Stencil};
 use peridyne::interaction::list::{ListInteraction, ListParts};
@@ -204,10 +204,10 @@ impl Case {
             let start = Instant::now();
             it.forces(
                 body,
-                &u,
-                &mut f,
+                view(&u),
+                view_mut(&mut f),
                 Sweep::Evolve {
-                    v: &v,
+                    v: view(&v),
                     steps: [0.0; 2],
                     release: Release::AfterForce,
                 },

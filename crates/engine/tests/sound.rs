@@ -2,7 +2,7 @@
 //! or in a panic that says what was wrong, never in memory that is not its own.
 #![forbid(unsafe_code)]
 
-use peridyne::body::{Body, Column, Field, zeros};
+use peridyne::body::{Body, Column, Field, view, view_mut, zeros};
 use peridyne::execute::lane::Lane;
 use peridyne::execute::simd::Simd;
 use peridyne::family::horizon::HorizonList;
@@ -135,19 +135,25 @@ fn sweeps(
 ) -> Vec<String> {
     let mut f = fine.clone();
     let mut short = u.clone();
-    let mut out = PointEnergies::default();
+    let (mut whole, mut out) = (fine.clone(), PointEnergies::default());
     let moving = Sweep::Evolve {
-        v: u,
+        v: view(u),
         steps: [0.1; 2],
         release: Release::AtOnce,
     };
     vec![
-        refused(|| it.forces(body, u, &mut f, Sweep::Hold, None)),
-        refused(|| it.forces(body, fine, &mut short, Sweep::Hold, None)),
-        refused(|| it.forces(body, fine, &mut f, moving, None)),
-        refused(|| it.energy(body, u)),
-        refused(|| it.observe(body, u, &mut out)),
-        refused(|| it.tangents(body, u, &mut |_| {})),
+        refused(|| it.forces(body, view(u), view_mut(&mut f), Sweep::Hold, None)),
+        refused(|| it.forces(body, view(fine), view_mut(&mut short), Sweep::Hold, None)),
+        refused(|| it.forces(body, view(fine), view_mut(&mut f), moving, None)),
+        refused(|| it.energy(body, view(u))),
+        refused(|| {
+            let seen = Some(&mut out.for_slots(u[0].len()));
+            it.forces(body, view(fine), view_mut(&mut whole), Sweep::Hold, seen)
+        }),
+        refused(|| it.observe(body, view(u), &mut out.for_slots(body.len()))),
+        refused(|| it.observe(body, view(fine), &mut out.for_slots(u[0].len()))),
+        refused(|| it.observe_gradient(body, &[[0.0; 2]; 2], &mut out.for_slots(u[0].len()))),
+        refused(|| it.tangents(body, view(u), &mut |_| {})),
     ]
 }
 
@@ -164,7 +170,7 @@ proptest! {
                 prop_assert!(said.contains("slots, the body has"), "{said}");
             }
             // and nothing is left behind
-            it.forces(&body, &fine, &mut zeros(body.len()), Sweep::Hold, None);
+            it.forces(&body, view(&fine), view_mut(&mut zeros(body.len())), Sweep::Hold, None);
         }
     }
 
@@ -268,12 +274,12 @@ fn another_body_is_refused() {
     let (one, other) = (lattice(9, 2), lattice(9, 2));
     let mut it = stencil_of(&one, 2, PMB, PointConstants::None);
     let (u, mut f) = (one.at_rest(), zeros(one.len()));
-    let said = refused(|| it.forces(&other, &u, &mut f, Sweep::Hold, None));
+    let said = refused(|| it.forces(&other, view(&u), view_mut(&mut f), Sweep::Hold, None));
     assert!(said.contains("another body"), "{said}");
     let said = refused(|| it.prepare(&other));
     assert!(said.contains("another body"), "{said}");
     // a copy is the same body
-    it.forces(&one.clone(), &u, &mut f, Sweep::Hold, None);
+    it.forces(&one.clone(), view(&u), view_mut(&mut f), Sweep::Hold, None);
     let (cloud, moved) = (one.to_cloud().unwrap(), other.to_cloud().unwrap());
     let list = HorizonList::new(&moved, 2.1).unwrap();
     let said = refused(|| list_of(&cloud, list, PMB, PointConstants::None));
@@ -346,7 +352,13 @@ fn nothing_need_be_prepared() {
         simd: Simd::detect(),
     });
     let mut f = zeros(body.len());
-    it.forces(&body, &body.at_rest(), &mut f, Sweep::Hold, None);
+    it.forces(
+        &body,
+        view(&body.at_rest()),
+        view_mut(&mut f),
+        Sweep::Hold,
+        None,
+    );
     assert!(body.slots().iter().all(|s| f[0][*s as usize] == 0.0));
 }
 

@@ -93,6 +93,28 @@ impl DerefMut for Column {
 /// `[D][slots]`: a vector per slot.
 pub type Field<const D: usize> = [Column; D];
 
+/// `[D][slots]`: the columns of a field, or those of a range of its slots, to read.
+///
+/// A body among several has its slots one after another, so that its field is a part of each column of the whole.
+pub type FieldView<'a, const D: usize> = [&'a [f64]; D];
+
+/// [`FieldView`], to write.
+pub type FieldViewMut<'a, const D: usize> = [&'a mut [f64]; D];
+
+/// A field, or what is seen of one, to read.
+#[inline(always)]
+pub fn view<const D: usize>(field: &[impl Deref<Target = [f64]>; D]) -> FieldView<'_, D> {
+    field.each_ref().map(|column| &**column)
+}
+
+/// A field, or what is seen of one, to write.
+#[inline(always)]
+pub fn view_mut<const D: usize>(
+    field: &mut [impl DerefMut<Target = [f64]>; D],
+) -> FieldViewMut<'_, D> {
+    field.each_mut().map(|column| &mut **column)
+}
+
 /// A vector field of zeros.
 pub fn zeros<const D: usize>(slots: usize) -> Field<D> {
     filled(slots, 0.0)

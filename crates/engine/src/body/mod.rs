@@ -10,7 +10,7 @@ mod points;
 pub mod several;
 pub mod values;
 
-pub use field::{Column, Field, zeros};
+pub use field::{Column, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 pub use grid::Grid;
 pub use several::Piece;
 pub use values::Values;

@@ -1,6 +1,6 @@
 //! Several bodies as one: each keeps its own layout, its slots and its points come one after another.
 
-use super::{Body, Identity, Layout, Values};
+use super::{Body, FieldView, FieldViewMut, Identity, Layout, Values};
 
 /// A body among several.
 #[derive(Debug, Clone)]
@@ -14,6 +14,16 @@ impl<const D: usize> Piece<D> {
     /// Its slots.
     pub fn range(&self) -> std::ops::Range<usize> {
         self.first..self.first + self.body.len
+    }
+
+    /// Its part of a field of all.
+    pub fn part<'a>(&self, all: FieldView<'a, D>) -> FieldView<'a, D> {
+        all.map(|column| &column[self.range()])
+    }
+
+    /// [`part`](Piece::part), to write.
+    pub fn part_mut<'a>(&self, all: FieldViewMut<'a, D>) -> FieldViewMut<'a, D> {
+        all.map(|column| &mut column[self.range()])
     }
 }
 

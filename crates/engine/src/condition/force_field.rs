@@ -4,6 +4,11 @@ use crate::body::{Body, Field};
 use crate::interaction::Evaluation;
 use crate::interaction::friction::Pressed;
 
+/// Power of a force density on a slot (energy / time / volume).
+pub(super) fn power<const D: usize>(force: &[f64; D], v: &Field<D>, slot: usize) -> f64 {
+    (0..D).map(|a| force[a] * v[a][slot]).sum()
+}
+
 /// Who adds to the force density.
 pub(crate) trait ForceField<const D: usize> {
     /// Before the forces at the end, at t, of an explicit step dt long (time): half of the old force's work, with the velocities of the step's

@@ -2,7 +2,7 @@
 
 use super::Program;
 use super::condensed::Condensed;
-use super::force_field::ForceField;
+use super::force_field::{ForceField, power};
 use super::point_force::{PointForce, Seen, Stiffness};
 use crate::body::{Body, Field};
 use crate::interaction::Evaluation;
@@ -276,8 +276,7 @@ impl<const D: usize> ForceField<D> for Load<D> {
         self.named.begin();
         for (f, &s) in self.last.iter().zip(&self.slots) {
             let i = s as usize;
-            let power: f64 = (0..D).map(|a| f[a] * v[a][i]).sum();
-            self.work += 0.5 * dt * power * body.volume.at(i);
+            self.work += 0.5 * dt * power(f, v, i) * body.volume.at(i);
         }
     }
 

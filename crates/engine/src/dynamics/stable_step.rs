@@ -1,7 +1,7 @@
 //! The largest stable step of velocity Verlet, `Δt = 2/√λ_max`, from the operator itself: Lanczos on `M⁻¹K`, whose
 //! products are force sweeps at tiny displacements about the reference. No formula, so no units to get wrong.
 
-use crate::body::{Body, Field, Layout, zeros};
+use crate::body::{Body, Field, Layout, view, view_mut, zeros};
 use crate::interaction::{Interaction, Sweep};
 
 /// Krylov steps; the top of a peridynamic spectrum is found to about a percent in these.
@@ -64,7 +64,7 @@ impl<const D: usize> Coupled<'_, D> {
     pub fn bound(&self, body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
         let mut own = vec![[[0.0; D]; D]; body.len];
         let (mut across, mut down) = (vec![[0.0f64; D]; body.len], vec![[0.0f64; D]; body.len]);
-        interaction.tangents(body, &body.at_rest(), &mut |bond| {
+        interaction.tangents(body, view(&body.at_rest()), &mut |bond| {
             for a in 0..D {
                 for b in 0..D {
                     let c = body.volume.at(bond.i) * bond.stiffness[a][b];
@@ -162,7 +162,7 @@ fn by_place<const D: usize>(body: &Body<D>) -> Vec<usize> {
 pub fn row_bound<const D: usize>(body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
     let mut own = vec![[[0.0; D]; D]; body.len];
     let mut sum = vec![[0.0f64; D]; body.len];
-    interaction.tangents(body, &body.at_rest(), &mut |bond| {
+    interaction.tangents(body, view(&body.at_rest()), &mut |bond| {
         for a in 0..D {
             for b in 0..D {
                 own[bond.i][a][b] += bond.stiffness[a][b];
@@ -195,7 +195,7 @@ impl<'a, const D: usize> Tiny<'a, D> {
     fn new(body: &'a Body<D>, interaction: &'a mut dyn Interaction<D>) -> Self {
         let u = body.at_rest();
         let mut rest = zeros::<D>(body.len);
-        interaction.forces(body, &u, &mut rest, Sweep::Hold, None);
+        interaction.forces(body, view(&u), view_mut(&mut rest), Sweep::Hold, None);
         Tiny {
             f: zeros(body.len),
             body,
@@ -219,7 +219,7 @@ impl<'a, const D: usize> Tiny<'a, D> {
             body.fill_images(c);
         }
         self.interaction
-            .forces(body, u, &mut self.f, Sweep::Hold, None);
+            .forces(body, view(u), view_mut(&mut self.f), Sweep::Hold, None);
         let (f, rest) = (&self.f, &self.rest);
         let each = body.slots.iter().enumerate().map(|(i, &s)| {
             let s = s as usize;

@@ -1,7 +1,7 @@
 //! The bonds of a lattice body, for laws that remember nothing of them: offsets, and who is there.
 
 use super::stencil::Stencil;
-use crate::body::{Body, Field, Grid, Identity, Layout};
+use crate::body::{Body, FieldView, Grid, Identity, Layout};
 use crate::execute::lane::{Lane, TILE};
 use std::ops::Range;
 
@@ -223,15 +223,11 @@ pub struct Tiles<'a, const D: usize> {
 
 impl<'a, const D: usize> Tiles<'a, D> {
     /// `body` is the one that the links were made of.
-    pub fn new(links: &'a Links<D>, body: &'a Body<D>, u: &'a Field<D>) -> Self {
+    pub fn new(links: &'a Links<D>, body: &'a Body<D>, u: FieldView<'a, D>) -> Self {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("links are of lattice bodies")
         };
-        Tiles {
-            links,
-            grid,
-            u: std::array::from_fn(|a| &*u[a]),
-        }
+        Tiles { links, grid, u }
     }
 
     /// The tiles of block `b`.

@@ -7,7 +7,7 @@
 mod cells;
 pub mod near;
 
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView};
 use cells::Cells;
 
 /// A point that holds together with no other.
@@ -86,7 +86,7 @@ impl<const D: usize> Neighbours<D> {
     pub fn update(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         keep: &dyn Fn(usize, usize) -> bool,
     ) -> bool {
         // a thousandth for round-off
@@ -102,7 +102,7 @@ impl<const D: usize> Neighbours<D> {
         true
     }
 
-    fn find(&mut self, body: &Body<D>, u: &Field<D>, keep: &dyn Fn(usize, usize) -> bool) {
+    fn find(&mut self, body: &Body<D>, u: FieldView<D>, keep: &dyn Fn(usize, usize) -> bool) {
         let (cells, apart, reach) = (&self.cells, self.apart, self.reach);
         let difference = |i: u32, j: u32| {
             (0..D)
@@ -227,7 +227,7 @@ pub fn periods<const D: usize>(body: &Body<D>, y: &[f64; D]) -> [f64; D] {
 }
 
 /// From i to j in the reference, to the image of j that is nearest now: with `u_j − u_i` the way between them.
-pub fn base<const D: usize>(body: &Body<D>, u: &Field<D>, [i, j]: [usize; 2]) -> [f64; D] {
+pub fn base<const D: usize>(body: &Body<D>, u: FieldView<D>, [i, j]: [usize; 2]) -> [f64; D] {
     let (p, q) = (body.position(i), body.position(j));
     let xi: [f64; D] = std::array::from_fn(|a| q[a] - p[a]);
     let now = periods(body, &std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i])));

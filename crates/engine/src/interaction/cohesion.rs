@@ -8,7 +8,7 @@
 //! ways in which the faces can lie on each other; as h → 0 it is `w = π c L⁵/120` in space, `t c L⁴/30` in the plane and `A c L³/24` on a line.
 
 use super::pull::Pull;
-use crate::body::{Body, Field};
+use crate::body::{Body, Field, view};
 use crate::family::neighbours::{Neighbours, base};
 
 /// How far cohesion reaches, in distances of faces that touch: shorter, and it would depend on how faces lie on each other; longer, and each
@@ -180,12 +180,12 @@ impl<const D: usize> Cohesion<D> {
     /// Find the pairs anew if points may have moved too far.
     pub fn update(&mut self, body: &Body<D>, u: &Field<D>) {
         let apart = |i: usize, j: usize| body.piece_of(i) != body.piece_of(j);
-        if !self.neighbours.update(body, u, &apart) {
+        if !self.neighbours.update(body, view(u), &apart) {
             return;
         }
         self.bases.clear();
         for (i, row) in self.neighbours.rows() {
-            let each = row.iter().map(|j| base(body, u, [i, *j as usize]));
+            let each = row.iter().map(|j| base(body, view(u), [i, *j as usize]));
             self.bases.extend(each);
         }
     }

@@ -7,7 +7,7 @@ use super::cohesion::Cohesion;
 use super::nearness::{Bounds, Nearness};
 use super::pull::Pull;
 use super::{BondTangent, Repulsion};
-use crate::body::{Body, Field};
+use crate::body::{Body, Field, view};
 use crate::family::neighbours::{LOOSE, Neighbours, base, periods};
 
 /// A listed pair, in the order of the list.
@@ -167,7 +167,10 @@ impl<const D: usize> Contact<D> {
         if let Some(cohesion) = &mut self.cohesion {
             cohesion.update(body, u);
         }
-        if !self.neighbours.update(body, u, &|i, j| !in_family(i, j)) {
+        if !self
+            .neighbours
+            .update(body, view(u), &|i, j| !in_family(i, j))
+        {
             return;
         }
         self.pairs.clear();
@@ -188,7 +191,7 @@ impl<const D: usize> Contact<D> {
                     self.bounds.push(near.bounds(materials, same, r0, distance));
                 }
                 self.pairs.push(Pair {
-                    base: base(body, u, [i, j]),
+                    base: base(body, view(u), [i, j]),
                     distance,
                     stiffness: self.repulsion.between(materials, [i, j]),
                 });

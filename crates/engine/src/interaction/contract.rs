@@ -1,9 +1,10 @@
 //! What every law on every family can do: the contract between bonds and those who move, load and watch a body.
 
 use super::{
-    BondForce, BondState, BondTangent, PointEnergies, Sweep, Tally, add_virial, along, history,
+    BondForce, BondState, BondTangent, PointEnergiesMut, Sweep, Tally, Wearing, add_virial, along,
+    history,
 };
-use crate::body::{Body, Field, Identity};
+use crate::body::{Body, FieldView, FieldViewMut, Identity, view};
 use crate::columns::{Declaration, On};
 use crate::error::BuildError;
 use crate::law::BondFactors;
@@ -22,7 +23,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ///
     /// # Panics
     /// If the body is another one, or a field has another length than it.
-    fn check(&self, body: &Body<D>, fields: &[&Field<D>]) {
+    fn check(&self, body: &Body<D>, fields: &[FieldView<D>]) {
         assert!(
             body.identity == self.made_for(),
             "an interaction made for another body: make one for this body"
@@ -42,18 +43,21 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// whole before any breaks, with the memory that they have afterwards, as [observe](Interaction::observe) gives them, at less cost.
     ///
     /// # Panics
-    /// If the body is another one than that of [`made_for`](Interaction::made_for), or a field does not have its length.
+    /// If the body is another one than that of [`made_for`](Interaction::made_for), or a field or what is seen does not have its length.
     fn forces(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
-        self.check(body, &[u, &*f]);
+        self.check(body, &[u, view(&f)]);
         if let Sweep::Evolve { v, .. } = sweep {
             self.check(body, &[v]);
+        }
+        if let Some(seen) = &seen {
+            seen.check(body.len);
         }
         // SAFETY: just checked
         unsafe { self.forces_unchecked(body, u, f, sweep, seen) }
@@ -62,21 +66,21 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// [`forces`](Interaction::forces).
     ///
     /// # Safety
-    /// The body and all fields pass [`check`](Interaction::check).
+    /// The body and all fields pass [`check`](Interaction::check), and what is seen [its own](PointEnergiesMut::check).
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally;
 
     /// Strain energy of bonds and energy of repulsion inside the family at `u` (energy), without allocating.
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    fn energy(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         self.check(body, &[u]);
         // SAFETY: just checked
         unsafe { self.energy_unchecked(body, u) }
@@ -86,14 +90,15 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ///
     /// # Safety
     /// The body and the field pass [`check`](Interaction::check).
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2];
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2];
 
     /// Energy densities and dilatation of all points at `u`.
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    fn observe(&self, body: &Body<D>, u: FieldView<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[u]);
+        out.check(body.len);
         // SAFETY: just checked
         unsafe { self.observe_unchecked(body, u, out) }
     }
@@ -101,12 +106,17 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// [`observe`](Interaction::observe).
     ///
     /// # Safety
-    /// The body and the field pass [`check`](Interaction::check).
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies);
+    /// The body and the field pass [`check`](Interaction::check), and `out` [its own](PointEnergiesMut::check).
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: FieldView<D>, out: &mut PointEnergiesMut);
 
     /// Energy densities and dilatation of all points under a homogeneous displacement gradient `∂u_a/∂x_b`, so small that
     /// nobody gets other neighbours; periodic images move like everything else.
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         // images of a grid have displacements of their own
         let mut u = body.at_rest();
         let images = body.images.iter().map(|(copy, _)| copy);
@@ -116,7 +126,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
                 u[a][s as usize] = moved[a];
             }
         }
-        self.observe(body, &u, out);
+        self.observe(body, view(&u), out);
     }
 
     /// Is it a potential between atoms, per atom and not per volume?
@@ -134,7 +144,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
-    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    fn tangents(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         self.check(body, &[u]);
         // SAFETY: just checked
         unsafe { self.tangents_unchecked(body, u, visit) }
@@ -147,7 +157,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     );
 
@@ -190,7 +200,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     fn mend(
         &mut self,
         _body: &Body<D>,
-        _u: &Field<D>,
+        _u: FieldView<D>,
         _heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> Option<u64> {
         None
@@ -206,7 +216,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the law has no forces
     /// of single bonds.
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+    fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
         let mut virial = [0.0; 6];
         let known = self.each_force(body, u, &mut |bond| {
             let factor = -0.5 * body.volume.at(bond.i);
@@ -228,7 +238,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
-    fn shortest(&mut self, _body: &Body<D>, _u: &Field<D>) -> f64 {
+    fn shortest(&mut self, _body: &Body<D>, _u: FieldView<D>) -> f64 {
         1.0
     }
 
@@ -291,7 +301,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ///
     /// # Panics
     /// If the body is another one, or the number of stresses is not that of its slots.
-    fn add_stress_across(&mut self, _body: &Body<D>, _u: &Field<D>, _trace: &mut [f64]) -> bool {
+    fn add_stress_across(&mut self, _body: &Body<D>, _u: FieldView<D>, _trace: &mut [f64]) -> bool {
         false
     }
 
@@ -313,21 +323,20 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// [`Sweep::Evolve`], after which time stands still again; 0: it does.
     fn last(&mut self, _step: f64) {}
 
-    /// Bonds wear as long as it takes until some are worn out, at most so many cycles: of a load under which the displacements are `u`, images
-    /// of which are fresh, and whose least is a part of it. Those that are worn out break in the next sweep. How many cycles; `None`: none
-    /// of them wears.
+    /// What is left of the lives of all directed bonds that are whole, and what a cycle of a load takes, under which the displacements are `u`,
+    /// images of which are fresh, and whose least is a part of it. `None`: none of them wears.
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
-    fn wear(
-        &mut self,
-        _body: &Body<D>,
-        _u: &Field<D>,
-        _cycles: &Cycles,
-        _left: f64,
-    ) -> Option<f64> {
+    fn wearing(&self, _body: &Body<D>, _u: FieldView<D>, _load: &Cycles) -> Option<Vec<Wearing>> {
         None
     }
+
+    /// So many cycles of that load pass: bonds that are worn out break in the next sweep.
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn wear(&mut self, _body: &Body<D>, _u: FieldView<D>, _load: &Cycles, _passed: f64) {}
 
     /// Directed bonds of the reference family.
     fn directed_bonds(&self) -> u64;
@@ -354,7 +363,13 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Writes the values of one of its [columns](Interaction::columns) into `out`: [`stored`](crate::columns::Shape::stored)
     /// numbers, of points for each slot of the body (0 where there is no point), of bonds for each directed bond of the reference
     /// family in order of slots, broken ones too. Images of `u` must be fresh. False: there is no such column, and `out` is empty.
-    fn read_column(&self, _body: &Body<D>, _u: &Field<D>, _name: &str, out: &mut Vec<f64>) -> bool {
+    fn read_column(
+        &self,
+        _body: &Body<D>,
+        _u: FieldView<D>,
+        _name: &str,
+        out: &mut Vec<f64>,
+    ) -> bool {
         out.clear();
         false
     }
@@ -385,7 +400,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     fn each_force(
         &mut self,
         _body: &Body<D>,
-        _u: &Field<D>,
+        _u: FieldView<D>,
         _visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         false

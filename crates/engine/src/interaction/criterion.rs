@@ -52,8 +52,10 @@ impl Criteria {
 
 /// A bond that wears: what is left of its life, and what a cycle takes of it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Wearing {
+pub struct Wearing {
+    /// 1 at first; 0: it is worn out.
     pub life: f64,
+    /// Per cycle.
     pub rate: f64,
 }
 

@@ -1,7 +1,10 @@
 //! Bonds between two of several bodies: an interaction on the points of both that are near to the other, as a cloud of its own.
 
-use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, history};
-use crate::body::{Body, Field, zeros};
+use super::{
+    BondForce, BondState, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
+    history,
+};
+use crate::body::{Body, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 use crate::columns::On;
 use crate::spec::CrackKind;
 use crate::state::Archive;
@@ -22,7 +25,7 @@ struct Points<const D: usize> {
 }
 
 impl<const D: usize> Points<D> {
-    fn take(&self, from: &Field<D>, to: &mut Field<D>) {
+    fn take(&self, from: FieldView<D>, to: FieldViewMut<D>) {
         for (all, own) in self.slots.iter().zip(&self.cloud.slots) {
             for a in 0..D {
                 to[a][*own as usize] = from[a][*all as usize];
@@ -37,9 +40,9 @@ impl<const D: usize> Points<D> {
     }
 
     /// Adds the energies; dilatations are those of the bodies alone.
-    fn add_energies(&self, seen: &PointEnergies, out: &mut PointEnergies) {
-        self.add(&seen.strain, &mut out.strain);
-        self.add(&seen.repulsion, &mut out.repulsion);
+    fn add_energies(&self, seen: &PointEnergies, out: &mut PointEnergiesMut) {
+        self.add(&seen.strain, out.strain);
+        self.add(&seen.repulsion, out.repulsion);
     }
 
     fn whole(&self, slot: usize) -> usize {
@@ -102,7 +105,7 @@ impl<const D: usize> Interface<D> {
         let points = &self.points;
         let mut own = vec![];
         let name = history::ELONGATION;
-        if !(self.bonds).read_column(&points.cloud, &self.u, name, &mut own) {
+        if !(self.bonds).read_column(&points.cloud, view(&self.u), name, &mut own) {
             own = vec![history::NEVER; points.cloud.len];
         }
         let at = |place: &u32| match *place {
@@ -115,31 +118,36 @@ impl<const D: usize> Interface<D> {
     /// Adds its forces to `f`.
     pub fn forces(
         &mut self,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         let points = &self.points;
-        points.take(u, &mut self.u);
+        points.take(u, view_mut(&mut self.u));
         let sweep = match sweep {
             Sweep::Evolve { v, steps, release } => {
-                points.take(v, &mut self.v);
+                points.take(v, view_mut(&mut self.v));
                 Sweep::Evolve {
-                    v: &self.v,
+                    v: view(&self.v),
                     steps,
                     release,
                 }
             }
             Sweep::Hold => Sweep::Hold,
         };
-        let watch = seen.is_some().then_some(&mut self.seen);
-        let mut tally = self
-            .bonds
-            .forces(&points.cloud, &self.u, &mut self.f, sweep, watch);
+        let room = points.cloud.len;
+        let mut watch = seen.is_some().then(|| self.seen.for_slots(room));
+        let mut tally = self.bonds.forces(
+            &points.cloud,
+            view(&self.u),
+            view_mut(&mut self.f),
+            sweep,
+            watch.as_mut(),
+        );
         tally.fault = tally.fault.map(|fault| fault.at(|s| points.whole(s)));
         for a in 0..D {
-            points.add(&self.f[a], &mut f[a]);
+            points.add(&self.f[a], f[a]);
         }
         if let Some(seen) = seen {
             points.add_energies(&self.seen, seen);
@@ -147,54 +155,64 @@ impl<const D: usize> Interface<D> {
         tally
     }
 
-    pub fn energy(&mut self, u: &Field<D>) -> [f64; 2] {
-        self.points.take(u, &mut self.u);
-        self.bonds.energy(&self.points.cloud, &self.u)
+    pub fn energy(&mut self, u: FieldView<D>) -> [f64; 2] {
+        self.points.take(u, view_mut(&mut self.u));
+        self.bonds.energy(&self.points.cloud, view(&self.u))
     }
 
-    pub fn observe(&self, u: &Field<D>, out: &mut PointEnergies) {
+    pub fn observe(&self, u: FieldView<D>, out: &mut PointEnergiesMut) {
         let mut own = self.points.cloud.at_rest();
-        self.points.take(u, &mut own);
+        self.points.take(u, view_mut(&mut own));
         let mut seen = PointEnergies::default();
-        self.bonds.observe(&self.points.cloud, &own, &mut seen);
+        self.bonds.observe(
+            &self.points.cloud,
+            view(&own),
+            &mut seen.for_slots(own[0].len()),
+        );
         self.points.add_energies(&seen, out);
     }
 
-    pub fn observe_gradient(&self, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    pub fn observe_gradient(&self, gradient: &[[f64; D]; D], out: &mut PointEnergiesMut) {
         let mut seen = PointEnergies::default();
+        self.bonds.observe_gradient(
+            &self.points.cloud,
+            gradient,
+            &mut seen.for_slots(self.points.cloud.len),
+        );
+        self.points.add_energies(&seen, out);
+    }
+
+    pub fn tangents(&mut self, u: FieldView<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        let points = &self.points;
+        points.take(u, view_mut(&mut self.u));
         self.bonds
-            .observe_gradient(&self.points.cloud, gradient, &mut seen);
-        self.points.add_energies(&seen, out);
+            .tangents(&points.cloud, view(&self.u), &mut |bond| {
+                visit(BondTangent {
+                    i: points.whole(bond.i),
+                    j: points.whole(bond.j),
+                    ..bond
+                });
+            });
     }
 
-    pub fn tangents(&mut self, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    pub fn each_force(&mut self, u: FieldView<D>, visit: &mut dyn FnMut(BondForce<D>)) -> bool {
         let points = &self.points;
-        points.take(u, &mut self.u);
-        self.bonds.tangents(&points.cloud, &self.u, &mut |bond| {
-            visit(BondTangent {
-                i: points.whole(bond.i),
-                j: points.whole(bond.j),
-                ..bond
-            });
-        });
-    }
-
-    pub fn each_force(&mut self, u: &Field<D>, visit: &mut dyn FnMut(BondForce<D>)) -> bool {
-        let points = &self.points;
-        points.take(u, &mut self.u);
-        self.bonds.each_force(&points.cloud, &self.u, &mut |bond| {
-            visit(BondForce {
-                i: points.whole(bond.i),
-                j: points.whole(bond.j),
-                ..bond
-            });
-        })
+        points.take(u, view_mut(&mut self.u));
+        self.bonds
+            .each_force(&points.cloud, view(&self.u), &mut |bond| {
+                visit(BondForce {
+                    i: points.whole(bond.i),
+                    j: points.whole(bond.j),
+                    ..bond
+                });
+            })
     }
 
     /// A column of its bonds.
     pub fn read_bonds(&self, name: &str, out: &mut Vec<f64>) -> bool {
         let cloud = &self.points.cloud;
-        self.bonds.read_column(cloud, &cloud.at_rest(), name, out)
+        self.bonds
+            .read_column(cloud, view(&cloud.at_rest()), name, out)
     }
 
     /// Sets a column of its bonds, in the order in which they are read.
@@ -225,11 +243,15 @@ impl<const D: usize> Interface<D> {
     }
 
     /// [`mend`](Interaction::mend), of slots of the body of all.
-    pub fn mend(&mut self, u: &Field<D>, heals: &dyn Fn(usize, usize, f64) -> bool) -> Option<u64> {
+    pub fn mend(
+        &mut self,
+        u: FieldView<D>,
+        heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> Option<u64> {
         let points = &self.points;
-        points.take(u, &mut self.u);
+        points.take(u, view_mut(&mut self.u));
         let heals = |i: usize, j: usize, e: f64| heals(points.whole(i), points.whole(j), e);
-        self.bonds.mend(&points.cloud, &self.u, &heals)
+        self.bonds.mend(&points.cloud, view(&self.u), &heals)
     }
 
     pub fn cut(

@@ -4,8 +4,8 @@
 //! along their reference direction and may go through each other.
 
 use super::scale::{Scale, TileFactors};
-use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
-use crate::body::{Body, Field, Grid, Identity, Values};
+use super::{BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
+use crate::body::{Body, FieldView, FieldViewMut, Grid, Identity, Values};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
@@ -53,7 +53,7 @@ impl<const D: usize> LinearInteraction<D> {
     }
 
     /// Energy, and energy densities per slot where asked for.
-    fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared) -> f64 {
+    fn energies(&self, body: &Body<D>, u: FieldView<D>, out: Shared) -> f64 {
         let kernel = Energies {
             view: self.view(body, u),
             volume: &body.volume,
@@ -63,7 +63,7 @@ impl<const D: usize> LinearInteraction<D> {
         sum
     }
 
-    fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D> {
+    fn view<'a>(&'a self, body: &'a Body<D>, u: FieldView<'a, D>) -> View<'a, D> {
         View {
             tiles: Tiles::new(&self.links, body, u),
             stiffness: &self.stiffness,
@@ -202,10 +202,10 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         _: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         if let Some(seen) = seen {
             self.observe(body, u, seen);
@@ -218,11 +218,16 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         Tally::default()
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         [self.energies(body, u, Shared::NULL), 0.0]
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         out.zeros(body.len);
         self.energies(body, u, Shared(out.strain.as_mut_ptr()));
     }
@@ -230,7 +235,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        _: &Field<D>,
+        _: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         let grid = body.grid();
@@ -251,7 +256,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         self.tangents(body, u, &mut |bond| visit(bond.linear_force(u)));

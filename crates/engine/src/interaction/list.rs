@@ -14,9 +14,9 @@ use super::point_constants::pressure_factor;
 use super::weight::BondWeight;
 use super::{
     BondForce, BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
-    PointEnergies, Repulsion, Sweep, Tally, Toughness, along,
+    PointEnergiesMut, Repulsion, Sweep, Tally, Toughness, along,
 };
-use crate::body::{Body, Field, Identity};
+use crate::body::{Body, FieldView, FieldViewMut, Identity};
 use crate::columns::Declaration;
 use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::simd::Simd;
@@ -95,9 +95,9 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     }
 
     /// Write displacements and critical stretches into the records.
-    fn pack(&self, u: &Field<D>, moved: &mut [f64]) {
+    fn pack(&self, u: FieldView<D>, moved: &mut [f64]) {
         let kernel = Pack::<D> {
-            u: std::array::from_fn(|a| &*u[a]),
+            u,
             critical: &self.critical,
             moved: Shared(moved.as_mut_ptr()),
         };
@@ -105,7 +105,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     }
 
     /// Write those of now.
-    fn pack_now(&mut self, u: &Field<D>) {
+    fn pack_now(&mut self, u: FieldView<D>) {
         let mut moved = std::mem::take(&mut self.moved);
         self.pack(u, &mut moved);
         self.moved = moved;
@@ -124,7 +124,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     fn sweep<const FULL: bool>(
         &mut self,
         body: &Body<D>,
-        f: &mut Field<D>,
+        f: FieldViewMut<D>,
         motion: Option<Motion<D>>,
     ) -> Tally {
         let alive = Shared(self.alive.as_mut_ptr());
@@ -155,14 +155,14 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     }
 
     /// Energies of all points, with `Σ k r0² s` in place of the dilatation and `Σ k r0²` of what is whole.
-    fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    fn sums(&self, body: &Body<D>, u: FieldView<D>, out: &mut PointEnergiesMut) {
         let mut moved = vec![0.0; 4 * body.len];
         self.pack(u, &mut moved);
         self.sums_of(body, self.view(&moved), out);
     }
 
     /// The same of what a view shows.
-    fn sums_of(&self, body: &Body<D>, view: View<D, W>, out: &mut PointEnergies) {
+    fn sums_of(&self, body: &Body<D>, view: View<D, W>, out: &mut PointEnergiesMut) {
         let kernel = Energies {
             view,
             fields: Some(EnergyFields::of(out, body.len)),
@@ -188,10 +188,10 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         self.pack_now(u);
         if let Some(seen) = seen {
@@ -218,7 +218,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         total
     }
 
-    unsafe fn energy_unchecked(&mut self, _: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, _: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         self.pack_now(u);
         let kernel = Energies {
             view: self.view(&self.moved),
@@ -227,12 +227,22 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.sums.sum(self.simd, &kernel)
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         self.sums(body, u, out);
         out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
 
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         self.check(body, &[]);
         let images = Images::new(self);
         let mut moved = vec![0.0; images.reference.len()];
@@ -246,7 +256,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         self.each_tangent(body, u, visit);
@@ -263,7 +273,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         self.check(body, &[u]);
@@ -278,7 +288,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     fn mend(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> Option<u64> {
         self.check(body, &[u]);
@@ -328,7 +338,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         history::columns(!self.critical.is_empty())
     }
 
-    fn read_column(&self, body: &Body<D>, _: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+    fn read_column(&self, body: &Body<D>, _: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
         self.read_named(body, name, out)
     }
 

@@ -1,7 +1,7 @@
 //! Given micromoduli: `f_i = Σ_j C_ij (u_j − u_i)`, a block for every directed bond. Coarsened bodies, composites, defects.
 
-use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
-use crate::body::{Body, Field, Identity};
+use super::{BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
+use crate::body::{Body, FieldView, FieldViewMut, Identity};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
@@ -71,7 +71,7 @@ impl<const D: usize> MicromoduliInteraction<D> {
 
     /// Force density on a row's point, and the energy density of its bonds.
     #[inline(always)]
-    fn pull(&self, u: &Field<D>, row: usize) -> ([f64; D], f64) {
+    fn pull(&self, u: FieldView<D>, row: usize) -> ([f64; D], f64) {
         let i = self.slots[row] as usize;
         let (mut f, mut energy) = ([0.0; D], 0.0);
         for (j, c, _) in self.bonds(row) {
@@ -91,7 +91,7 @@ impl<const D: usize> MicromoduliInteraction<D> {
         (f, energy)
     }
 
-    fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared, sums: &mut [f64]) {
+    fn energies(&self, body: &Body<D>, u: FieldView<D>, out: Shared, sums: &mut [f64]) {
         let kernel = Energies {
             law: self,
             body,
@@ -108,7 +108,7 @@ fn rows(block: usize, all: usize) -> std::ops::Range<usize> {
 
 struct Forces<'a, const D: usize> {
     law: &'a MicromoduliInteraction<D>,
-    u: &'a Field<D>,
+    u: FieldView<'a, D>,
     f: [Shared; D],
 }
 
@@ -130,7 +130,7 @@ impl<const D: usize> Kernel for Forces<'_, D> {
 struct Energies<'a, const D: usize> {
     law: &'a MicromoduliInteraction<D>,
     body: &'a Body<D>,
-    u: &'a Field<D>,
+    u: FieldView<'a, D>,
     /// Energy density per slot, if asked for.
     out: Shared,
 }
@@ -165,10 +165,10 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         _: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         if let Some(seen) = seen {
             self.observe(body, u, seen);
@@ -184,7 +184,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         Tally::default()
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         let mut sums = std::mem::take(&mut self.sums);
         self.energies(body, u, Shared::NULL, &mut sums);
         let total = sums.iter().sum();
@@ -192,13 +192,23 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         [total, 0.0]
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         out.zeros(body.len);
         let strain = Shared(out.strain.as_mut_ptr());
         self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
     }
 
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         self.check(body, &[]);
         out.zeros(body.len);
         for (row, &slot) in self.slots.iter().enumerate() {
@@ -214,7 +224,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
     unsafe fn tangents_unchecked(
         &mut self,
         _: &Body<D>,
-        _: &Field<D>,
+        _: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         for (row, &slot) in self.slots.iter().enumerate() {
@@ -244,7 +254,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         self.tangents(body, u, &mut |bond| visit(bond.linear_force(u)));

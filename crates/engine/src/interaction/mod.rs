@@ -33,11 +33,12 @@ pub mod weight;
 
 pub use contact_forces::ContactForces;
 pub use contract::Interaction;
+pub use criterion::Wearing;
 pub use evaluation::Evaluation;
 pub use point_constants::PointConstants;
 use point_constants::laws_fields;
 use point_energies::EnergyFields;
-pub use point_energies::PointEnergies;
+pub use point_energies::{PointEnergies, PointEnergiesMut};
 pub use repulsion::{PairTable, Repulsion, in_series};
 pub(crate) use sweep::Motion;
 pub use sweep::{Fault, Released, Sweep, Tally};

@@ -3,6 +3,7 @@
 use crate::body::Body;
 use crate::execute::blocks::Shared;
 use crate::law::Law;
+use std::ops::Range;
 
 /// Energies and dilatation of all points, per slot.
 #[derive(Debug, Clone, Default)]
@@ -18,6 +19,40 @@ pub struct PointEnergies {
 }
 
 impl PointEnergies {
+    /// Room for a body of so many slots, to write: whatever stands there is overwritten.
+    pub fn for_slots(&mut self, len: usize) -> PointEnergiesMut<'_> {
+        let PointEnergies {
+            strain,
+            repulsion,
+            dilatation,
+            whole,
+        } = self;
+        for column in [&mut *strain, repulsion, dilatation, whole] {
+            column.resize(len, 0.0);
+        }
+        PointEnergiesMut {
+            strain,
+            repulsion,
+            dilatation,
+            whole,
+        }
+    }
+}
+
+/// [`PointEnergies`] of a body, or of a range of its slots, to write.
+#[derive(Debug)]
+pub struct PointEnergiesMut<'a> {
+    /// Strain energy density of bonds (energy / volume).
+    pub strain: &'a mut [f64],
+    /// Energy density of repulsion inside the family (energy / volume).
+    pub repulsion: &'a mut [f64],
+    /// Dilatation θ (–).
+    pub dilatation: &'a mut [f64],
+    /// [`PointEnergies::whole`] (–).
+    pub whole: &'a mut [f64],
+}
+
+impl PointEnergiesMut<'_> {
     /// Make dilatations of `Σ k r0² s`: times `n/m` for laws that share, else `D Σ k r0² s / Σ k r0²`. `factors` of a
     /// slot are n and 1/m.
     pub(super) fn dilate<W: Law, const D: usize>(
@@ -38,16 +73,39 @@ impl PointEnergies {
         }
     }
 
-    /// All zero, for so many slots.
+    /// Are they those of so many slots? Whoever writes without looking asks here first.
+    ///
+    /// # Panics
+    /// If not.
+    pub fn check(&self, len: usize) {
+        let columns = [&self.strain, &self.repulsion, &self.dilatation, &self.whole];
+        if let Some(column) = { columns }.into_iter().find(|c| c.len() != len) {
+            panic!(
+                "energies of {} slots, the body has {len}: they come from `for_slots(body.len())`",
+                column.len()
+            );
+        }
+    }
+
+    /// All zero.
+    ///
+    /// # Panics
+    /// As for [`check`](PointEnergiesMut::check).
     pub fn zeros(&mut self, len: usize) {
-        for field in [
-            &mut self.strain,
-            &mut self.repulsion,
-            &mut self.dilatation,
-            &mut self.whole,
-        ] {
-            field.clear();
-            field.resize(len, 0.0);
+        self.check(len);
+        self.strain.fill(0.0);
+        self.repulsion.fill(0.0);
+        self.dilatation.fill(0.0);
+        self.whole.fill(0.0);
+    }
+
+    /// Those of a range of slots.
+    pub(super) fn part(&mut self, slots: Range<usize>) -> PointEnergiesMut<'_> {
+        PointEnergiesMut {
+            strain: &mut self.strain[slots.clone()],
+            repulsion: &mut self.repulsion[slots.clone()],
+            dilatation: &mut self.dilatation[slots.clone()],
+            whole: &mut self.whole[slots],
         }
     }
 }
@@ -65,7 +123,7 @@ pub(super) struct EnergyFields {
 
 impl EnergyFields {
     /// Into `out`, for a body of so many slots, all zero before.
-    pub fn of(out: &mut PointEnergies, len: usize) -> Self {
+    pub fn of(out: &mut PointEnergiesMut, len: usize) -> Self {
         out.zeros(len);
         EnergyFields {
             strain: Shared(out.strain.as_mut_ptr()),

@@ -1,29 +1,27 @@
-//! Interactions of several bodies side by side: each sweeps over its own bonds, and interfaces over those between two.
-//!
-//! Sweeps want the columns of their own body, so displacements, velocities and forces are copied in and out.
+//! Interactions of several bodies side by side: each sweeps over its own bonds and its own part of the columns, and interfaces over
+//! bonds between two.
 
 mod columns;
 
 use super::interface::{Interface, has_bonds};
-use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, history};
+use super::{
+    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally, Wearing,
+    history,
+};
 use crate::body::several::Piece;
-use crate::body::{Body, Field, Identity, Layout, zeros};
+use crate::body::{Body, FieldView, FieldViewMut, Identity, Layout, view_mut};
 use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::law::BondFactors;
-use crate::spec::CrackKind;
+use crate::spec::{CrackKind, Cycles};
 use crate::state::Archive;
 
-/// One body's bonds and its own columns.
+/// One body's bonds.
 struct Own<const D: usize> {
     /// First slot.
     first: usize,
     /// `None`: loose points.
     bonds: Option<Box<dyn Interaction<D>>>,
-    u: Field<D>,
-    v: Field<D>,
-    f: Field<D>,
-    seen: PointEnergies,
 }
 
 /// Interactions of several bodies, in their order.
@@ -51,10 +49,6 @@ impl<const D: usize> SeveralInteraction<D> {
         let own = pieces(body).iter().zip(bonds).map(|(p, bonds)| Own {
             first: p.first,
             bonds,
-            u: p.body.at_rest(),
-            v: zeros(p.body.len),
-            f: zeros(p.body.len),
-            seen: PointEnergies::default(),
         });
         SeveralInteraction {
             body: body.identity,
@@ -93,31 +87,6 @@ fn pieces<const D: usize>(body: &Body<D>) -> &[Piece<D>] {
     }
 }
 
-fn take<const D: usize>(from: &Field<D>, p: &Piece<D>, to: &mut Field<D>) {
-    for a in 0..D {
-        to[a].copy_from_slice(&from[a][p.range()]);
-    }
-}
-
-/// The displacements of one body.
-fn part<const D: usize>(u: &Field<D>, p: &Piece<D>) -> Field<D> {
-    let mut own = zeros(p.body.len);
-    take(u, p, &mut own);
-    own
-}
-
-fn put(seen: &PointEnergies, first: usize, out: &mut PointEnergies) {
-    let all = [
-        (&seen.strain, &mut out.strain),
-        (&seen.repulsion, &mut out.repulsion),
-        (&seen.dilatation, &mut out.dilatation),
-        (&seen.whole, &mut out.whole),
-    ];
-    for (from, to) in all {
-        to[first..first + from.len()].copy_from_slice(from);
-    }
-}
-
 impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn made_for(&self) -> Identity {
         self.body
@@ -130,10 +99,10 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        mut f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        mut seen: Option<&mut PointEnergies>,
+        mut seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         if let Some(seen) = &mut seen {
             seen.zeros(body.len);
@@ -146,31 +115,22 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 }
                 continue;
             };
-            take(u, p, &mut own.u);
             let sweep = match sweep {
-                Sweep::Evolve { v, steps, release } => {
-                    take(v, p, &mut own.v);
-                    Sweep::Evolve {
-                        v: &own.v,
-                        steps,
-                        release,
-                    }
-                }
+                Sweep::Evolve { v, steps, release } => Sweep::Evolve {
+                    v: p.part(v),
+                    steps,
+                    release,
+                },
                 Sweep::Hold => Sweep::Hold,
             };
-            let watch = seen.is_some().then_some(&mut own.seen);
-            let mut tally = bonds.forces(&p.body, &own.u, &mut own.f, sweep, watch);
+            let mut watch = seen.as_deref_mut().map(|seen| seen.part(p.range()));
+            let into = p.part_mut(view_mut(&mut f));
+            let mut tally = bonds.forces(&p.body, p.part(u), into, sweep, watch.as_mut());
             tally.fault = tally.fault.map(|fault| fault.at(|s| s + p.first));
             total += tally;
-            for a in 0..D {
-                f[a][p.range()].copy_from_slice(&own.f[a]);
-            }
-            if let Some(seen) = &mut seen {
-                put(&own.seen, p.first, seen);
-            }
         }
         for interface in &mut self.interfaces {
-            total += interface.forces(u, f, sweep, seen.as_deref_mut());
+            total += interface.forces(u, view_mut(&mut f), sweep, seen.as_deref_mut());
         }
         total
     }
@@ -213,13 +173,49 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         all
     }
 
-    fn add_stress_across(&mut self, body: &Body<D>, u: &Field<D>, trace: &mut [f64]) -> bool {
+    /// Bonds of interfaces do not wear.
+    fn wearing(&self, body: &Body<D>, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
+        self.check(body, &[u]);
+        let all = self.each(body);
+        let each = all.filter_map(|(p, bonds)| bonds.wearing(&p.body, p.part(u), load));
+        each.reduce(|mut all, more| {
+            all.extend(more);
+            all
+        })
+    }
+
+    fn wear(&mut self, body: &Body<D>, u: FieldView<D>, load: &Cycles, passed: f64) {
+        self.check(body, &[u]);
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                bonds.wear(&p.body, p.part(u), load, passed);
+            }
+        }
+    }
+
+    /// That of the worst.
+    fn asymmetry(&self) -> f64 {
+        let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
+        all.map(|b| b.asymmetry()).fold(0.0, f64::max)
+    }
+
+    /// Of potentials alone: beside them, and in interfaces, may be bonds of solids.
+    fn is_potential(&self) -> bool {
+        let mut all = self.own.iter().filter_map(|o| o.bonds.as_ref()).peekable();
+        self.interfaces.is_empty() && all.peek().is_some() && all.all(|b| b.is_potential())
+    }
+
+    fn has_fans(&self) -> bool {
+        let mut all = self.own.iter().filter_map(|o| o.bonds.as_ref());
+        all.any(|b| b.has_fans())
+    }
+
+    fn add_stress_across(&mut self, body: &Body<D>, u: FieldView<D>, trace: &mut [f64]) -> bool {
         self.check(body, &[u]);
         let mut all = true;
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
-                take(u, p, &mut own.u);
-                all &= bonds.add_stress_across(&p.body, &own.u, &mut trace[p.range()]);
+                all &= bonds.add_stress_across(&p.body, p.part(u), &mut trace[p.range()]);
             }
         }
         all
@@ -232,24 +228,22 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
-    fn shortest(&mut self, body: &Body<D>, u: &Field<D>) -> f64 {
+    fn shortest(&mut self, body: &Body<D>, u: FieldView<D>) -> f64 {
         self.check(body, &[u]);
         let mut least = 1.0f64;
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
-                take(u, p, &mut own.u);
-                least = least.min(bonds.shortest(&p.body, &own.u));
+                least = least.min(bonds.shortest(&p.body, p.part(u)));
             }
         }
         least
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
-                take(u, p, &mut own.u);
-                let [strain, repulsion] = bonds.energy(&p.body, &own.u);
+                let [strain, repulsion] = bonds.energy(&p.body, p.part(u));
                 sum = [sum[0] + strain, sum[1] + repulsion];
             }
         }
@@ -260,25 +254,31 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         sum
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         out.zeros(body.len);
         for (p, bonds) in self.each(body) {
-            let mut seen = PointEnergies::default();
-            bonds.observe(&p.body, &part(u, p), &mut seen);
-            put(&seen, p.first, out);
+            bonds.observe(&p.body, p.part(u), &mut out.part(p.range()));
         }
         for interface in &self.interfaces {
             interface.observe(u, out);
         }
     }
 
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         self.check(body, &[]);
         out.zeros(body.len);
         for (p, bonds) in self.each(body) {
-            let mut seen = PointEnergies::default();
-            bonds.observe_gradient(&p.body, gradient, &mut seen);
-            put(&seen, p.first, out);
+            bonds.observe_gradient(&p.body, gradient, &mut out.part(p.range()));
         }
         for interface in &self.interfaces {
             interface.observe_gradient(gradient, out);
@@ -288,13 +288,12 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
-                take(u, p, &mut own.u);
-                bonds.tangents(&p.body, &own.u, &mut |bond| {
+                bonds.tangents(&p.body, p.part(u), &mut |bond| {
                     visit(BondTangent {
                         i: bond.i + p.first,
                         j: bond.j + p.first,
@@ -311,14 +310,13 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         let mut all = true;
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
-                take(u, p, &mut own.u);
-                all &= bonds.each_force(&p.body, &own.u, &mut |bond| {
+                all &= bonds.each_force(&p.body, p.part(u), &mut |bond| {
                     visit(BondForce {
                         i: bond.i + p.first,
                         j: bond.j + p.first,
@@ -349,7 +347,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.interfaces.iter().map(|i| i.criticals()).collect()
     }
 
-    fn read_column(&self, body: &Body<D>, u: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+    fn read_column(&self, body: &Body<D>, u: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
         self.read_named(body, u, name, out)
     }
 
@@ -391,15 +389,14 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn mend(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> Option<u64> {
         let mut sum = 0;
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
-                take(u, p, &mut own.u);
                 let heals = |i: usize, j: usize, e: f64| heals(i + p.first, j + p.first, e);
-                sum += bonds.mend(&p.body, &own.u, &heals)?;
+                sum += bonds.mend(&p.body, p.part(u), &heals)?;
             }
         }
         for interface in &mut self.interfaces {
@@ -552,11 +549,11 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn bytes(&self) -> usize {
-        let own = |o: &Own<D>| {
-            let columns: usize = [&o.u, &o.v, &o.f].iter().map(|f| 8 * D * f[0].len()).sum();
-            columns + o.bonds.as_ref().map_or(0, |b| b.bytes())
-        };
+        let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
         let between = self.interfaces.iter().map(Interface::bytes);
-        self.own.iter().map(own).chain(between).sum()
+        all.map(|b| b.bytes()).chain(between).sum()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -12,9 +12,9 @@ use super::point_constants::pressure_factor;
 use super::scale::Scale;
 use super::{
     BondForce, BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
-    PointEnergies, Repulsion, Sweep, Tally, Toughness,
+    PointEnergiesMut, Repulsion, Sweep, Tally, Toughness,
 };
-use crate::body::{Body, Column, Field, Identity};
+use crate::body::{Body, Column, FieldView, FieldViewMut, Identity};
 use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
@@ -83,7 +83,7 @@ pub struct StencilInteraction<const D: usize, W: Law> {
 
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
     /// For kernels that only read.
-    fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D, W> {
+    fn view<'a>(&'a self, body: &'a Body<D>, u: FieldView<'a, D>) -> View<'a, D, W> {
         let alive = Seen(self.alive.as_ptr());
         let state = Seen(self.state.as_ptr());
         self.view_of(body, u, alive, state)
@@ -92,7 +92,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     fn view_of<'a>(
         &'a self,
         body: &'a Body<D>,
-        u: &'a Field<D>,
+        u: FieldView<'a, D>,
         alive: Seen<u8>,
         state: Seen<u8>,
     ) -> View<'a, D, W> {
@@ -110,7 +110,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             reach: &self.reach,
             reaches: &self.reaches,
             scale: &self.scale,
-            u: std::array::from_fn(|a| &*u[a]),
+            u,
             fields: [&self.fields[0], &self.fields[1]],
             pressure: &self.pressure,
             repulsion: self.repulsion.as_ref(),
@@ -121,8 +121,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     fn sweep<const FULL: bool>(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         motion: Option<Motion<D>>,
     ) -> Tally {
         let alive = Shared(self.alive.as_mut_ptr());
@@ -152,7 +152,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     }
 
     /// Energies of all points, with `Σ k r0² s` in place of the dilatation and `Σ k r0²` of what is whole.
-    fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    fn sums(&self, body: &Body<D>, u: FieldView<D>, out: &mut PointEnergiesMut) {
         let kernel = Energies {
             view: self.view(body, u),
             fields: Some(EnergyFields::of(out, body.len)),
@@ -178,10 +178,10 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         if let Some(seen) = seen {
             self.sums(body, u, seen);
@@ -228,7 +228,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         total
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         let kernel = Energies {
             view: self.view(body, u),
             fields: None,
@@ -236,7 +236,12 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         self.sums.sum(self.simd, &kernel)
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         self.sums(body, u, out);
         out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
@@ -244,7 +249,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         self.each_tangent(body, u, visit);
@@ -253,14 +258,14 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         self.each_pull(body, u, visit);
         true
     }
 
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+    fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
         self.check(body, &[u]);
         Some(self.virial_of_pulls(body, u))
     }
@@ -280,7 +285,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     fn mend(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> Option<u64> {
         self.check(body, &[u]);
@@ -352,7 +357,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         history::columns(!self.critical.is_empty())
     }
 
-    fn read_column(&self, body: &Body<D>, _: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+    fn read_column(&self, body: &Body<D>, _: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
         self.read_named(body, name, out)
     }
 

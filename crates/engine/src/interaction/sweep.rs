@@ -1,6 +1,6 @@
 //! What a sweep over all bonds may change, and what it reports besides forces.
 
-use crate::body::Field;
+use crate::body::FieldView;
 use crate::execute::lane::Lane;
 use crate::spec::Release;
 use crate::state::words;
@@ -14,7 +14,7 @@ pub enum Sweep<'a, const D: usize> {
     /// with pressures of before; `v` (velocity of the step's middle, images too) and `steps`, the time steps that end
     /// and begin here, say what that costs. The first evaluation of a run ends no step: 0.
     Evolve {
-        v: &'a Field<D>,
+        v: FieldView<'a, D>,
         steps: [f64; 2],
         release: Release,
     },
@@ -24,7 +24,7 @@ pub enum Sweep<'a, const D: usize> {
 /// The motion of a sweep in which bonds break.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Motion<'a, const D: usize> {
-    pub v: &'a Field<D>,
+    pub v: FieldView<'a, D>,
     /// Time steps that end and begin here.
     pub steps: [f64; 2],
     pub release: Release,

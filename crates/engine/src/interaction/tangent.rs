@@ -5,7 +5,7 @@
 //! number of their sums have a [`Channel`] for each sum.
 
 use super::BondForce;
-use crate::body::Field;
+use crate::body::FieldView;
 use crate::law::jet::{self, Jet};
 use crate::law::potential::Potential;
 use crate::law::{BondFactors, Law};
@@ -136,7 +136,7 @@ impl<const D: usize> BondTangent<D> {
     }
 
     /// The same of a linear law, whose bonds store as much at either end.
-    pub(super) fn linear_force(&self, u: &Field<D>) -> BondForce<D> {
+    pub(super) fn linear_force(&self, u: FieldView<D>) -> BondForce<D> {
         let eta: [f64; D] = std::array::from_fn(|a| u[a][self.j] - u[a][self.i]);
         let force = self
             .stiffness

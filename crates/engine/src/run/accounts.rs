@@ -4,6 +4,7 @@ pub(super) mod state;
 
 use super::constitutive::Laws;
 use super::system::System;
+use crate::body::view;
 use crate::condition::driven::Driven;
 use crate::error::RunError;
 use crate::interaction::{BondState, Fault};
@@ -15,7 +16,7 @@ impl<const D: usize> System<D> {
         self.refresh_images();
         let [strain, mut contact] = match self.is_linear() {
             true => self.quadratic_energy(),
-            false => self.interaction.energy(&self.body, &self.u),
+            false => self.interaction.energy(&self.body, view(&self.u)),
         };
         if let Some(pairs) = &mut self.contact {
             pairs.find(&self.body, &self.u, self.interaction.as_ref());

@@ -4,7 +4,7 @@ use super::equilibrium::problem::Problem;
 use super::model::Model;
 use super::system::System;
 use super::{AtomBond, Examined, Families, ModeShape, record};
-use crate::body::zeros;
+use crate::body::{view, view_mut, zeros};
 use crate::condition::load::Load;
 use crate::error::{RunError, SolveError};
 use crate::interaction::Sweep;
@@ -37,7 +37,7 @@ impl<const D: usize> Examined for Model<D> {
             body.fill_images(c);
         }
         let mut f = zeros(body.len);
-        interaction.forces(body, &u, &mut f, Sweep::Hold, None);
+        interaction.forces(body, view(&u), view_mut(&mut f), Sweep::Hold, None);
         body.vectors(&f)
     }
 
@@ -47,13 +47,6 @@ impl<const D: usize> Examined for Model<D> {
 
     fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool {
         self.view().each_force(visit)
-    }
-
-    fn virial(&mut self) -> [f64; 6] {
-        match self.system.watch.virial {
-            Some(virial) => virial,
-            None => self.system.virial_now(),
-        }
     }
 
     fn relax(&mut self, tolerance: f64) -> Result<Solved, RunError> {

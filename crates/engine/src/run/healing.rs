@@ -6,6 +6,7 @@
 pub(super) mod state;
 
 use super::system::System;
+use crate::body::view;
 use crate::error::BuildError;
 use crate::interaction::history;
 use crate::message;
@@ -49,7 +50,7 @@ impl<const D: usize> System<D> {
         refused(spec, healing)?;
         if self
             .interaction
-            .mend(&self.body, &self.u, &|_, _, _| false)
+            .mend(&self.body, view(&self.u), &|_, _, _| false)
             .is_none()
         {
             let message = "bonds of this law remember more than whether they are whole";
@@ -105,9 +106,9 @@ impl<const D: usize> System<D> {
         if !any {
             return false;
         }
-        let [before, _] = self.interaction.energy(body, u);
-        self.interaction.mend(body, u, &heals);
-        let [after, _] = self.interaction.energy(body, u);
+        let [before, _] = self.interaction.energy(body, view(u));
+        self.interaction.mend(body, view(u), &heals);
+        let [after, _] = self.interaction.energy(body, view(u));
         self.accounts.released.lost -= after - before;
         // they conduct again
         self.break_transfers();

@@ -196,7 +196,7 @@ pub struct ModeShape {
 pub enum Prescription {
     /// No step moves them; they keep their velocity.
     Still,
-    /// Where [`Steered::carry`] says before every step.
+    /// Where [`Steered::depart`] is told.
     Carried,
 }
 
@@ -208,6 +208,17 @@ pub enum Watched {
     Virial,
     /// The virial of each point.
     Virials,
+}
+
+/// What an evaluation of forces saw.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Seen {
+    /// Energies and dilatations.
+    Energies(Observed),
+    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), of bonds and repulsion, positive where pairs repel.
+    Virial([f64; 6]),
+    /// Half of the virial of its pairs for each point (energy); their sum is that.
+    Virials(Vec<[f64; 6]>),
 }
 
 /// A wall that points bounce off without loss.
@@ -290,11 +301,11 @@ pub trait Simulation: Steered + Examined + Owner + Send {
 pub trait Steered {
     /// The first half of a step of a model in time: displacements of its end. Until [`Steered::arrive`] the
     /// velocities are those of the step's middle, forces those of its start; values of driven conditions may be set.
-    /// Answers a bound on the path of any point (length).
+    /// Answers a bound on the path of any point (length). `carried`: where the carried points are at the end of the step, in their order.
     ///
     /// # Errors
     /// As for [`Simulation::step`], whose state is left behind then; implicit steps have no halves.
-    fn depart(&mut self) -> Result<f64, RunError>;
+    fn depart(&mut self, carried: &[Motion]) -> Result<f64, RunError>;
     /// The second half of a step: the forces at its end.
     ///
     /// # Errors
@@ -305,8 +316,6 @@ pub trait Steered {
     fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>);
     /// Points that no force moves. Replaces those of the last call for the same way.
     fn prescribe(&mut self, way: Prescription, ids: &[u32]);
-    /// Where the carried points are at the end of the next step, in their order.
-    fn carry(&mut self, next: &[Motion]);
     /// Takes points away for ever: their bonds break without a force, all ids above theirs move down. Driven values must
     /// be set anew before the next forces.
     fn remove(&mut self, ids: &[u32]);
@@ -322,19 +331,15 @@ pub trait Steered {
     /// Keep something of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its forces see it: with the bonds that
     /// break in it. LAMMPS prints these.
     fn watch(&mut self, what: Watched);
-    /// Energies and dilatations that the last force evaluation saw, if it was watched.
-    fn watched(&self) -> Option<Observed>;
-    /// Half of the virial of its pairs for each point, xx yy zz xy xz yz (energy), as [`Examined::virial`]; their sum
-    /// is that.
-    fn virials(&mut self) -> Vec<[f64; 6]>;
+    /// What the last force evaluation saw. One that was not watched left no energies; virials are then those of the current state with the
+    /// bonds that are whole.
+    fn watched(&mut self, what: Watched) -> Option<Seen>;
     /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
     /// order in which they act, after all other forces. Replaces those of the last call.
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]);
-    /// Values of driven condition `index` for the next force evaluation ([`Simulation::start`] or
-    /// [`Simulation::step`]); false if there is no such condition or it is of another kind.
-    fn drive(&mut self, index: usize, value: &Drive) -> bool;
-    /// What driven condition `index` had at the last force evaluation; 0 if it is no indenter.
-    fn reaction(&self, index: usize) -> Reaction;
+    /// Hands driven condition `index` a value for the next force evaluation ([`Simulation::start`] or [`Simulation::step`]), if there is one
+    /// to hand over, and answers what it had at the last. `None`: there is no such condition, or it is of another kind.
+    fn exchange(&mut self, index: usize, value: Option<&Drive>) -> Option<Reaction>;
 }
 
 /// What somebody asks who examines a model: its families, its answers to strains and displacements, equilibria and vibrations.
@@ -353,9 +358,6 @@ pub trait Examined {
     /// Every force of a pair now, seen from each of its points: bonds, repulsion inside families, contact; loads and friction are not
     /// among them. False: a law has no forces of single bonds.
     fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool;
-    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), of bonds and repulsion, positive where pairs
-    /// repel: of the last force evaluation if that was watched, else of the current state with the bonds that are whole.
-    fn virial(&mut self) -> [f64; 6];
     /// Brings the bodies into equilibrium without loads and constraints, from the displacements of now: residual forces fall to
     /// `tolerance` of those at the lattice sites. Velocities stay. Afterwards displacements are those of the relaxed state.
     ///
@@ -385,6 +387,14 @@ impl dyn Simulation + '_ {
         match self.column(name).map(|c| c.values) {
             Some(Values::Scalars(v)) => v,
             _ => vec![],
+        }
+    }
+
+    /// [`Seen::Virial`]: of the last force evaluation if that was watched, else of the current state.
+    pub fn virial(&mut self) -> [f64; 6] {
+        match self.watched(Watched::Virial) {
+            Some(Seen::Virial(virial)) => virial,
+            Some(Seen::Energies(_) | Seen::Virials(_)) | None => [0.0; 6],
         }
     }
 

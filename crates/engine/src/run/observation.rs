@@ -3,6 +3,7 @@
 use super::constitutive::Shelf;
 use super::model::Model;
 use super::system::System;
+use crate::body::view;
 use crate::columns::{Declaration, Life, On};
 use crate::error::BuildError;
 use crate::expression::nearest;
@@ -264,16 +265,18 @@ impl<const D: usize> System<D> {
     pub(super) fn each_pair_force(&mut self, visit: &mut dyn FnMut(BondForce<D>)) -> bool {
         if self.is_linear() {
             let (u, small) = self.made_small();
-            return self.interaction.each_force(&self.body, &u, &mut |bond| {
-                visit(BondForce {
-                    force: bond.force.map(|f| f / small),
-                    own: bond.own.map(|own| own.map(|f| f / small)),
-                    ..bond
+            return self
+                .interaction
+                .each_force(&self.body, view(&u), &mut |bond| {
+                    visit(BondForce {
+                        force: bond.force.map(|f| f / small),
+                        own: bond.own.map(|own| own.map(|f| f / small)),
+                        ..bond
+                    });
                 });
-            });
         }
         let body = &self.body;
-        let known = self.interaction.each_force(body, &self.u, visit);
+        let known = self.interaction.each_force(body, view(&self.u), visit);
         if let Some(contact) = &mut self.contact {
             contact.find(body, &self.u, self.interaction.as_ref());
             contact.central.each_pull(&self.u, |touch| {
@@ -339,7 +342,7 @@ impl<const D: usize> View<'_, D> {
             there = self
                 .system
                 .interaction
-                .each_force(&self.system.body, &rest, &mut |_| {});
+                .each_force(&self.system.body, view(&rest), &mut |_| {});
         }
         (!there).then(|| of.needs.missing())
     }
@@ -439,7 +442,7 @@ impl<const D: usize> View<'_, D> {
         let (body, mut stored) = (&system.body, vec![]);
         if !system
             .interaction
-            .read_column(body, &system.u, name, &mut stored)
+            .read_column(body, view(&system.u), name, &mut stored)
         {
             return None;
         }

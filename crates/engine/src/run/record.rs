@@ -2,6 +2,7 @@
 
 use super::system::System;
 use super::{AtomBond, Families};
+use crate::body::view;
 use crate::interaction::{BondState, PointEnergies};
 use crate::space::full;
 
@@ -34,9 +35,11 @@ pub(super) fn count_families<const D: usize>(system: &System<D>) -> Families {
 pub(super) fn strained<const D: usize>(system: &System<D>, strain: [[f64; 3]; 3]) -> Vec<f64> {
     let gradient: [[f64; D]; D] = std::array::from_fn(|a| std::array::from_fn(|b| strain[a][b]));
     let mut out = PointEnergies::default();
-    system
-        .interaction
-        .observe_gradient(&system.body, &gradient, &mut out);
+    system.interaction.observe_gradient(
+        &system.body,
+        &gradient,
+        &mut out.for_slots(system.body.len),
+    );
     system.body.by_id(|i| out.strain[i])
 }
 
@@ -51,26 +54,28 @@ pub(super) fn bonds_of_atoms<const D: usize>(
     system.refresh_images();
     let id = system.body.ids_by_slot();
     let body = &system.body;
-    system.interaction.tangents(body, &system.u, &mut |bond| {
-        let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
-        let q = square(&bond.y);
-        let along: f64 = (0..D)
-            .map(|a| {
-                (0..D)
-                    .map(|b| bond.y[a] * bond.stiffness[a][b] * bond.y[b])
-                    .sum::<f64>()
-            })
-            .sum();
-        // tangents are force densities
-        let volume = body.volume.at(bond.i);
-        visit(AtomBond {
-            from: id[bond.i],
-            to: id[bond.j],
-            xi: full(&bond.y),
-            tension: volume * bond.tension,
-            stiffness: volume * along / q,
-            share: (0..D).map(|a| bond.share[a] * bond.y[a]).sum::<f64>() / q.sqrt(),
+    system
+        .interaction
+        .tangents(body, view(&system.u), &mut |bond| {
+            let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+            let q = square(&bond.y);
+            let along: f64 = (0..D)
+                .map(|a| {
+                    (0..D)
+                        .map(|b| bond.y[a] * bond.stiffness[a][b] * bond.y[b])
+                        .sum::<f64>()
+                })
+                .sum();
+            // tangents are force densities
+            let volume = body.volume.at(bond.i);
+            visit(AtomBond {
+                from: id[bond.i],
+                to: id[bond.j],
+                xi: full(&bond.y),
+                tension: volume * bond.tension,
+                stiffness: volume * along / q,
+                share: (0..D).map(|a| bond.share[a] * bond.y[a]).sum::<f64>() / q.sqrt(),
+            });
         });
-    });
     Some(system.body.by_id(|i| system.interaction.gain(i)))
 }

@@ -4,6 +4,7 @@
 //! show. A bond that is whole adds nothing, so that a body where nothing broke costs a walk over its bonds.
 
 use super::system::System;
+use crate::body::view;
 use crate::columns::{Life, On};
 use crate::interaction::history;
 use crate::observe::state_hash::{Words, hash_of_name};
@@ -102,16 +103,14 @@ fn hash_of_state<const D: usize>(system: &System<D>) -> u64 {
 
 /// Of each block, all that its points remember.
 fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
-    let mut columns: Vec<(Cow<str>, Owner)> = vec![
+    let mut columns: Vec<(Cow<'static, str>, Owner)> = vec![
         ("displacement".into(), Owner::Displacement),
         ("velocity".into(), Owner::Velocity),
         ("force_density".into(), Owner::Force),
     ];
     let spread = system.transfer_columns().into_iter();
     columns.extend(spread.map(|c| (c.name, Owner::Transfer)));
-    let declared = system.interaction.columns().into_iter();
-    let declared = declared.filter(|c| c.life == Life::Persistent && c.on == On::Points);
-    columns.extend(declared.map(|c| (c.name, Owner::Law(c.shape.stored(D)))));
+    columns.extend(declared(system, On::Points).map(|(name, each)| (name, Owner::Law(each))));
     columns.sort_by(|a, b| a.0.cmp(&b.0));
 
     let (body, points) = (&system.body, system.body.points());
@@ -139,10 +138,20 @@ fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
     digests
 }
 
-/// A column that the law declares, as it lies.
+/// Columns over points or over bonds that the law declares and that persist, with the numbers of each.
+fn declared<const D: usize>(
+    system: &System<D>,
+    on: On,
+) -> impl Iterator<Item = (Cow<'static, str>, usize)> {
+    let columns = system.interaction.columns().into_iter();
+    let kept = columns.filter(move |c| c.life == Life::Persistent && c.on == on);
+    kept.map(|c| (c.name, c.shape.stored(D)))
+}
+
+/// Such a column, as it lies.
 fn of_law<const D: usize>(system: &System<D>, name: &str) -> Vec<f64> {
     let mut values = vec![];
-    let known = (system.interaction).read_column(&system.body, &system.u, name, &mut values);
+    let known = (system.interaction).read_column(&system.body, view(&system.u), name, &mut values);
     assert!(known, "{name} is declared and cannot be read");
     values
 }
@@ -160,17 +169,13 @@ fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
         bonds.add(whole, [i, j], xi, &[]);
         bonds.add(whole, [j, i], xi.map(|x| -x), &[]);
     });
-    for column in system.interaction.columns() {
-        let kept = column.life == Life::Persistent && column.on == On::Bonds;
-        if !kept || column.name == history::WHOLE {
-            continue;
-        }
-        let hash = hash_of_name(&column.name);
-        let values = of_law(system, &column.name);
-        let mut rows = values.chunks_exact(column.shape.stored(D));
+    for (name, each) in declared(system, On::Bonds).filter(|c| c.0 != history::WHOLE) {
+        let hash = hash_of_name(&name);
+        let values = of_law(system, &name);
+        let mut rows = values.chunks_exact(each);
         system
             .interaction
-            .each_directed(&system.body, &column.name, &mut |i, j, xi| {
+            .each_directed(&system.body, &name, &mut |i, j, xi| {
                 let row = rows.next().expect("a value of each bond");
                 bonds.add(hash, [i, j], xi, row);
             });

@@ -1,13 +1,12 @@
 //! A model that a script leads step by step.
 
 use super::model::Model;
-use super::{Prescription, Steered, Wall, Watched};
+use super::{Prescription, Seen, Steered, Wall, Watched};
 use crate::condition::carried::{Carried, Motion};
 use crate::condition::driven::{Drive, Driven};
 use crate::condition::reaction::Reaction;
 use crate::condition::still::Still;
 use crate::error::{BuildError, RunError, SolveError};
-use crate::observe::Observed;
 use crate::spec::{ConditionSpec, IndenterSpec};
 
 impl<const D: usize> Model<D> {
@@ -24,7 +23,8 @@ impl<const D: usize> Model<D> {
 }
 
 impl<const D: usize> Steered for Model<D> {
-    fn depart(&mut self) -> Result<f64, RunError> {
+    fn depart(&mut self, carried: &[Motion]) -> Result<f64, RunError> {
+        self.system.prescribed.carried.tell(carried);
         match self.stages.now.split() {
             Some(halves) => halves.depart(&mut self.system),
             None => Err(self.has_no_halves()),
@@ -50,10 +50,6 @@ impl<const D: usize> Steered for Model<D> {
             Prescription::Still => prescribed.still = Still::new(slots),
             Prescription::Carried => prescribed.carried = Carried::new(slots),
         }
-    }
-
-    fn carry(&mut self, next: &[Motion]) {
-        self.system.prescribed.carried.tell(next);
     }
 
     fn remove(&mut self, ids: &[u32]) {
@@ -93,17 +89,25 @@ impl<const D: usize> Steered for Model<D> {
         self.system.watch.ask(what);
     }
 
-    fn watched(&self) -> Option<Observed> {
-        let seen = self.system.watch.energies.as_ref();
-        seen.map(|seen| self.system.observed_of(seen))
-    }
-
-    fn virials(&mut self) -> Vec<[f64; 6]> {
-        let points = match &self.system.watch.virials {
-            Some(points) => points.clone(),
-            None => self.system.virials_now(),
-        };
-        self.system.body.by_id(|i| points[i])
+    fn watched(&mut self, what: Watched) -> Option<Seen> {
+        let system = &mut self.system;
+        Some(match what {
+            Watched::Energies => {
+                let seen = system.watch.energies.as_ref()?;
+                Seen::Energies(system.observed_of(seen))
+            }
+            Watched::Virial => Seen::Virial(match system.watch.virial {
+                Some(virial) => virial,
+                None => system.virial_now(),
+            }),
+            Watched::Virials => {
+                let points = match &system.watch.virials {
+                    Some(points) => points.clone(),
+                    None => system.virials_now(),
+                };
+                Seen::Virials(system.body.by_id(|i| points[i]))
+            }
+        })
     }
 
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {
@@ -127,19 +131,9 @@ impl<const D: usize> Steered for Model<D> {
         }
     }
 
-    fn drive(&mut self, index: usize, value: &Drive) -> bool {
-        self.system
-            .applied
-            .driven
-            .get_mut(index)
-            .is_some_and(|d| d.set(value))
-    }
-
-    fn reaction(&self, index: usize) -> Reaction {
-        self.system
-            .applied
-            .driven
-            .get(index)
-            .map_or_else(Reaction::default, Driven::reaction)
+    fn exchange(&mut self, index: usize, value: Option<&Drive>) -> Option<Reaction> {
+        let driven = self.system.applied.driven.get_mut(index)?;
+        let taken = value.is_none_or(|value| driven.set(value));
+        taken.then(|| driven.reaction())
     }
 }

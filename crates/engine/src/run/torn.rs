@@ -1,7 +1,7 @@
 //! Points that a traction tears off before the body has answered: few bonds, and all of the load of a point.
 
 use super::system::System;
-use crate::body::zeros;
+use crate::body::{view, view_mut, zeros};
 use crate::interaction::{BondState, Sweep};
 use crate::law::material::tensor::{inverse, times};
 use crate::message;
@@ -120,7 +120,7 @@ fn push_alone<const D: usize>(system: &mut System<D>, all: &mut [Loaded<D>]) {
             system.body.fill_images(&mut u[a]);
             system
                 .interaction
-                .forces(&system.body, &u, &mut f, Sweep::Hold, None);
+                .forces(&system.body, view(&u), view_mut(&mut f), Sweep::Hold, None);
             for (p, k) in all.iter().zip(&mut stiffness) {
                 (0..D).for_each(|b| k[b][a] -= way * f[b][p.slot] / (2.0 * small));
             }

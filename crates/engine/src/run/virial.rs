@@ -1,6 +1,7 @@
 //! The virial, pair by pair: what a pressure is made of. Slow and plain; no sweep knows of it.
 
 use super::system::System;
+use crate::body::view;
 use crate::interaction::add_virial;
 
 /// Axes of the components of a virial.
@@ -19,7 +20,7 @@ impl<const D: usize> System<D> {
     /// Of bonds and of repulsion inside families; images of `u` must be fresh. Not a number where the law has no forces of
     /// single bonds.
     pub(super) fn virial_of_bonds(&mut self) -> [f64; 6] {
-        let virial = self.interaction.virial(&self.body, &self.u);
+        let virial = self.interaction.virial(&self.body, view(&self.u));
         virial.unwrap_or([f64::NAN; 6])
     }
 
@@ -27,10 +28,12 @@ impl<const D: usize> System<D> {
     /// [`System::virial_of_bonds`].
     pub(super) fn virials_of_bonds(&mut self) -> Vec<[f64; 6]> {
         let (body, mut points) = (&self.body, vec![[0.0; 6]; self.body.len]);
-        let known = self.interaction.each_force(body, &self.u, &mut |bond| {
-            let factor = -0.5 * body.volume.at(bond.i);
-            add_virial(&mut points[bond.i], &bond.force, &bond.y, factor);
-        });
+        let known = self
+            .interaction
+            .each_force(body, view(&self.u), &mut |bond| {
+                let factor = -0.5 * body.volume.at(bond.i);
+                add_virial(&mut points[bond.i], &bond.force, &bond.y, factor);
+            });
         if !known {
             points.fill([f64::NAN; 6]);
         }

@@ -1,6 +1,6 @@
 //! The linear body of any law about any state: tangents of bonds, gathered row by row.
 
-use crate::body::{Body, Field};
+use crate::body::{Body, Field, view};
 use crate::interaction::{BondTangent, Channel, ContactForces, Interaction};
 use crate::spec::{LinearBody, add_alike};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ pub fn linear_body_touching<const D: usize>(
         (bond.i, bond.j) = (id[bond.i] as usize, id[bond.j] as usize);
         bonds.push(&bond);
     };
-    interaction.tangents(body, u, &mut push);
+    interaction.tangents(body, view(u), &mut push);
     if let Some(contact) = contact {
         contact.tangents(body, u, &mut push);
     }

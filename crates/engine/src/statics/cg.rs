@@ -1,32 +1,11 @@
 //! Conjugate gradients with blocks of the diagonal as preconditioner; every sum has a fixed order.
 
+use super::goal::Goal;
 use super::operator::LinearOperator;
 use super::solved::Solved;
 use super::support::Support;
 use super::vectors::{add, add_to_multiple, dot, norm};
 use crate::error::SolveError;
-
-/// When to stop.
-#[derive(Debug, Clone, Copy)]
-pub struct Goal {
-    /// Residual over the residual of the start.
-    pub tolerance: f64,
-    pub most_iterations: usize,
-    /// Asked in every iteration: has somebody had enough?
-    pub stop: fn() -> bool,
-}
-
-impl Goal {
-    /// # Errors
-    /// Somebody has had enough.
-    pub fn go_on(&self) -> Result<(), SolveError> {
-        if (self.stop)() {
-            Err(SolveError::Stopped)
-        } else {
-            Ok(())
-        }
-    }
-}
 
 /// Solves `A x = b` (force) on the free components; held ones keep their `x`.
 ///
@@ -86,11 +65,7 @@ pub fn solve<const D: usize>(
         add_to_multiple(&mut p, next / rz, &z);
         rz = next;
     }
-    Err(SolveError::NotConverged {
-        iterations: goal.most_iterations,
-        residual: norm(&r) / start,
-        tolerance: goal.tolerance,
-    })
+    Err(goal.missed(goal.most_iterations, norm(&r) / start))
 }
 
 /// Inverses of the diagonal's blocks on the free components.

@@ -4,9 +4,9 @@
 //! minimization in atomistic simulations and its implementation in LAMMPS, Comput. Mater. Sci. 175, 109584).
 
 use super::Solved;
-use super::cg::Goal;
+use super::goal::{Goal, Left};
 use super::support::Support;
-use super::vectors::{add, dot, norm};
+use super::vectors::{add, dot};
 use crate::error::SolveError;
 
 /// Numbers of Guénolé et al., Table 2: steps downhill before the step grows, by what it grows and shrinks, how much velocities are turned at
@@ -20,8 +20,6 @@ const FADES: f64 = 0.99;
 const FIRST: f64 = 0.25;
 const LONGEST: f64 = 1.0;
 const SHORTEST: f64 = 0.01;
-/// Loads and reactions of this part of the greatest residual are none.
-const UNLOADED: f64 = 1e-6;
 
 /// Moves `x` until `force(x)` vanishes on the free components; masses, `force` and the errors are those of
 /// [`relax`](super::relaxation::relax).
@@ -38,7 +36,7 @@ pub fn minimize<const D: usize>(
     let mut f = vec![[0.0; D]; x.len()];
     let mut v = f.clone();
     let (mut step, mut turned, mut downhill) = (FIRST, TURNED, 0);
-    let (mut residual, mut most) = (f64::INFINITY, 0.0f64);
+    let mut left = Left::unknown();
     for iteration in 0..=goal.most_iterations {
         goal.go_on()?;
         let Some(scale) = force(x, &mut f, &mut mass) else {
@@ -46,18 +44,10 @@ pub fn minimize<const D: usize>(
             continue;
         };
         support.mask(&mut f);
-        let size = norm(&f);
-        if !size.is_finite() {
-            return Err(SolveError::NotFinite);
-        }
-        // where nothing bears a load in the end, what is left is compared with what moved the points
-        most = most.max(size);
-        let scale = scale.max(UNLOADED * most);
-        residual = if scale > 0.0 { size / scale } else { size };
-        if residual <= goal.tolerance || size == 0.0 {
+        if goal.is_reached(&mut left, &f, scale)? {
             return Ok(Solved {
                 iterations: iteration,
-                residual,
+                residual: left.residual,
             });
         }
         if dot(&f, &v) > 0.0 {
@@ -78,11 +68,7 @@ pub fn minimize<const D: usize>(
         push(&mut v, &f, &mass, step, turned);
         add(x, step, &v);
     }
-    Err(SolveError::NotConverged {
-        iterations: goal.most_iterations,
-        residual,
-        tolerance: goal.tolerance,
-    })
+    Err(goal.missed(goal.most_iterations, left.residual))
 }
 
 /// Velocities after a step, turned toward the accelerations: `v ← (1 − α) v + α a |v|/|a|`, sizes by masses.

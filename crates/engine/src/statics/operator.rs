@@ -2,7 +2,7 @@
 
 use super::support::Support;
 use super::vectors::{Block, dot, norm};
-use crate::body::{Body, Field, zeros};
+use crate::body::{Body, Field, view, view_mut, zeros};
 use crate::interaction::{Interaction, Sweep};
 use crate::spec::LinearBody;
 use rayon::prelude::*;
@@ -165,8 +165,13 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
         for c in &mut self.u {
             body.fill_images(c);
         }
-        self.interaction
-            .forces(body, &self.u, &mut self.f, Sweep::Hold, None);
+        self.interaction.forces(
+            body,
+            view(&self.u),
+            view_mut(&mut self.f),
+            Sweep::Hold,
+            None,
+        );
         for (y, &s) in y.iter_mut().zip(&body.slots) {
             let s = s as usize;
             let scale = -body.volume.at(s) / small;
@@ -179,7 +184,7 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
         let body = self.body;
         let mut sum = vec![[[0.0; D]; D]; body.len];
         self.interaction
-            .tangents(body, &body.at_rest(), &mut |bond| {
+            .tangents(body, view(&body.at_rest()), &mut |bond| {
                 for a in 0..D {
                     for b in 0..D {
                         sum[bond.i][a][b] += body.volume.at(bond.i) * bond.stiffness[a][b];

@@ -1,14 +1,11 @@
 //! Adaptive dynamic relaxation: a damped motion with made-up masses that ends in equilibrium, whatever the law (Underwood 1983;
 //! for peridynamics Kilic & Madenci 2010).
 
-use super::cg::Goal;
+use super::goal::{Goal, Left};
 use super::solved::Solved;
 use super::support::Support;
-use super::vectors::{add, dot, norm};
+use super::vectors::{add, dot};
 use crate::error::SolveError;
-
-/// Loads and reactions of this part of the greatest residual are none.
-const UNLOADED: f64 = 1e-6;
 
 /// Stiffness over mass (of a step of 1) above which a step leads away: what is stable to 4 has met more than its masses bear.
 const BEARS: f64 = 3.6;
@@ -36,7 +33,7 @@ pub fn relax<const D: usize>(
     let mut before = f.clone();
     let mut v = f.clone();
     let mut moved = f.clone();
-    let (mut residual, mut most) = (f64::INFINITY, 0.0f64);
+    let mut left = Left::unknown();
     // where the least was left
     let mut least = (f64::INFINITY, if path { x.to_vec() } else { vec![] });
     for iteration in 0..=goal.most_iterations {
@@ -48,18 +45,10 @@ pub fn relax<const D: usize>(
             continue;
         };
         support.mask(&mut f);
-        let size = norm(&f);
-        if !size.is_finite() {
-            return Err(SolveError::NotFinite);
-        }
-        // where nothing bears a load in the end, what is left is compared with what moved the points
-        most = most.max(size);
-        let scale = scale.max(UNLOADED * most);
-        residual = if scale > 0.0 { size / scale } else { size };
-        if residual <= goal.tolerance || size == 0.0 {
+        if goal.is_reached(&mut left, &f, scale)? {
             return Ok(Solved {
                 iterations: iteration,
-                residual,
+                residual: left.residual,
             });
         }
         // Rayleigh's quotient of what has moved, with the stiffness that the last step met
@@ -78,11 +67,11 @@ pub fn relax<const D: usize>(
             }
             // what has led away counts for nothing
             x.copy_from_slice(&least.1);
-            most = 0.0;
+            left.most = 0.0;
             continue;
         }
-        if path && size < least.0 {
-            least.0 = size;
+        if path && left.size < least.0 {
+            least.0 = left.size;
             least.1.copy_from_slice(x);
         }
         let weight: f64 = moved
@@ -113,11 +102,7 @@ pub fn relax<const D: usize>(
         add(&mut moved, 1.0, &v);
         std::mem::swap(&mut before, &mut f);
     }
-    Err(SolveError::NotConverged {
-        iterations: goal.most_iterations,
-        residual,
-        tolerance: goal.tolerance,
-    })
+    Err(goal.missed(goal.most_iterations, left.residual))
 }
 
 /// Doubles masses of points that have met more stiffness in the step `v` than theirs bear, if the whole step has: from forces `before` to `after`.

@@ -2,8 +2,7 @@
 
 use super::{Rows, Touching, Transfer};
 use crate::error::SolveError;
-use crate::statics::cg::{self, Goal};
-use crate::statics::{LinearOperator, Support, norm};
+use crate::statics::{Goal, LinearOperator, Support, cg, norm};
 
 /// Rounds of Newton's method; radiation alone needs more than one.
 const ROUNDS: usize = 50;

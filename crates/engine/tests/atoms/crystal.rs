@@ -3,7 +3,7 @@
 use crate::sample::*;
 use peridyne::execute::simd::Simd;
 use peridyne::expression::Expression;
-use peridyne::run::{Options, Simulation, Watched, build};
+use peridyne::run::{Options, Seen, Simulation, Watched, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 
@@ -212,7 +212,10 @@ fn watched_energies_are_the_observed_ones() {
             let fresh = sim.scalars("energy_density");
             sim.watch(Watched::Energies);
             sim.start(true);
-            let seen = sim.watched().unwrap().strain;
+            let Some(Seen::Energies(seen)) = sim.watched(Watched::Energies) else {
+                panic!("{name}, {family:?}");
+            };
+            let seen = seen.strain;
             assert_eq!(seen, sim.scalars("energy_density"), "{name}, {family:?}");
             let scale = seen.iter().fold(0.0f64, |m, e| m.max(e.abs()));
             for (x, y) in seen.iter().zip(&fresh) {

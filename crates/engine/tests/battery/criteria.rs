@@ -527,6 +527,83 @@ fn a_bar_lasts_as_its_line_says() {
     assert_eq!((endures.cycles(), endures.broken()), (Some(0.0), 0));
 }
 
+/// Two bars side by side wear in the same cycles: while the bonds of the one that is stretched more wear out, those of the other lose their part,
+/// and last as long as if they were alone.
+#[test]
+fn bodies_side_by_side_wear_in_the_same_cycles() {
+    let (a, m, strains) = (1e6, 3.0, [4e-3f64, 3e-3]);
+    let starts = [0.0, 40.0];
+    let mut spec = block(1, [20, 1, 1], LawSpec::Pmb(PmbStiffness::Young(1.0)));
+    let piece = |start: f64| {
+        let body = BodySpec::Lattice {
+            kind: LatticeKind::Chain,
+            spacing: 1.0,
+            origin: [start + 0.5, 0.0, 0.0],
+            region: Region::Block {
+                low: [start, 0.0, 0.0],
+                high: [start + 20.0, 0.0, 0.0],
+            },
+            perturb: None,
+        };
+        PieceSpec::new(format!("from {start}"), body)
+    };
+    spec.body = BodySpec::Several(starts.map(piece).to_vec());
+    spec.materials[0].fracture = Some(FractureSpec {
+        fatigue: Some(FatigueSpec {
+            nucleation: Some([a, m]),
+            limit: 0.0,
+            growth: None,
+            crack: 0.35,
+        }),
+        ..FractureSpec::new(Criterion::Stretch(1.0))
+    });
+    for (start, strain) in starts.into_iter().zip(strains) {
+        for end in [0.0, 17.0] {
+            let name = format!("end at {}", start + end);
+            spec.sets.push(SetSpec {
+                name: name.clone(),
+                members: Members::Region(Region::Block {
+                    low: [start + end, -1.0, -1.0],
+                    high: [start + end + 3.0, 1.0, 1.0],
+                }),
+            });
+            let there = Some(e(&format!("{strain}*(x - {start})")));
+            spec.loading.conditions.push(ConditionSpec {
+                set: name,
+                kind: ConditionKind::Displacement([there, None, None]),
+            });
+        }
+    }
+    spec.run.schedule.steps = 2;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
+        method: Method::Newton,
+        cycles: Some(Cycles {
+            load_ratio: 0.0,
+            bonds: 1,
+            most: f64::INFINITY,
+        }),
+        ..Statics::default()
+    });
+    let mut sim = started(&spec);
+    for _ in 0..2 {
+        sim.step().unwrap();
+    }
+    // N = 1/(A ε^m) of the first; of the second is left 1 − (ε₂/ε₁)^m
+    let [first, second] = strains.map(|strain| 1.0 / (a * strain.powf(m)));
+    let found = sim.cycles().unwrap();
+    assert!((found / first - 1.0).abs() < 1e-9, "{found} {first}");
+    let (whole, life) = (sim.scalars("whole"), sim.scalars("remaining_life"));
+    let half = whole.len() / 2;
+    assert!(half > 0 && life.len() == whole.len());
+    for n in 0..half {
+        assert_eq!((whole[n], life[n]), (0.0, 0.0), "{n}");
+        let left = life[half + n];
+        assert_eq!(whole[half + n], 1.0, "{n}");
+        assert!((left - (1.0 - first / second)).abs() < 1e-9, "{n}: {left}");
+    }
+}
+
 /// Bonds that are worn out are the same ones, whatever the number of threads; so are those that break by their work.
 #[test]
 fn criteria_have_the_same_bits_on_any_number_of_threads() {

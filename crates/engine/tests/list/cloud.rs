@@ -1,7 +1,7 @@
 //! Clouds without order: the textbook's formulas, and families at the horizon.
 
 use crate::case::*;
-use peridyne::body::{Body, zeros};
+use peridyne::body::{Body, view, view_mut, zeros};
 use peridyne::execute::simd::Simd;
 use peridyne::family::horizon::HorizonList;
 use peridyne::interaction::list::{ListInteraction, ListParts};
@@ -138,10 +138,10 @@ fn textbook<const D: usize>() {
         let mut f = zeros(body.len());
         law.forces(
             &body,
-            &field,
-            &mut f,
+            view(&field),
+            view_mut(&mut f),
             Sweep::Evolve {
-                v: &zeros(body.len()),
+                v: view(&zeros(body.len())),
                 steps: [0.0; 2],
                 release: Release::AfterForce,
             },
@@ -189,7 +189,7 @@ fn textbook<const D: usize>() {
     };
     lps.prepare(&body);
     let mut seen = PointEnergies::default();
-    lps.observe(&body, &field, &mut seen);
+    lps.observe(&body, view(&field), &mut seen.for_slots(body.len()));
     close("dilatation", &theta, &by_id(&body, &seen.dilatation), 1e-12);
 }
 
@@ -220,10 +220,10 @@ fn a_body_at_rest_has_exactly_no_force() {
     for _ in 0..2 {
         it.forces(
             &body,
-            &body.at_rest(),
-            &mut f,
+            view(&body.at_rest()),
+            view_mut(&mut f),
             Sweep::Evolve {
-                v: &zeros(body.len()),
+                v: view(&zeros(body.len())),
                 steps: [0.0; 2],
                 release: Release::AfterForce,
             },
@@ -232,7 +232,12 @@ fn a_body_at_rest_has_exactly_no_force() {
         assert!(f.iter().flatten().all(|f| *f == 0.0));
     }
     let mut critical = vec![];
-    assert!(it.read_column(&body, &body.at_rest(), "critical_stretch", &mut critical));
+    assert!(it.read_column(
+        &body,
+        view(&body.at_rest()),
+        "critical_stretch",
+        &mut critical
+    ));
     assert!((critical[0] - 0.1).abs() < 1e-16);
 }
 

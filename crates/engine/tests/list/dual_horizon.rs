@@ -614,3 +614,85 @@ fn stress_flow_and_rates_break_alike_at_every_horizon() {
         assert_eq!(one, broken(4.6, Some("2.3")), "{law:?} {fracture:?}");
     }
 }
+
+/// A notched plate under cycles of load: cycles after each increment, bonds that are broken then, and what is left of all lives, in order of size.
+fn worn(longest: f64, own: Option<&str>) -> (Vec<f64>, Vec<u64>, Vec<f64>) {
+    let law = LawSpec::Lps(Moduli {
+        young: 1.0,
+        poisson: 0.3,
+    });
+    let mut spec = with_law(solid(&[18.0, 10.0], longest, own), &law);
+    spec.materials[0].fracture = Some(FractureSpec {
+        fatigue: Some(FatigueSpec {
+            nucleation: Some([1e5, 3.0]),
+            limit: 1e-3,
+            growth: Some([1e6, 3.0]),
+            crack: 0.35,
+        }),
+        ..FractureSpec::new(Criterion::Stretch(1.0))
+    });
+    spec.damage.precracks = vec![PrecrackSpec {
+        shape: CrackShape::Segment {
+            from: [-1.0, 5.5, 0.0],
+            to: [6.5, 5.5, 0.0],
+        },
+        kind: CrackKind::Broken,
+    }];
+    for (name, y, way, u) in [("low", 1.1, 1.0, "0"), ("high", 8.9, -1.0, "0.02")] {
+        spec.sets.push(SetSpec {
+            name: name.into(),
+            members: Members::Region(Region::HalfSpace {
+                point: [0.0, y, 0.0],
+                normal: [0.0, way, 0.0],
+            }),
+        });
+        spec.loading.conditions.push(ConditionSpec {
+            set: name.into(),
+            kind: ConditionKind::Displacement([text("0"), text(u), None]),
+        });
+    }
+    spec.run.schedule.steps = 7;
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
+        method: Method::Newton,
+        tolerance: 1e-11,
+        cycles: Some(Cycles {
+            load_ratio: 0.1,
+            bonds: 4,
+            most: f64::INFINITY,
+        }),
+        ..Statics::default()
+    });
+    let mut sim = started(&spec);
+    let (mut cycles, mut broken) = (vec![], vec![]);
+    for _ in 0..7 {
+        sim.step().unwrap();
+        cycles.push(sim.cycles().unwrap());
+        broken.push(sim.broken());
+    }
+    let mut lives = sim.scalars("remaining_life");
+    lives.sort_by(f64::total_cmp);
+    (cycles, broken, lives)
+}
+
+/// Cycles wear bonds by their stretch alone, which knows no horizon: a crack grows as in a body of the one horizon that all points have.
+#[test]
+fn bonds_live_as_long_at_every_horizon() {
+    let (cycles, broken, lives) = worn(2.3, None);
+    assert!(cycles.is_sorted() && cycles[1] > 0.0, "{cycles:?}");
+    assert!(broken[6] >= broken[0] + 40, "{broken:?}");
+    assert!(lives.iter().any(|l| *l > 0.1 && *l < 0.9));
+    for longest in [2.3, 4.6] {
+        let own = worn(longest, Some("2.3"));
+        assert_eq!(broken, own.1, "{longest}");
+        for (one, own) in [(&cycles, &own.0), (&lives, &own.2)] {
+            assert_eq!(one.len(), own.len(), "{longest}");
+            for (a, b) in one.iter().zip(own) {
+                assert!(
+                    (a - b).abs() <= 1e-7 * a.abs().max(1e-2),
+                    "{longest}: {a} {b}"
+                );
+            }
+        }
+    }
+}

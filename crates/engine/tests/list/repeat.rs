@@ -2,7 +2,7 @@
 
 use crate::allocations;
 use crate::case::*;
-use peridyne::body::zeros;
+use peridyne::body::{view, view_mut, zeros};
 use peridyne::execute::simd::Simd;
 use peridyne::family::horizon::HorizonList;
 use peridyne::interaction::pairs::{BondConstants, BondTable};
@@ -42,10 +42,10 @@ fn trace_of_pairs<W: Law>(
             let u = displace(&body, case.amplitude * (step as f64 + 0.05), step);
             let tally = it.forces(
                 &body,
-                &u,
-                &mut f,
+                view(&u),
+                view_mut(&mut f),
                 Sweep::Evolve {
-                    v: &displace(&body, case.amplitude, step + 7),
+                    v: view(&displace(&body, case.amplitude, step + 7)),
                     steps: [0.3; 2],
                     release: [Release::AfterForce, Release::AtOnce][step as usize % 2],
                 },
@@ -55,7 +55,7 @@ fn trace_of_pairs<W: Law>(
             bits.extend([tally.broken, tally.released.lost.to_bits()]);
             bits.extend(f.iter().flatten().map(|x| x.to_bits()));
             let mut seen = PointEnergies::default();
-            it.observe(&body, &u, &mut seen);
+            it.observe(&body, view(&u), &mut seen.for_slots(body.len()));
             bits.extend(seen.strain.iter().map(|x| x.to_bits()));
             let (alive, critical) = it.memory();
             bits.extend(alive.iter().map(|b| *b as u64));
@@ -139,13 +139,13 @@ fn forces_allocate_nothing_and_a_bond_takes_eight_bytes() {
         let u = displace(&body, case.amplitude, 3);
         let still = zeros(body.len());
         let evolve = Sweep::Evolve {
-            v: &still,
+            v: view(&still),
             steps: [0.0; 2],
             release: Release::AfterForce,
         };
-        it.forces(&body, &u, &mut f, evolve, None);
+        it.forces(&body, view(&u), view_mut(&mut f), evolve, None);
         let before = allocations();
-        it.forces(&body, &u, &mut f, evolve, None);
+        it.forces(&body, view(&u), view_mut(&mut f), evolve, None);
         assert_eq!(allocations(), before);
     });
 }
@@ -210,16 +210,19 @@ fn a_table_of_equal_pairs_is_the_law() {
             let u = displace(&body, case.amplitude * (step as f64 + 0.05), step);
             let v = displace(&body, case.amplitude, step + 7);
             let evolve = Sweep::Evolve {
-                v: &v,
+                v: view(&v),
                 steps: [0.3; 2],
                 release: Release::AtOnce,
             };
             let mut f = (zeros(body.len()), zeros(body.len()));
-            let a = plain.forces(&body, &u, &mut f.0, evolve, None);
-            let b = paired.forces(&body, &u, &mut f.1, evolve, None);
+            let a = plain.forces(&body, view(&u), view_mut(&mut f.0), evolve, None);
+            let b = paired.forces(&body, view(&u), view_mut(&mut f.1), evolve, None);
             assert_eq!(a.broken, b.broken);
             assert!((a.released.lost - b.released.lost).abs() <= 1e-12 * a.released.lost.abs());
-            let (all, energy) = (plain.energy(&body, &u), paired.energy(&body, &u));
+            let (all, energy) = (
+                plain.energy(&body, view(&u)),
+                paired.energy(&body, view(&u)),
+            );
             assert!((all[0] - energy[0]).abs() <= 1e-13 * all[0]);
             for axis in 0..3 {
                 let (a, b) = (by_id(&body, &f.0[axis]), by_id(&body, &f.1[axis]));

@@ -1,7 +1,7 @@
 //! A list over the points of a lattice is the lattice's stencil.
 
 use crate::case::*;
-use peridyne::body::{Body, Field, zeros};
+use peridyne::body::{Body, Field, view, view_mut, zeros};
 use peridyne::execute::simd::Simd;
 use peridyne::family::volume_fraction;
 use peridyne::interaction::stencil::{StencilInteraction, StencilParts};
@@ -42,9 +42,15 @@ fn watching_changes_nothing<const D: usize>(
 ) {
     let (mut f, mut g) = (zeros(body.len()), zeros(body.len()));
     let (mut seen, mut observed) = (PointEnergies::default(), PointEnergies::default());
-    it.forces(body, u, &mut f, Sweep::Hold, None);
-    it.observe(body, u, &mut observed);
-    it.forces(body, u, &mut g, Sweep::Hold, Some(&mut seen));
+    it.forces(body, view(u), view_mut(&mut f), Sweep::Hold, None);
+    it.observe(body, view(u), &mut observed.for_slots(body.len()));
+    it.forces(
+        body,
+        view(u),
+        view_mut(&mut g),
+        Sweep::Hold,
+        Some(&mut seen.for_slots(body.len())),
+    );
     for a in 0..D {
         assert!(by_id(body, &f[a]) == by_id(body, &g[a]), "axis {a}");
     }
@@ -106,10 +112,10 @@ fn same_as_stencil<const D: usize, W: Law>(
         watching_changes_nothing(&mut list, &cloud, &u.1);
         let a = stencil.forces(
             &body,
-            &u.0,
-            &mut f.0,
+            view(&u.0),
+            view_mut(&mut f.0),
             Sweep::Evolve {
-                v: &displace(&body, case.amplitude, step + 7),
+                v: view(&displace(&body, case.amplitude, step + 7)),
                 steps: [0.3; 2],
                 release,
             },
@@ -117,10 +123,10 @@ fn same_as_stencil<const D: usize, W: Law>(
         );
         let b = list.forces(
             &cloud,
-            &u.1,
-            &mut f.1,
+            view(&u.1),
+            view_mut(&mut f.1),
             Sweep::Evolve {
-                v: &displace(&cloud, case.amplitude, step + 7),
+                v: view(&displace(&cloud, case.amplitude, step + 7)),
                 steps: [0.3; 2],
                 release,
             },
@@ -135,8 +141,8 @@ fn same_as_stencil<const D: usize, W: Law>(
         total += b;
 
         let mut seen = (PointEnergies::default(), PointEnergies::default());
-        stencil.observe(&body, &u.0, &mut seen.0);
-        list.observe(&cloud, &u.1, &mut seen.1);
+        stencil.observe(&body, view(&u.0), &mut seen.0.for_slots(body.len()));
+        list.observe(&cloud, view(&u.1), &mut seen.1.for_slots(cloud.len()));
         for (what, a, b) in [
             ("strain", &seen.0.strain, &seen.1.strain),
             ("repulsion", &seen.0.repulsion, &seen.1.repulsion),
@@ -148,16 +154,16 @@ fn same_as_stencil<const D: usize, W: Law>(
         assert_eq!(repelled, case.repulsion.is_some());
         // what single bonds do adds up to what all do
         let mut held = (zeros(body.len()), zeros(cloud.len()));
-        stencil.forces(&body, &u.0, &mut held.0, Sweep::Hold, None);
-        list.forces(&cloud, &u.1, &mut held.1, Sweep::Hold, None);
+        stencil.forces(&body, view(&u.0), view_mut(&mut held.0), Sweep::Hold, None);
+        list.forces(&cloud, view(&u.1), view_mut(&mut held.1), Sweep::Hold, None);
         let mut summed = (zeros(body.len()), zeros(cloud.len()));
         let add = |sum: &mut Field<D>, bond: BondForce<D>| {
             for a in 0..D {
                 sum[a][bond.i] += bond.force[a];
             }
         };
-        assert!(stencil.each_force(&body, &u.0, &mut |bond| add(&mut summed.0, bond)));
-        assert!(list.each_force(&cloud, &u.1, &mut |bond| add(&mut summed.1, bond)));
+        assert!(stencil.each_force(&body, view(&u.0), &mut |bond| add(&mut summed.0, bond)));
+        assert!(list.each_force(&cloud, view(&u.1), &mut |bond| add(&mut summed.1, bond)));
         for axis in 0..D {
             let (a, b) = (by_id(&body, &summed.0[axis]), by_id(&body, &held.0[axis]));
             close("forces of the stencil's bonds", &a, &b, 1e-12);
@@ -171,8 +177,8 @@ fn same_as_stencil<const D: usize, W: Law>(
         close("damage", &a, &b, 1e-14);
         let mut critical = [vec![], vec![]];
         let known = [
-            stencil.read_column(&body, &u.0, "critical_stretch", &mut critical[0]),
-            list.read_column(&cloud, &u.1, "critical_stretch", &mut critical[1]),
+            stencil.read_column(&body, view(&u.0), "critical_stretch", &mut critical[0]),
+            list.read_column(&cloud, view(&u.1), "critical_stretch", &mut critical[1]),
         ];
         assert_eq!(known[0], known[1]);
         for (g, c) in body.slots().iter().zip(cloud.slots()) {

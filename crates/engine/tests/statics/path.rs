@@ -22,9 +22,18 @@ fn softening(critical: f64) -> MaterialSpec {
 
 /// A chain of 40 bonds of which the one in the middle softens, from a stretch of 0.01 to 0.05: the others are elastic, so all is known.
 fn chain(increments: u64, opening: f64) -> Spec {
+    chains(1, increments, opening)
+}
+
+/// So many of them beside each other, bonded across and through periodic faces; none moves across.
+fn chains(rows: usize, increments: u64, opening: f64) -> Spec {
     let law = LawSpec::Pmb(PmbStiffness::Young(1.0));
-    let mut spec = block([40.0, 0.0, 0.0], 1, law);
+    let mut spec = block([40.0, rows as f64 - 1.0, 0.0], rows.min(2), law);
     spec.bonds.horizon = Horizon::Ratio(1);
+    if rows > 1 {
+        spec.space.periodic[1] = Some(rows as f64);
+        hold(&mut spec, "all", [None, number(0.0), None]);
+    }
     let part = |name: &str, condition: &str| SetSpec {
         name: name.into(),
         members: Members::Where(text(condition).unwrap()),
@@ -86,6 +95,96 @@ fn a_softening_bond_takes_its_load_back_and_so_does_the_chain() {
     assert_eq!(sim.broken(), 0);
     let off = ledger.residual().abs() / ledger.dissipated;
     assert!(off < 1e-9, "{off:e} {ledger:?}");
+}
+
+/// Six chains whose bonds across, through the faces too, are as long as they were: each follows the path of one, past where the load falls.
+#[test]
+fn rows_bonded_through_periodic_faces_soften_as_one_chain() {
+    let rows = 6;
+    // no increment ends where bonds begin to soften
+    let opening = 0.0012;
+    let mut sim = build(&chains(rows, 1, opening), Options::default()).unwrap();
+    sim.start(true);
+    let x = sim.vectors("reference");
+    let at = |place: f64| {
+        let near = |x: &[f64; 3]| (x[0] - place).abs() < 0.1;
+        let ids = x.iter().enumerate().filter(|(_, x)| near(x));
+        ids.map(|(id, _)| id).collect::<Vec<_>>()
+    };
+    let bonds = |place: f64| at(place).into_iter().zip(at(place + 1.0));
+    assert_eq!(bonds(20.0).count(), rows);
+    let force = |s: f64| match s > 0.01 {
+        true => 0.01 * (0.05 - s) / 0.04,
+        false => s,
+    };
+    let (mut weak, mut most) = (0.0, 0.0f64);
+    for n in 1..=41 {
+        sim.step().unwrap();
+        let u = sim.displacements();
+        let stretch = |(i, j): (usize, usize)| {
+            assert_eq!((x[i][1], u[i][1], u[j][1]), (x[j][1], 0.0, 0.0));
+            u[j][0] - u[i][0]
+        };
+        let opened: Vec<f64> = bonds(20.0).map(stretch).collect();
+        weak = opened[0];
+        assert!((weak - opening * f64::from(n)).abs() < 1e-5, "{n}: {weak}");
+        let all = 39.0 * force(weak) + weak;
+        assert!((sim.time() - all).abs() < 1e-11, "{n}: {all}");
+        for (opened, elastic) in opened.iter().zip(bonds(3.0).map(stretch)) {
+            assert!((opened - weak).abs() < 1e-11, "{n}: {opened} {weak}");
+            assert!((elastic - force(weak)).abs() < 1e-11, "{n}: {elastic}");
+        }
+        most = most.max(sim.time());
+    }
+    assert!(most > 0.38 && sim.time() < 0.06, "{most} {}", sim.time());
+    // ½ s0 s_c less what the bond would still take, beside 39 elastic bonds and what it gives back, in units of its stiffness
+    let f = force(weak);
+    let exact = 0.05 * (0.01 - f) / (f * (39.0 * f + weak));
+    let ledger = sim.ledger().unwrap();
+    let found = ledger.dissipated / ledger.strain;
+    assert!((found / exact - 1.0).abs() < 1e-6, "{found} {exact}");
+    // by the trapezoidal rule, over the corner of the load: a triangle of 2e-7 beside 2.45e-4
+    assert!(ledger.residual().abs() < 1e-3 * ledger.dissipated);
+}
+
+/// A notched strip that repeats across softens along the same path wherever its faces are.
+#[test]
+fn a_path_does_not_see_periodic_faces() {
+    let strip = |notches: &[[f64; 3]]| {
+        let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+        spec.materials = vec![softening(0.01)];
+        spec.bonds.horizon = Horizon::Ratio(2);
+        spec.space.periodic[1] = Some(8.0);
+        for [x, low, high] in notches {
+            spec.damage.precracks.push(PrecrackSpec {
+                shape: CrackShape::Segment {
+                    from: [*x, *low, 0.0],
+                    to: [*x, *high, 0.0],
+                },
+                kind: CrackKind::Broken,
+            });
+        }
+        hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+        hold(&mut spec, "high", [text("t"), number(0.0), None]);
+        followed(&mut spec, Control::Opening(5e-4), 1e-10);
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        let path = (0..8).map(|_| {
+            sim.step().unwrap();
+            let l = sim.ledger().unwrap();
+            [sim.time(), l.strain, l.dissipated]
+        });
+        path.collect::<Vec<_>>()
+    };
+    let within = strip(&[[20.5, 2.6, 5.4], [12.5, 4.6, 5.4]]);
+    // by half a period: the long one lies across the face
+    let across = strip(&[[20.5, 6.6, 8.6], [20.5, -1.4, 1.4], [12.5, 0.6, 1.4]]);
+    assert!(within[7][2] > 0.0, "{within:?}");
+    for (a, b) in within.iter().zip(&across) {
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() <= 1e-6 * a.abs(), "{within:?} {across:?}");
+        }
+    }
 }
 
 /// Points at (∓1, 0) are held, the one between and 0.3 above them is pushed down: `P = 2 c V² s sin φ`.

@@ -12,7 +12,7 @@ use peridyne::error::RunError;
 use peridyne::observe::Observed;
 use peridyne::observe::Snapshot;
 use peridyne::quantity::rounded;
-use peridyne::run::{Prescription, Simulation, Watched};
+use peridyne::run::{Prescription, Seen, Simulation, Watched};
 use peridyne::state::{Archive, Owner};
 use std::any::Any;
 use std::cell::RefCell;
@@ -113,7 +113,8 @@ impl ModelEngine {
     }
 
     fn keep_watched(&mut self) {
-        if let Some(seen) = self.sim.get_mut().watched() {
+        let seen = self.sim.get_mut().watched(Watched::Energies);
+        if let Some(Seen::Energies(seen)) = seen {
             let energy = self.energy_of(&seen);
             let kept = self.derived.get_mut();
             (kept.energy, kept.dilatation) = (Some(energy), Some(seen.dilatation));
@@ -183,7 +184,7 @@ impl ModelEngine {
             let (Some(place), Some(value)) = (place, value) else {
                 continue;
             };
-            if !sim.drive(*place, &value) {
+            if sim.exchange(*place, Some(&value)).is_none() {
                 return Err(HostError::new("the fixes changed within a run"));
             }
         }
@@ -200,7 +201,12 @@ impl Particles for ModelEngine {
         let mut sim = self.sim.borrow_mut();
         let mut kept = self.derived.borrow_mut();
         if let Quantity::Virial(place) = quantity {
-            let all = kept.virials.get_or_insert_with(|| sim.virials());
+            let all = kept
+                .virials
+                .get_or_insert_with(|| match sim.watched(Watched::Virials) {
+                    Some(Seen::Virials(all)) => all,
+                    Some(Seen::Energies(_) | Seen::Virial(_)) | None => vec![],
+                });
             for (k, x) in out.iter_mut().enumerate() {
                 *x = all[first + k][place];
             }
@@ -347,8 +353,7 @@ impl Engine for ModelEngine {
     fn depart(&mut self, carried: &[Motion]) -> Result<f64, HostError> {
         self.changed();
         let sim = self.sim.get_mut();
-        sim.carry(carried);
-        let departed = sim.depart();
+        let departed = sim.depart(carried);
         departed.map_err(|e| self.explained(&e))
     }
 
@@ -407,12 +412,10 @@ impl Engine for ModelEngine {
 
     fn reaction(&self, index: usize) -> Reaction {
         let place = self.driven.get(index).copied().flatten();
-        place.map_or_else(Reaction::default, |place| {
-            let r = self.sim.borrow().reaction(place);
-            Reaction {
-                energy: r.energy,
-                force: r.force,
-            }
+        let of = place.and_then(|place| self.sim.borrow_mut().exchange(place, None));
+        of.map_or_else(Reaction::default, |r| Reaction {
+            energy: r.energy,
+            force: r.force,
         })
     }
 

@@ -7,8 +7,7 @@ use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::LinearBody;
 use peridyne::spec::*;
-use peridyne::statics::cg::{self, Goal};
-use peridyne::statics::{Assembled, Support};
+use peridyne::statics::{Assembled, Goal, Support, cg};
 use peridyne_theory::homogenize::surface::correct;
 
 pub struct Plate {

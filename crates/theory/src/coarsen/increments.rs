@@ -27,8 +27,7 @@ pub use model::{Linear, Model, Support as Prescribed, alone};
 pub use nonlinear::{Load, Nonlinear};
 use peridyne::error::SolveError;
 use peridyne::spec::LinearBody;
-use peridyne::statics::cg::{self, Goal};
-use peridyne::statics::{Assembled, Direct, Support, norm};
+use peridyne::statics::{Assembled, Direct, Goal, Support, cg, norm};
 
 /// What removed points do.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -8,7 +8,7 @@
 mod rub;
 mod surface;
 
-use super::force_field::ForceField;
+use super::force_field::{ForceField, power};
 use super::reaction::Reaction;
 use super::rigid::{Kept, NewmarkStep, Path, Rigid, Wrench};
 use crate::body::{Body, Field};
@@ -359,7 +359,7 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
         self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
         for (s, f) in &self.touched {
             let i = *s as usize;
-            self.work += 0.5 * dt * body.volume.at(i) * (0..D).map(|a| f[a] * v[a][i]).sum::<f64>();
+            self.work += 0.5 * dt * body.volume.at(i) * power(f, v, i);
         }
         self.rigid.kick(dt);
         self.rub_away(body, v, dt);

@@ -6,7 +6,7 @@
 //! that the difference of two wraps around to the shorter way by itself. What is kept are its last 8 bits in units of
 //! about 1/64 of a cell: enough to tell two points of adjacent cells apart, and it wraps around in the same way.
 
-use crate::body::{Body, Field, Layout};
+use crate::body::{Body, FieldView, Layout};
 
 const FULL: f64 = (1u64 << 32) as f64;
 
@@ -78,7 +78,7 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Put all points into their cells at displacement `u`.
-    pub fn sort(&mut self, body: &Body<D>, u: &Field<D>) {
+    pub fn sort(&mut self, body: &Body<D>, u: FieldView<D>) {
         let inverse = self.length.map(|l| FULL / l);
         let place = |slot: usize, x: [f64; D]| -> [u32; D] {
             std::array::from_fn(|a| wind((x[a] + u[a][slot]) * inverse[a]))

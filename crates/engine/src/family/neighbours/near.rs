@@ -17,7 +17,7 @@ mod ghosts;
 #[cfg(test)]
 mod tests;
 
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView};
 use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
@@ -185,7 +185,7 @@ impl<const D: usize> NearList<D> {
     }
 
     /// Positions at displacement `u`, and a list that holds for them. Returns whether it was made anew.
-    pub fn update(&mut self, body: &Body<D>, u: &Field<D>, simd: Simd) -> bool {
+    pub fn update(&mut self, body: &Body<D>, u: FieldView<D>, simd: Simd) -> bool {
         let mut position = std::mem::take(&mut self.position);
         let holds = self.valid && self.place(u, simd, &mut position);
         self.position = position;
@@ -196,7 +196,7 @@ impl<const D: usize> NearList<D> {
     }
 
     /// The [positions](Self::positions) at displacement `u`, if the list holds for them.
-    pub fn positions_at(&self, u: &Field<D>, simd: Simd) -> Option<Vec<[f64; 4]>> {
+    pub fn positions_at(&self, u: FieldView<D>, simd: Simd) -> Option<Vec<[f64; 4]>> {
         let mut position = self.position.clone();
         (self.valid && self.place(u, simd, &mut position)).then_some(position)
     }
@@ -237,7 +237,7 @@ impl<const D: usize> NearList<D> {
     }
 
     /// Write positions; does the list hold for them?
-    fn place(&self, u: &Field<D>, simd: Simd, position: &mut [[f64; 4]]) -> bool {
+    fn place(&self, u: FieldView<D>, simd: Simd, position: &mut [[f64; 4]]) -> bool {
         let kernel = Place {
             order: &self.order,
             base: &self.base,
@@ -367,7 +367,7 @@ impl<const D: usize> NearList<D> {
 
 /// Where the atom of a slot is.
 #[inline(always)]
-fn position<const D: usize>(base: &[f64; 4], u: &Field<D>, slot: u32) -> [f64; 4] {
+fn position<const D: usize>(base: &[f64; 4], u: FieldView<D>, slot: u32) -> [f64; 4] {
     let mut y = [0.0; 4];
     for a in 0..D {
         y[a] = base[a] + u[a][slot as usize];
@@ -380,7 +380,7 @@ struct Place<'a, const D: usize> {
     order: &'a [u32],
     base: &'a [[f64; 4]],
     then: &'a [[f64; 4]],
-    u: &'a Field<D>,
+    u: FieldView<'a, D>,
     position: Shared<[f64; 4]>,
 }
 

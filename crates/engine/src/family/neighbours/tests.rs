@@ -1,4 +1,5 @@
 use super::*;
+use crate::body::{FieldView, view};
 use crate::samples::{Random, lattice, sites};
 use crate::space::lattice::LatticeKind;
 
@@ -11,7 +12,7 @@ fn listed<const D: usize>(list: &Neighbours<D>) -> Pairs {
 }
 
 /// All pairs closer than `reach`, by looking at all.
-fn brute<const D: usize>(body: &Body<D>, u: &Field<D>, reach: f64) -> Pairs {
+fn brute<const D: usize>(body: &Body<D>, u: FieldView<D>, reach: f64) -> Pairs {
     let mut slots: Vec<usize> = body.slots.iter().map(|s| *s as usize).collect();
     slots.sort_unstable();
     let mut pairs = vec![];
@@ -35,7 +36,7 @@ fn brute<const D: usize>(body: &Body<D>, u: &Field<D>, reach: f64) -> Pairs {
 }
 
 /// How far the fastest point went.
-fn longest<const D: usize>(from: &Field<D>, to: &Field<D>) -> f64 {
+fn longest<const D: usize>(from: FieldView<D>, to: FieldView<D>) -> f64 {
     let square = |i: usize| (0..D).map(|a| (to[a][i] - from[a][i]).powi(2)).sum::<f64>();
     (0..to[0].len()).map(square).fold(0.0, f64::max).sqrt()
 }
@@ -56,18 +57,18 @@ fn walk<const D: usize>(body: &Body<D>, h: f64, seed: u64) {
                 c[s as usize] += h * random.next() * if leap { 1e6 } else { 0.05 };
             }
         }
-        list.moved(longest(&before, &u));
-        let built = list.update(body, &u, &keep);
+        list.moved(longest(view(&before), view(&u)));
+        let built = list.update(body, view(&u), &keep);
         let have = listed(&list);
         assert!(have.is_sorted());
         if built {
-            let mut all = brute(body, &u, cutoff + skin);
+            let mut all = brute(body, view(&u), cutoff + skin);
             all.retain(|p| keep(p.0, p.1));
             assert_eq!(have, all, "step {step}");
         } else {
             kept_old += 1;
         }
-        for p in brute(body, &u, cutoff) {
+        for p in brute(body, view(&u), cutoff) {
             assert!(
                 !keep(p.0, p.1) || have.binary_search(&p).is_ok(),
                 "step {step}: {p:?}"
@@ -128,17 +129,17 @@ fn the_skin_is_measured_from_the_build() {
         let mut u = body.at_rest();
         let s = body.slots[7] as usize;
         u[0][s] = far;
-        assert!(list.update(&body, &u, &|_, _| true));
+        assert!(list.update(&body, view(&u), &|_, _| true));
         // many small steps: 0.09 is within skin/2, 0.1 is not
         for k in 1..=9 {
             u[0][s] = far + 0.01 * k as f64;
             list.moved(0.01);
-            assert!(!list.update(&body, &u, &|_, _| true), "{far}: {k}");
+            assert!(!list.update(&body, view(&u), &|_, _| true), "{far}: {k}");
         }
         u[0][s] = far + 0.101;
         list.moved(0.011);
-        assert!(list.update(&body, &u, &|_, _| true));
-        assert!(!list.update(&body, &u, &|_, _| true));
+        assert!(list.update(&body, view(&u), &|_, _| true));
+        assert!(!list.update(&body, view(&u), &|_, _| true));
     }
 }
 
@@ -159,8 +160,8 @@ fn cells_that_moved_together_are_passed_over() {
     }
     let reach = 1.8;
     let mut list = Neighbours::new(&body, 1.5, 0.3).apart(1.0);
-    list.update(&body, &u, &|_, _| true);
-    let mut expected = brute(&body, &u, reach);
+    list.update(&body, view(&u), &|_, _| true);
+    let mut expected = brute(&body, view(&u), reach);
     let all = expected.len();
     expected.retain(|&(i, j)| (u[1][i] < -1.0) != (u[1][j] < -1.0));
     assert!(expected.len() > 100 && expected.len() < all / 2);
@@ -178,15 +179,15 @@ fn what_is_not_finite_does_no_harm() {
     );
     let mut list = Neighbours::new(&body, 1.1, 0.2);
     let mut u = body.at_rest();
-    list.update(&body, &u, &|_, _| true);
+    list.update(&body, view(&u), &|_, _| true);
     let whole = list.len();
     u[0][body.slots[12] as usize] = f64::INFINITY;
     u[1][body.slots[11] as usize] = 1e300;
     list.moved(f64::INFINITY);
-    assert!(list.update(&body, &u, &|_, _| true));
+    assert!(list.update(&body, view(&u), &|_, _| true));
     assert_eq!(list.len(), whole - 7);
     u[0][body.slots[12] as usize] = f64::NAN;
     list.moved(f64::NAN);
-    list.update(&body, &u, &|_, _| true);
+    list.update(&body, view(&u), &|_, _| true);
     assert_eq!(list.len(), whole - 7);
 }

@@ -6,8 +6,10 @@
 
 mod kernel;
 
-use super::super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
-use crate::body::{Body, Field, Identity};
+use super::super::{
+    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+};
+use crate::body::{Body, FieldView, FieldViewMut, Identity, view, view_mut};
 use crate::columns::Declaration;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::simd::Simd;
@@ -109,7 +111,7 @@ impl<const D: usize> BondedAtoms<D> {
     fn evaluate(
         &self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         force: Shared<[[f64; D]; 4]>,
         energy: Shared,
     ) -> [f64; 7] {
@@ -126,7 +128,7 @@ impl<const D: usize> BondedAtoms<D> {
     }
 
     /// Energies of all points with those of their terms, in equal shares.
-    fn share(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    fn share(&self, body: &Body<D>, u: FieldView<D>, out: &mut PointEnergiesMut) {
         let mut each = vec![0.0; self.terms.len()];
         self.evaluate(
             body,
@@ -151,15 +153,15 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        mut f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        mut seen: Option<&mut PointEnergies>,
+        mut seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         // SAFETY: as promised
         let tally = unsafe {
             self.inner
-                .forces_unchecked(body, u, f, sweep, seen.as_deref_mut())
+                .forces_unchecked(body, u, view_mut(&mut f), sweep, seen.as_deref_mut())
         };
         let force = Shared(self.force.as_mut_ptr());
         self.evaluate(body, u, force, Shared::NULL);
@@ -177,14 +179,19 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
         tally
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         // SAFETY: as promised
         let [inner, repulsion] = unsafe { self.inner.energy_unchecked(body, u) };
         let own = self.evaluate(body, u, Shared(std::ptr::null_mut()), Shared::NULL);
         [inner + own[0], repulsion]
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         // SAFETY: as promised
         unsafe { self.inner.observe_unchecked(body, u, out) };
         self.share(body, u, out);
@@ -201,7 +208,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         let mut all = vec![];
@@ -263,7 +270,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
             }
             let mut sorted = *term;
             (sorted.slots[0], sorted.slots[1]) = (i as u32, j as u32);
-            let (at, _) = kernel::places(body, &rest, &sorted);
+            let (at, _) = kernel::places(body, view(&rest), &sorted);
             let xi = std::array::from_fn(|a| at[1][a] - at[0][a]);
             visit(i, j, xi, BondState::Whole);
         }
@@ -273,7 +280,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
         self.inner.family()
     }
 
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+    fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
         let mut virial = self.inner.virial(body, u)?;
         let own = self.evaluate(body, u, Shared(std::ptr::null_mut()), Shared::NULL);
         for (v, own) in virial.iter_mut().zip(&own[1..]) {
@@ -312,7 +319,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         self.tangents(body, u, &mut |bond| visit(bond.force()));

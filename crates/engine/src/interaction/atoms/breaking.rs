@@ -10,7 +10,7 @@
 
 mod kernel;
 
-use crate::body::{Body, Field, Identity, zeros};
+use crate::body::{Body, Field, FieldView, FieldViewMut, Identity, view, view_mut, zeros};
 use crate::columns::Declaration;
 use crate::execute::blocks::{Shared, run_blocks};
 use crate::execute::lane::TILE;
@@ -19,7 +19,7 @@ use crate::family::neighbours::near::NearList;
 use crate::interaction::criterion::Measure;
 use crate::interaction::history::{self, crossed, damage};
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::interaction::{Motion, Released, Toughness};
 use crate::spec::{CrackKind, Release};
@@ -80,7 +80,13 @@ impl<const D: usize> Work<D> {
     /// None, of a body at rest whose list has so many lines.
     fn new(body: &Body<D>, inner: &mut dyn Held<D>, first: &[u32], lines: usize) -> Self {
         let mut f = zeros(body.len);
-        inner.forces(body, &body.at_rest(), &mut f, Sweep::Hold, None);
+        inner.forces(
+            body,
+            view(&body.at_rest()),
+            view_mut(&mut f),
+            Sweep::Hold,
+            None,
+        );
         let mut before = vec![[0.0; D]; lines * TILE];
         inner.pulls(first, &mut before);
         Work {
@@ -279,8 +285,8 @@ impl<const D: usize> Breaking<D> {
     fn evolve(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         motion: Motion<D>,
     ) -> Tally {
         self.add_work(body);
@@ -290,7 +296,9 @@ impl<const D: usize> Breaking<D> {
             let [before, _] = self.inner.energy(body, u);
             tally.broken = self.tear(&found);
             let mut after = std::mem::replace(&mut self.after, zeros(0));
-            let without = self.inner.forces(body, u, &mut after, Sweep::Hold, None);
+            let without = self
+                .inner
+                .forces(body, u, view_mut(&mut after), Sweep::Hold, None);
             tally += without;
             if let Some(work) = &mut self.work {
                 // the next step begins with the pulls of the bonds that are left
@@ -313,7 +321,9 @@ impl<const D: usize> Breaking<D> {
             released.book(before - left + half * power);
             tally.released = released;
             if motion.release == Release::AtOnce {
-                std::mem::swap(f, &mut after);
+                for a in 0..D {
+                    f[a].swap_with_slice(&mut after[a]);
+                }
             }
             self.after = after;
         }
@@ -334,27 +344,39 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        mut f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
-        let mut tally = self.inner.forces(body, u, f, Sweep::Hold, seen);
+        let mut tally = self
+            .inner
+            .forces(body, u, view_mut(&mut f), Sweep::Hold, seen);
         if let Some(motion) = sweep.motion().filter(|_| self.breaks()) {
             tally += self.evolve(body, u, f, motion);
         }
         tally
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         self.inner.energy(body, u)
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         self.inner.observe(body, u, out);
     }
 
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         self.inner.observe_gradient(body, gradient, out);
     }
 
@@ -369,7 +391,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         self.inner.tangents(body, u, visit);
@@ -382,13 +404,13 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         self.inner.each_force(body, u, visit)
     }
 
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+    fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
         self.inner.virial(body, u)
     }
 
@@ -407,7 +429,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     fn mend(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> Option<u64> {
         self.check(body, &[u]);
@@ -494,7 +516,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         all
     }
 
-    fn read_column(&self, body: &Body<D>, _: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+    fn read_column(&self, body: &Body<D>, _: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
         out.clear();
         match (name, &self.work) {
             (history::WHOLE, _) => self.each_place(body, |_, _, _, place| {

@@ -5,14 +5,14 @@ mod kernel;
 use super::breaking::Held;
 use super::line::Table;
 use super::{Curvatures, Faults, find_fault};
-use crate::body::{Body, Field, Identity, Values};
+use crate::body::{Body, FieldView, FieldViewMut, Identity, Values, view};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
@@ -61,7 +61,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
         let of = |i, j| potential.of(i, j);
         let table = potential.is_side_by_side();
         let table = table.then(|| Table::new(kinds, of));
-        let list = list_at(body, &potential, held, &body.at_rest(), simd);
+        let list = list_at(body, &potential, held, view(&body.at_rest()), simd);
         let blocks = list.blocks();
         let mut made = CurrentAtoms {
             body: body.identity,
@@ -123,7 +123,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
     }
 
     /// Positions and, with embedding, F′ in their fourth place.
-    fn ready(&mut self, body: &Body<D>, u: &Field<D>) -> Tally {
+    fn ready(&mut self, body: &Body<D>, u: FieldView<D>) -> Tally {
         self.list.update(body, u, self.simd);
         if !P::EMBEDDED {
             return Tally::default();
@@ -173,7 +173,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
         body: &Body<D>,
         list: &NearList<D>,
         position: &[[f64; 4]],
-        out: &mut PointEnergies,
+        out: &mut PointEnergiesMut,
     ) {
         out.zeros(body.len);
         let strain = Shared(out.strain.as_mut_ptr());
@@ -186,7 +186,7 @@ fn list_at<const D: usize, P: Potential>(
     body: &Body<D>,
     potential: &Mixture<P>,
     held: Option<f64>,
-    u: &Field<D>,
+    u: FieldView<D>,
     simd: Simd,
 ) -> NearList<D> {
     let lines = match potential.is_side_by_side() {
@@ -267,10 +267,10 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         _: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         let tally = self.ready(body, u);
         if let Some(seen) = seen {
@@ -285,14 +285,19 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         tally
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         self.list.update(body, u, self.simd);
         let list = &self.list;
         let sums = self.sums(false, list, list.positions(), Shared::NULL, &body.volume);
         [sums[0], 0.0]
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         if let Some(position) = self.list.positions_at(u, self.simd) {
             self.see(body, &self.list, &position, out);
         } else {
@@ -301,7 +306,12 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         }
     }
 
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         self.check(body, &[]);
         let rest = body.at_rest();
         let strain = |mut position: Vec<[f64; 4]>| {
@@ -315,11 +325,13 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
             position
         };
         // of a list that is held some may have been taken out
-        let held = self.held.and(self.list.positions_at(&rest, self.simd));
+        let held = self
+            .held
+            .and(self.list.positions_at(view(&rest), self.simd));
         if let Some(position) = held {
             self.see(body, &self.list, &strain(position), out);
         } else {
-            let list = list_at(body, &self.potential, self.held, &rest, self.simd);
+            let list = list_at(body, &self.potential, self.held, view(&rest), self.simd);
             self.see(body, &list, &strain(list.positions().to_vec()), out);
         }
     }
@@ -327,7 +339,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         self.tangents(body, u, &mut |bond| visit(bond.force()));
@@ -341,7 +353,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         self.ready(body, u);
@@ -374,7 +386,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         });
     }
 
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+    fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
         self.check(body, &[u]);
         self.ready(body, u);
         let list = &self.list;

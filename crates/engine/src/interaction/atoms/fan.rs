@@ -13,14 +13,14 @@ mod gather;
 mod kernel;
 
 use super::breaking::Held;
-use crate::body::{Body, Field, Identity, Values};
+use crate::body::{Body, FieldView, FieldViewMut, Identity, Values, view};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::law::fan::{Fan, tangents};
 use crate::law::terms::Near;
@@ -74,7 +74,14 @@ impl<F: Fan> FanAtoms<F> {
             highest.is_none_or(|k| usize::from(k) < known),
             "a fan of {known} kinds of atom on a body of more"
         );
-        let list = list_at(body, fan.cutoff(), held, &kinds, &body.at_rest(), simd);
+        let list = list_at(
+            body,
+            fan.cutoff(),
+            held,
+            &kinds,
+            view(&body.at_rest()),
+            simd,
+        );
         let mut made = FanAtoms {
             body: body.identity,
             simd,
@@ -93,7 +100,7 @@ impl<F: Fan> FanAtoms<F> {
     }
 
     /// Positions, and after a new list the bonds that lead back.
-    fn ready(&mut self, body: &Body<3>, u: &Field<3>) {
+    fn ready(&mut self, body: &Body<3>, u: FieldView<3>) {
         if self.list.update(body, u, self.simd) {
             put_kinds(&mut self.list, &self.kinds);
             self.back = Back::of(&self.list, self.simd);
@@ -148,7 +155,7 @@ impl<F: Fan> FanAtoms<F> {
         body: &Body<3>,
         list: &NearList<3>,
         position: &[[f64; 4]],
-        out: &mut PointEnergies,
+        out: &mut PointEnergiesMut,
     ) {
         out.zeros(body.len);
         let strain = Shared(out.strain.as_mut_ptr());
@@ -188,7 +195,7 @@ fn list_at(
     cutoff: f64,
     held: Option<f64>,
     kinds: &[u8],
-    u: &Field<3>,
+    u: FieldView<3>,
     simd: Simd,
 ) -> NearList<3> {
     let mut list = match held {
@@ -249,10 +256,10 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<3>,
-        u: &Field<3>,
-        f: &mut Field<3>,
+        u: FieldView<3>,
+        f: FieldViewMut<3>,
         _: Sweep<3>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         self.ready(body, u);
         let energy = match seen {
@@ -276,14 +283,19 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         Tally::default()
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<3>, u: &Field<3>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<3>, u: FieldView<3>) -> [f64; 2] {
         self.ready(body, u);
         let list = &self.list;
         let sums = self.energies(list, list.positions(), Shared::NULL, &body.volume);
         [sums[0], 0.0]
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<3>, u: &Field<3>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<3>,
+        u: FieldView<3>,
+        out: &mut PointEnergiesMut,
+    ) {
         if let Some(position) = self.list.positions_at(u, self.simd) {
             self.see(body, &self.list, &position, out);
         } else {
@@ -293,7 +305,12 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         }
     }
 
-    fn observe_gradient(&self, body: &Body<3>, gradient: &[[f64; 3]; 3], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<3>,
+        gradient: &[[f64; 3]; 3],
+        out: &mut PointEnergiesMut,
+    ) {
         self.check(body, &[]);
         let rest = body.at_rest();
         let strain = |mut position: Vec<[f64; 4]>| {
@@ -306,12 +323,14 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
             position
         };
         // of a list that is held some may have been taken out
-        let held = self.held.and(self.list.positions_at(&rest, self.simd));
+        let held = self
+            .held
+            .and(self.list.positions_at(view(&rest), self.simd));
         if let Some(position) = held {
             self.see(body, &self.list, &strain(position), out);
         } else {
             let cutoff = self.fan.cutoff();
-            let list = list_at(body, cutoff, self.held, &self.kinds, &rest, self.simd);
+            let list = list_at(body, cutoff, self.held, &self.kinds, view(&rest), self.simd);
             self.see(body, &list, &strain(list.positions().to_vec()), out);
         }
     }
@@ -320,7 +339,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     fn each_force(
         &mut self,
         body: &Body<3>,
-        u: &Field<3>,
+        u: FieldView<3>,
         visit: &mut dyn FnMut(BondForce<3>),
     ) -> bool {
         self.tangents(body, u, &mut |bond| visit(bond.force()));
@@ -338,7 +357,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<3>,
-        u: &Field<3>,
+        u: FieldView<3>,
         visit: &mut dyn FnMut(BondTangent<3>),
     ) {
         self.ready(body, u);
@@ -380,7 +399,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         });
     }
 
-    fn virial(&mut self, body: &Body<3>, u: &Field<3>) -> Option<[f64; 6]> {
+    fn virial(&mut self, body: &Body<3>, u: FieldView<3>) -> Option<[f64; 6]> {
         self.check(body, &[u]);
         self.ready(body, u);
         let list = &self.list;

@@ -4,12 +4,12 @@
 mod kernel;
 
 use super::{Curvatures, Faults, find_fault};
-use crate::body::{Body, Column, FAR, Field, Identity, field};
+use crate::body::{Body, Column, FAR, FieldView, FieldViewMut, Identity, field};
 use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::simd::Simd;
 use crate::family::links::{Links, Tiles};
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
@@ -63,7 +63,7 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
         }
     }
 
-    fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D, P> {
+    fn view<'a>(&'a self, body: &'a Body<D>, u: FieldView<'a, D>) -> View<'a, D, P> {
         View {
             tiles: Tiles::new(&self.links, body, u),
             potential: &self.potential,
@@ -78,7 +78,7 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
     }
 
     /// Energy, and energy densities per slot where asked for.
-    fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared) -> f64 {
+    fn energies(&self, body: &Body<D>, u: FieldView<D>, out: Shared) -> f64 {
         let kernel = Energies {
             view: self.view(body, u),
             out,
@@ -89,7 +89,7 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
     }
 
     /// F′ everywhere, images included, or why not.
-    fn embed(&mut self, body: &Body<D>, u: &Field<D>) -> Tally {
+    fn embed(&mut self, body: &Body<D>, u: FieldView<D>) -> Tally {
         let slope = Shared(self.slope.as_mut_ptr());
         let kernel = Density {
             view: self.view(body, u),
@@ -131,10 +131,10 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         _: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         if let Some(seen) = seen {
             self.observe(body, u, seen);
@@ -155,11 +155,16 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         first
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         [self.energies(body, u, Shared::NULL), 0.0]
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         out.zeros(body.len);
         self.energies(body, u, Shared(out.strain.as_mut_ptr()));
     }
@@ -167,7 +172,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         if P::EMBEDDED {
@@ -206,7 +211,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         if self.potential.kinds() > 1 {

@@ -12,11 +12,11 @@
 //! Forces are slopes of the atoms' energy by the nodes' displacements, so energy, momentum and (linear fields are reproduced) angular momentum are
 //! conserved. The mass is lumped.
 
-use crate::body::{Body, Field, Identity, zeros};
+use crate::body::{Body, Field, FieldView, FieldViewMut, Identity, view, view_mut, zeros};
 use crate::execute::blocks::for_each_piece;
 use crate::family::nodes::Nodes;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+    BondForce, BondState, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
 };
 use crate::spec::CrackKind;
 use crate::state::Archive;
@@ -69,7 +69,7 @@ impl<const D: usize> Smoothed<D> {
     }
 
     /// Displacements of atoms where nodes have these.
-    fn carry(&self, u: &Field<D>, of_atoms: &mut Field<D>) {
+    fn carry(&self, u: FieldView<D>, mut of_atoms: FieldViewMut<D>) {
         let points = &self.carried.points;
         let mut moved = vec![[0.0; D]; points.len()];
         for_each_piece(&mut moved, |first, piece| {
@@ -87,9 +87,9 @@ impl<const D: usize> Smoothed<D> {
         of_atoms.iter_mut().for_each(|c| self.atoms.fill_images(c));
     }
 
-    fn carried(&self, u: &Field<D>) -> Field<D> {
+    fn carried(&self, u: FieldView<D>) -> Field<D> {
         let mut of_atoms = self.atoms.at_rest();
-        self.carry(u, &mut of_atoms);
+        self.carry(u, view_mut(&mut of_atoms));
         of_atoms
     }
 
@@ -110,9 +110,9 @@ impl<const D: usize> Smoothed<D> {
         });
     }
 
-    fn gather_energies(&self, nodes: &Body<D>, seen: &PointEnergies, out: &mut PointEnergies) {
+    fn gather_energies(&self, nodes: &Body<D>, seen: &PointEnergies, out: &mut PointEnergiesMut) {
         out.zeros(nodes.len);
-        self.gather(nodes, &seen.strain, &mut out.strain);
+        self.gather(nodes, &seen.strain, out.strain);
     }
 
     /// Each atom's nodes, by slot of atoms.
@@ -183,27 +183,34 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        mut f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         let [mut moved, mut own] = [&mut self.u, &mut self.f].map(taken);
-        self.carry(u, &mut moved);
+        self.carry(u, view_mut(&mut moved));
         let mut energies = seen.is_some().then(PointEnergies::default);
-        let of_atoms = energies.as_mut();
+        let mut of_atoms = energies.as_mut().map(|e| e.for_slots(self.atoms.len));
         let velocity;
         let sweep = match sweep {
             Sweep::Evolve { v, steps, release } if self.breaks => {
                 velocity = self.carried(v);
-                let v = &velocity;
-                Sweep::Evolve { v, steps, release }
+                Sweep::Evolve {
+                    v: view(&velocity),
+                    steps,
+                    release,
+                }
             }
             Sweep::Evolve { .. } | Sweep::Hold => Sweep::Hold,
         };
-        let tally = self
-            .inner
-            .forces(&self.atoms, &moved, &mut own, sweep, of_atoms);
+        let tally = self.inner.forces(
+            &self.atoms,
+            view(&moved),
+            view_mut(&mut own),
+            sweep,
+            of_atoms.as_mut(),
+        );
         for (f, own) in f.iter_mut().zip(&own) {
             self.gather(body, own, f);
         }
@@ -214,26 +221,40 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         tally
     }
 
-    unsafe fn energy_unchecked(&mut self, _: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, _: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         let mut moved = taken(&mut self.u);
-        self.carry(u, &mut moved);
-        let energy = self.inner.energy(&self.atoms, &moved);
+        self.carry(u, view_mut(&mut moved));
+        let energy = self.inner.energy(&self.atoms, view(&moved));
         self.u = moved;
         energy
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         let mut seen = PointEnergies::default();
-        self.inner.observe(&self.atoms, &self.carried(u), &mut seen);
+        self.inner.observe(
+            &self.atoms,
+            view(&self.carried(u)),
+            &mut seen.for_slots(self.atoms.len),
+        );
         self.gather_energies(body, &seen, out);
     }
 
     /// Linear fields are reproduced: the atoms have the same gradient.
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         self.check(body, &[]);
         let mut seen = PointEnergies::default();
         self.inner
-            .observe_gradient(&self.atoms, gradient, &mut seen);
+            .observe_gradient(&self.atoms, gradient, &mut seen.for_slots(self.atoms.len));
         self.gather_energies(body, &seen, out);
     }
 
@@ -245,13 +266,13 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         let moved = self.carried(u);
         let mut bonds: Vec<BondTangent<D>> = vec![];
         self.inner
-            .tangents(&self.atoms, &moved, &mut |bond| bonds.push(bond));
+            .tangents(&self.atoms, view(&moved), &mut |bond| bonds.push(bond));
         let place = self.places();
         let points = &self.carried.points;
         let row = |slot: usize| &points[place[slot] as usize].1;
@@ -357,14 +378,14 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         let moved = self.carried(u);
         let mut bonds: Vec<BondForce<D>> = vec![];
         let known = self
             .inner
-            .each_force(&self.atoms, &moved, &mut |bond| bonds.push(bond));
+            .each_force(&self.atoms, view(&moved), &mut |bond| bonds.push(bond));
         if !known {
             return false;
         }
@@ -446,10 +467,10 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         true
     }
 
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+    fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
         self.check(body, &[u]);
         let moved = self.carried(u);
-        self.inner.virial(&self.atoms, &moved)
+        self.inner.virial(&self.atoms, view(&moved))
     }
 
     fn directed_bonds(&self) -> u64 {

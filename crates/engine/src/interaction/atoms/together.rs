@@ -1,9 +1,9 @@
 //! A sum of potentials on one body of atoms, each with the atoms that it acts on.
 
-use crate::body::{Body, Field, Identity, zeros};
+use crate::body::{Body, Field, FieldView, FieldViewMut, Identity, view_mut, zeros};
 use crate::interaction::history::damage;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+    BondForce, BondState, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
 };
 use crate::spec::CrackKind;
 use crate::state::Archive;
@@ -67,10 +67,10 @@ impl<const D: usize> Interaction<D> for Together<D> {
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        mut f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        mut seen: Option<&mut PointEnergies>,
+        mut seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         let mut tally = Tally::default();
         if let Some(seen) = seen.as_deref_mut() {
@@ -78,15 +78,19 @@ impl<const D: usize> Interaction<D> for Together<D> {
         }
         for (n, part) in self.parts.iter_mut().enumerate() {
             let mut energies = seen.is_some().then(PointEnergies::default);
-            let into = if n == 0 { &mut *f } else { &mut self.own };
-            tally += part.forces(body, u, into, sweep, energies.as_mut());
+            let into = match n {
+                0 => view_mut(&mut f),
+                _ => view_mut(&mut self.own),
+            };
+            let mut room = energies.as_mut().map(|e| e.for_slots(body.len));
+            tally += part.forces(body, u, into, sweep, room.as_mut());
             if n > 0 {
                 for (f, own) in f.iter_mut().zip(&self.own) {
                     add(f, own);
                 }
             }
             if let (Some(seen), Some(energies)) = (seen.as_deref_mut(), energies) {
-                add(&mut seen.strain, &energies.strain);
+                add(seen.strain, &energies.strain);
             }
         }
         if tally.broken > 0 {
@@ -95,27 +99,37 @@ impl<const D: usize> Interaction<D> for Together<D> {
         tally
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         let each = self.parts.iter_mut().map(|p| p.energy(body, u));
         each.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         out.zeros(body.len);
         for part in &self.parts {
             let mut own = PointEnergies::default();
-            part.observe(body, u, &mut own);
-            add(&mut out.strain, &own.strain);
+            part.observe(body, u, &mut own.for_slots(body.len));
+            add(out.strain, &own.strain);
         }
     }
 
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         self.check(body, &[]);
         out.zeros(body.len);
         for part in &self.parts {
             let mut own = PointEnergies::default();
-            part.observe_gradient(body, gradient, &mut own);
-            add(&mut out.strain, &own.strain);
+            part.observe_gradient(body, gradient, &mut own.for_slots(body.len));
+            add(out.strain, &own.strain);
         }
     }
 
@@ -130,7 +144,7 @@ impl<const D: usize> Interaction<D> for Together<D> {
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         for part in &mut self.parts {
@@ -159,7 +173,7 @@ impl<const D: usize> Interaction<D> for Together<D> {
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         let mut all = true;
@@ -211,7 +225,7 @@ impl<const D: usize> Interaction<D> for Together<D> {
         before - left
     }
 
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+    fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
         let mut sum = [0.0; 6];
         for part in &mut self.parts {
             let own = part.virial(body, u)?;

@@ -1,7 +1,7 @@
 //! The bonds of a list one by one, in order of rows: for whatever is not a kernel.
 
 use super::ListInteraction;
-use crate::body::{Body, Field, zeros};
+use crate::body::{Body, FieldView, view_mut, zeros};
 use crate::execute::lane::TILE;
 use crate::interaction::{BondForce, BondState, BondTangent, Interaction, Sweep};
 use crate::law::{BondFactors, Law};
@@ -27,12 +27,12 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     pub(super) fn each_tangent(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         if W::SHARES {
             // the pressures of this state
-            self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
+            self.forces(body, u, view_mut(&mut zeros(body.len)), Sweep::Hold, None);
         }
         let view = self.view(&self.moved);
         self.each_line(|row, line, [i, j]| {
@@ -68,7 +68,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         });
     }
 
-    pub(super) fn each_pull(&mut self, u: &Field<D>, visit: &mut dyn FnMut(BondForce<D>)) {
+    pub(super) fn each_pull(&mut self, u: FieldView<D>, visit: &mut dyn FnMut(BondForce<D>)) {
         self.pack_now(u);
         if W::SHARES {
             self.share();

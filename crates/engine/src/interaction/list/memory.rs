@@ -1,7 +1,7 @@
 //! What the bonds of a list remember: which are whole, which were cut, and from which stretch they break.
 
 use super::ListInteraction;
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView};
 use crate::execute::lane::TILE;
 use crate::interaction::history::{self, Crosses};
 use crate::law::Law;
@@ -54,7 +54,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// [`mend`](crate::interaction::Interaction::mend).
     pub(super) fn mend_where(
         &mut self,
-        u: &Field<D>,
+        u: FieldView<D>,
         heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> u64 {
         let view = self.view(&self.moved);

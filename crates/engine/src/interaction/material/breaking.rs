@@ -4,7 +4,7 @@ use super::family::{Family, Moved, Slots, put};
 use super::store::OwnRows;
 use super::sweeps::EnergyOf;
 use super::view::{BLOCK, Drift, View, grown, save};
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE, elementary};
 use crate::execute::simd::Kernel;
@@ -41,7 +41,7 @@ pub struct Test<'a, const D: usize, F> {
     /// What is left of the life of each; empty: none wears.
     pub life: &'a [f64],
     /// Velocities, for rates.
-    pub v: &'a Field<D>,
+    pub v: FieldView<'a, D>,
     /// Do points without whole bonds keep the critical stretch that they had?
     pub keeps: bool,
     /// A bit for every bond that breaks, and a mark for every group that has any.
@@ -279,7 +279,7 @@ pub struct Tear<'a, const D: usize, F, M> {
     pub form: OwnRows,
     /// `None`: the form is that of the family as it was.
     pub integrity: Option<Shared>,
-    pub v: &'a Field<D>,
+    pub v: FieldView<'a, D>,
     /// Time to where a bond was last with its points (negative: it lets go at once and the kick of the half step that ends here misses
     /// it), or will be (it pulls once more).
     pub drift: f64,

@@ -4,7 +4,7 @@ use super::MaterialInteraction;
 use super::family::{Family, Slots};
 use super::measured::Before;
 use super::store::Store;
-use crate::body::{Body, Column, Field};
+use crate::body::{Body, Column, FieldView, view};
 use crate::columns::{Declaration, Dimension, On, Shape};
 use crate::execute::lane::TILE;
 use crate::interaction::history;
@@ -100,7 +100,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     pub(super) fn read_named(
         &self,
         body: &Body<D>,
-        _: &Field<D>,
+        _: FieldView<D>,
         name: &str,
         out: &mut Vec<f64>,
     ) -> bool {
@@ -193,7 +193,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
             self.integrity.copy_from_slice(values);
             self.look_integrity(body);
-            self.look_stiffness(body, &crate::body::zeros(0), |_, _| true);
+            self.look_stiffness(body, view(&crate::body::zeros(0)), |_, _| true);
             return true;
         }
         let Some((declaration, place)) = self.place(name) else {

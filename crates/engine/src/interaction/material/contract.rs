@@ -3,12 +3,12 @@
 use super::MaterialInteraction;
 use super::breaking::Shortest;
 use super::family::{Family, Moved, Slots};
-use crate::body::{Body, Column, Field, Identity, field};
+use crate::body::{Body, Column, FieldView, FieldViewMut, Identity, field};
 use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally, Wearing,
 };
 use crate::law::BondFactors;
 use crate::law::material::Material;
@@ -27,10 +27,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
         sweep: Sweep<D>,
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         let motion = sweep.motion();
         let dt = match motion {
@@ -95,7 +95,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         self.begin_stiffness(body);
     }
 
-    fn shortest(&mut self, body: &Body<D>, u: &Field<D>) -> f64 {
+    fn shortest(&mut self, body: &Body<D>, u: FieldView<D>) -> f64 {
         self.check(body, &[u]);
         // of the largest frequency, which goes with the root of the stiffness
         let torn = self.stiffened.sqrt().recip();
@@ -117,18 +117,28 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         torn * (1.0 - shorter).max(0.0).sqrt()
     }
 
-    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         let room = self.take_room(u, self.step);
         let sums = self.energies(body, u, &room, None);
         self.room = room;
         sums
     }
 
-    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        out: &mut PointEnergiesMut,
+    ) {
         self.seen(body, u, &self.look_room(u), out);
     }
 
-    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+    fn observe_gradient(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
         self.check(body, &[]);
         self.strained(body, gradient, out);
     }
@@ -136,7 +146,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         self.each_tangent(body, u, visit);
@@ -190,7 +200,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
     fn each_force(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
         self.each_pull(body, u, visit);
@@ -321,7 +331,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         true
     }
 
-    fn add_stress_across(&mut self, body: &Body<D>, u: &Field<D>, trace: &mut [f64]) -> bool {
+    fn add_stress_across(&mut self, body: &Body<D>, u: FieldView<D>, trace: &mut [f64]) -> bool {
         self.check(body, &[u]);
         assert_eq!(trace.len(), body.len, "a number for each slot");
         self.held.is_empty() || self.add_across(body, u, trace)
@@ -343,17 +353,28 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         self.step = step;
     }
 
-    fn wear(&mut self, body: &Body<D>, u: &Field<D>, cycles: &Cycles, left: f64) -> Option<f64> {
+    fn wearing(&self, body: &Body<D>, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
         self.check(body, &[u]);
-        let wears = !self.life.is_empty();
-        wears.then(|| self.wear_bonds(body, u, cycles, left))
+        if self.life.is_empty() {
+            return None;
+        }
+        let mut all = vec![];
+        self.each_wearing(body, u, load, |_, bond| all.push(bond));
+        Some(all)
+    }
+
+    fn wear(&mut self, body: &Body<D>, u: FieldView<D>, load: &Cycles, passed: f64) {
+        self.check(body, &[u]);
+        if !self.life.is_empty() {
+            self.wear_bonds(body, u, load, passed);
+        }
     }
 
     fn columns(&self) -> Vec<Declaration> {
         self.declared()
     }
 
-    fn read_column(&self, body: &Body<D>, u: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+    fn read_column(&self, body: &Body<D>, u: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
         self.check(body, &[u]);
         self.read_named(body, u, name, out)
     }

@@ -1,7 +1,7 @@
 //! What a family is to the sweeps of a law: groups of eight points, whose bonds are walked together.
 
 use super::store::Rows;
-use crate::body::Field;
+use crate::body::FieldView;
 use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::{Lane, TILE};
 use crate::law::material::Numbers;
@@ -38,7 +38,7 @@ pub struct Reference<L, const D: usize> {
 /// Displacements as sweeps read them.
 #[derive(Clone, Copy)]
 pub struct Moved<'a, const D: usize> {
-    pub columns: &'a Field<D>,
+    pub columns: FieldView<'a, D>,
     /// `[slots][4]`: displacement, where the family gathers; else empty.
     pub records: &'a [f64],
 }

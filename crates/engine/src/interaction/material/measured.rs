@@ -5,12 +5,12 @@ use super::Room;
 use super::family::{Family, Slots, put};
 use super::sweeps::{answers, pull_of};
 use super::view::View;
-use crate::body::{Body, Column, Field};
+use crate::body::{Body, Column, Field, FieldView, view, zeros};
 use crate::execute::blocks::{Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::bond::relative_square_stretch;
-use crate::interaction::criterion::{Measure, SPENT, Wearing, cycles};
+use crate::interaction::criterion::{Measure, SPENT, Wearing};
 use crate::interaction::history;
 use crate::law::material::{ForceState, Material};
 use crate::spec::Cycles;
@@ -144,7 +144,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for VonMises<'_, D, F,
 
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
     /// The first half of the work of the step that ends here, by the forces at its start.
-    pub(super) fn work_before(&mut self, body: &Body<D>, u: &Field<D>, room: &Room) {
+    pub(super) fn work_before(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
         if self.work.is_empty() {
             return;
         }
@@ -157,10 +157,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             still: vec![],
         };
         std::mem::swap(&mut self.expansion, &mut before.expansion);
-        self.settle(body, &before.u, &start);
+        self.settle(body, view(&before.u), &start);
         std::mem::swap(&mut self.expansion, &mut before.expansion);
         let work = Shared(self.work.as_mut_ptr());
-        let mut view = self.view(&before.u, &start);
+        let mut view = self.view(view(&before.u), &start);
         view.expansion = &before.expansion;
         let other = self.view(u, room);
         let kernel = Work {
@@ -175,14 +175,14 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// What bonds are measured by, at the forces of now, which are settled.
-    pub(super) fn measure(&mut self, body: &Body<D>, u: &Field<D>, room: &Room) {
+    pub(super) fn measure(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
         if let Some(before) = self.before.take() {
             let start = Room {
                 records: before.records,
                 ..Room::default()
             };
             let work = Shared(self.work.as_mut_ptr());
-            let mut other = self.view(&before.u, &start);
+            let mut other = self.view(view(&before.u), &start);
             other.expansion = &before.expansion;
             other.constants = &room.constants;
             let kernel = Work {
@@ -222,17 +222,17 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// The next step begins here.
-    pub(super) fn keep(&mut self, u: &Field<D>, room: &Room) {
+    pub(super) fn keep(&mut self, u: FieldView<D>, room: &Room) {
         if self.work.is_empty() {
             return;
         }
         let before = self.before.get_or_insert_with(|| Before {
-            u: u.clone(),
+            u: zeros(u[0].len()),
             records: vec![],
             expansion: Column::default(),
         });
         for a in 0..D {
-            before.u[a].copy_from_slice(&u[a]);
+            before.u[a].copy_from_slice(u[a]);
         }
         before.records.clone_from(&room.records);
         before.expansion = self.expansion.clone();
@@ -270,18 +270,32 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         near
     }
 
-    /// Cycles of load with the greatest strains of now, until bonds are worn out; how many.
+    /// So many cycles of load pass with the greatest strains of now.
     pub(super) fn wear_bonds(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        options: &Cycles,
-        left: f64,
-    ) -> f64 {
+        u: FieldView<D>,
+        load: &Cycles,
+        passed: f64,
+    ) {
+        let mut all = vec![];
+        self.each_wearing(body, u, load, |place, bond| all.push((place, bond)));
+        for (place, bond) in all {
+            let left = bond.life - passed * bond.rate;
+            self.life[place] = if left < SPENT { 0.0 } else { left };
+        }
+    }
+
+    /// Every directed bond that is whole, with its place among those that live.
+    pub(super) fn each_wearing(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        load: &Cycles,
+        mut visit: impl FnMut(usize, Wearing),
+    ) {
         let near = self.near_cracks(body);
         let original = body.originals();
-        let mut places = vec![];
-        let mut all = vec![];
         self.each_pair(|group, k, l| {
             if !self.is_whole(group, k, l) {
                 return;
@@ -297,24 +311,18 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 }
             }
             let stretch = history::stretch(relative_square_stretch(eta, r.xi, r.two_by_square));
-            let range = (1.0 - options.load_ratio) * stretch.abs();
+            let range = (1.0 - load.load_ratio) * stretch.abs();
             let of = |slot: usize| {
                 let fatigue = self.criteria.fatigue[self.material_at(slot)];
                 fatigue.map_or(0.0, |f| Wearing::rate(&f, range, near[i] || near[j]))
             };
             let place = self.family.own(group, k, 0, 1) + l;
-            places.push(place);
-            all.push(Wearing {
+            let bond = Wearing {
                 life: self.life[place],
                 rate: 0.5 * (of(i) + of(j)),
-            });
+            };
+            visit(place, bond);
         });
-        let passed = cycles(&all, options, left);
-        for (place, bond) in places.into_iter().zip(all) {
-            let left = bond.life - passed * bond.rate;
-            self.life[place] = if left < SPENT { 0.0 } else { left };
-        }
-        passed
     }
 
     /// Every directed bond that the family ever had, pre-cracks included: group, bond, place.

@@ -20,8 +20,8 @@ pub use cloud::CloudFamily;
 pub use lattice::LatticeFamily;
 
 use super::criterion::{Criteria, Measure};
-use super::{EnergyFields, Motion, PointEnergies, Repulsion, Tally, Toughness};
-use crate::body::{Body, Column, Field, Identity, field};
+use super::{EnergyFields, Motion, PointEnergiesMut, Repulsion, Tally, Toughness};
+use crate::body::{Body, Column, FieldView, FieldViewMut, Identity, field, view, view_mut};
 use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -272,7 +272,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// The room, filled for these displacements and a step of this length; give it back.
-    fn take_room(&mut self, u: &Field<D>, dt: f64) -> Room {
+    fn take_room(&mut self, u: FieldView<D>, dt: f64) -> Room {
         let mut room = std::mem::take(&mut self.room);
         self.pack(u, &mut room.records);
         self.fill_constants(dt, &mut room.constants);
@@ -281,7 +281,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// The same for those who only look.
-    fn look_room(&self, u: &Field<D>) -> Room {
+    fn look_room(&self, u: FieldView<D>) -> Room {
         let mut records = vec![0.0; self.room.records.len()];
         self.pack(u, &mut records);
         Room {
@@ -291,7 +291,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         }
     }
 
-    fn view<'a>(&'a self, u: &'a Field<D>, room: &'a Room) -> View<'a, D, F, M> {
+    fn view<'a>(&'a self, u: FieldView<'a, D>, room: &'a Room) -> View<'a, D, F, M> {
         View {
             law: &self.law,
             family: &self.family,
@@ -320,7 +320,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// Displacements as gathers want them.
-    fn pack(&self, u: &Field<D>, records: &mut [f64]) {
+    fn pack(&self, u: FieldView<D>, records: &mut [f64]) {
         for (slot, record) in records.chunks_mut(4).enumerate() {
             for a in 0..D {
                 record[a] = u[a][slot];
@@ -329,12 +329,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// All passes: points as the bonds see them.
-    fn settle(&mut self, body: &Body<D>, u: &Field<D>, room: &Room) {
+    fn settle(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
         self.settle_only(body, u, room, &[]);
     }
 
     /// Of the groups that are marked; no marks: of all.
-    fn settle_only(&mut self, body: &Body<D>, u: &Field<D>, room: &Room, only: &[u8]) {
+    fn settle_only(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room, only: &[u8]) {
         let mut point = std::mem::replace(&mut self.point, Store::zeros(self.family.layout(0)));
         for pass in 0..M::PASSES {
             let out = point.shared();
@@ -353,7 +353,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// Forces on points that have settled.
-    fn pull(&self, body: &Body<D>, u: &Field<D>, room: &Room, f: &mut Field<D>) {
+    fn pull(&self, body: &Body<D>, u: FieldView<D>, room: &Room, f: FieldViewMut<D>) {
         let kernel = Forces {
             view: self.view(u, room),
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
@@ -367,16 +367,16 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     fn step_of_rates(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
-        f: &mut Field<D>,
+        u: FieldView<D>,
+        mut f: FieldViewMut<D>,
         (motion, room): (Motion<D>, &mut Room),
-        seen: Option<&mut PointEnergies>,
+        seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         let after = motion.release == Release::AfterForce;
         self.work_before(body, u, room);
         self.settle(body, u, room);
         if after {
-            self.pull(body, u, room, f);
+            self.pull(body, u, room, view_mut(&mut f));
         }
         if after || self.measures() {
             self.measure(body, u, room);
@@ -420,9 +420,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     fn energies(
         &self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         room: &Room,
-        out: Option<&mut PointEnergies>,
+        out: Option<&mut PointEnergiesMut>,
     ) -> [f64; 2] {
         let fields = out.map(|out| EnergyFields::of(out, body.len));
         let held = self.held_energies();
@@ -450,7 +450,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         }
     }
 
-    fn seen(&self, body: &Body<D>, u: &Field<D>, room: &Room, out: &mut PointEnergies) {
+    fn seen(&self, body: &Body<D>, u: FieldView<D>, room: &Room, out: &mut PointEnergiesMut) {
         self.energies(body, u, room, Some(&mut *out));
         self.dilate(out);
     }
@@ -459,9 +459,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     fn tear(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         room: &Room,
-        v: &Field<D>,
+        v: FieldView<D>,
         drift: f64,
     ) -> Tally {
         self.look_damage(body);
@@ -533,7 +533,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// How stiff the points of some groups are now, and the most of all.
-    fn look_stiffness(&mut self, body: &Body<D>, u: &Field<D>, of: impl Fn(&[u8], usize) -> bool) {
+    fn look_stiffness(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        of: impl Fn(&[u8], usize) -> bool,
+    ) {
         let [whole, mut now] = std::mem::take(&mut self.stiffness);
         if now.is_empty() {
             return;
@@ -550,7 +555,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// [`Material::stiffness`] of a point with its whole bonds.
-    fn stiffness_of(&self, body: &Body<D>, u: &Field<D>, group: usize, l: usize) -> f64 {
+    fn stiffness_of(&self, body: &Body<D>, u: FieldView<D>, group: usize, l: usize) -> f64 {
         let room = Room::default();
         let view = self.view(u, &room);
         // SAFETY: a group of the family, whose bits nobody writes
@@ -565,7 +570,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             return;
         }
         self.stiffness = [vec![0.0; body.len], vec![0.0; body.len]];
-        self.look_stiffness(body, &crate::body::zeros(0), |_, _| true);
+        self.look_stiffness(body, view(&crate::body::zeros(0)), |_, _| true);
         self.stiffness[0] = self.stiffness[1].clone();
         self.stiffened = 1.0;
     }
@@ -591,12 +596,18 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// Memory at the end of a step.
-    fn remember(&mut self, body: &Body<D>, u: &Field<D>, room: &Room) -> Tally {
+    fn remember(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) -> Tally {
         self.remember_only(body, u, room, &[])
     }
 
     /// Of the groups that are marked; no marks: of all.
-    fn remember_only(&mut self, body: &Body<D>, u: &Field<D>, room: &Room, only: &[u8]) -> Tally {
+    fn remember_only(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        room: &Room,
+        only: &[u8],
+    ) -> Tally {
         if self.memory.is_empty() && self.past.data.is_empty() {
             return Tally::default();
         }
@@ -628,7 +639,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     /// What points know of their families, from the bonds that are whole now.
     fn look(&mut self, body: &Body<D>) {
-        self.look_stiffness(body, &crate::body::zeros(0), |_, _| true);
+        self.look_stiffness(body, view(&crate::body::zeros(0)), |_, _| true);
         self.look_forms(body);
     }
 
@@ -645,7 +656,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         };
         let mut form = self.form.clone();
         let room = Room::default();
-        let view = self.view(&u, &room);
+        let view = self.view(view(&u), &room);
         for group in 0..self.family.groups() {
             let first = self.family.byte(group, 0);
             let bits = match self.family.bonds(group) {

@@ -4,9 +4,9 @@ use super::breaking::fibre_limit;
 use super::family::{Family, Slots};
 use super::sweeps::{own_pull, pull};
 use super::{MaterialInteraction, Room};
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView, view};
 use crate::execute::lane::TILE;
-use crate::interaction::{BondForce, PointEnergies, along, history};
+use crate::interaction::{BondForce, PointEnergiesMut, along, history};
 use crate::law::material::{Bond, End, Material, Numbers, Site, part_of};
 
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
@@ -34,7 +34,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     /// Dilatations from `Σ ω ν V |ξ|² s` over the whole bonds: over the weighted volume of those that count, broken or not, where the law
     /// takes it so, else over that of the whole ones; and what part of it is whole, or how much.
-    pub(super) fn dilate(&self, out: &mut PointEnergies) {
+    pub(super) fn dilate(&self, out: &mut PointEnergiesMut) {
         let of_family = M::PASSES > 0 && !M::FORM_OF_WHOLE;
         let points = (0..self.family.groups()).flat_map(|g| (0..TILE).map(move |l| (g, l)));
         for (group, l) in points.filter(|(g, l)| self.family.is_point(*g, *l)) {
@@ -68,7 +68,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         &self,
         body: &Body<D>,
         gradient: &[[f64; D]; D],
-        out: &mut PointEnergies,
+        out: &mut PointEnergiesMut,
     ) {
         out.zeros(body.len);
         let u = crate::body::zeros(0);
@@ -76,7 +76,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             constants: self.constants(self.step),
             ..Room::default()
         };
-        let view = self.view(&u, &room);
+        let view = self.view(view(&u), &room);
         for group in 0..self.family.groups() {
             for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
                 let rows = self.family.rows(group).from(l);
@@ -139,7 +139,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// Adds the stress across a body in plane strain to σ_xx + σ_yy of every slot, at displacements that are settled. False: it is not known.
-    pub(super) fn add_across(&mut self, body: &Body<D>, u: &Field<D>, trace: &mut [f64]) -> bool {
+    pub(super) fn add_across(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        trace: &mut [f64],
+    ) -> bool {
         if !M::ACROSS {
             let known = self.held.iter().all(Option::is_some);
             for &s in &body.slots {
@@ -182,7 +187,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     pub(super) fn each_pull(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) {
         let room = self.take_room(u, self.step);

@@ -6,7 +6,7 @@
 use super::family::{Family, Slots};
 use super::view::mirrored;
 use super::{MaterialInteraction, Room};
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView};
 use crate::interaction::{BondTangent, Channel};
 use crate::law::material::{Around, Bond, End, ForceState, Material, Numbers, Site};
 use crate::law::number::Dual;
@@ -81,7 +81,7 @@ struct Half<const D: usize, M: Material<D>> {
 }
 
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
-    fn node(&self, u: &Field<D>, room: &Room, group: usize, l: usize) -> Node<D, M> {
+    fn node(&self, u: FieldView<D>, room: &Room, group: usize, l: usize) -> Node<D, M> {
         let view = self.view(u, room);
         let rows = self.family.rows(group).from(l);
         let slot = rows.slot(0);
@@ -272,7 +272,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     pub(super) fn each_tangent(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         let room = Room {

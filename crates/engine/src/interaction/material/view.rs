@@ -2,7 +2,7 @@
 
 use super::family::{Family, Moved, Slots};
 use super::store::{OwnRows, Rows};
-use crate::body::Field;
+use crate::body::FieldView;
 use crate::execute::blocks::Seen;
 use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
@@ -52,7 +52,7 @@ pub struct Group<L: Lane, S, P, C, const D: usize> {
 /// Displacements a time away from those of now.
 #[derive(Clone, Copy)]
 pub struct Drift<'a, const D: usize> {
-    pub v: &'a Field<D>,
+    pub v: FieldView<'a, D>,
     pub time: f64,
 }
 

@@ -1,7 +1,7 @@
 //! Columns of several bodies: those of each side by side, then those of the bonds between them.
 
-use super::{SeveralInteraction, part, pieces};
-use crate::body::{Body, Field};
+use super::{SeveralInteraction, pieces};
+use crate::body::{Body, FieldView, view};
 use crate::columns::On;
 use crate::interaction::Interaction;
 
@@ -10,7 +10,7 @@ impl<const D: usize> SeveralInteraction<D> {
     pub(super) fn read_named(
         &self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         name: &str,
         out: &mut Vec<f64>,
     ) -> bool {
@@ -24,7 +24,7 @@ impl<const D: usize> SeveralInteraction<D> {
             out.resize(numbers * body.len, 0.0);
         }
         for (p, bonds) in self.each(body) {
-            if bonds.read_column(&p.body, &part(u, p), name, &mut own) {
+            if bonds.read_column(&p.body, p.part(u), name, &mut own) {
                 match column.on {
                     On::Points => {
                         out[numbers * p.first..][..own.len()].copy_from_slice(&own);
@@ -59,7 +59,7 @@ impl<const D: usize> SeveralInteraction<D> {
                 On::Points => numbers * p.first..numbers * (p.first + p.body.len),
                 On::Bonds => {
                     let (begin, mut own) = (first, vec![]);
-                    bonds.read_column(&p.body, &p.body.at_rest(), name, &mut own);
+                    bonds.read_column(&p.body, view(&p.body.at_rest()), name, &mut own);
                     first += own.len();
                     begin..first
                 }

@@ -2,7 +2,7 @@
 
 use super::StencilInteraction;
 use super::kernel::WHOLE;
-use crate::body::{Body, Field, Grid, zeros};
+use crate::body::{Body, FieldView, Grid, view_mut, zeros};
 use crate::execute::blocks::PerBlock;
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
@@ -27,7 +27,7 @@ const TILES: usize = 32;
 struct Virial<'a, const D: usize, W: Law> {
     of: &'a StencilInteraction<D, W>,
     body: &'a Body<D>,
-    u: &'a Field<D>,
+    u: FieldView<'a, D>,
 }
 
 impl<const D: usize, W: Law> Kernel for Virial<'_, D, W> {
@@ -123,16 +123,16 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     }
 
     /// The pressures of this state.
-    fn update_pressures(&mut self, body: &Body<D>, u: &Field<D>) {
+    fn update_pressures(&mut self, body: &Body<D>, u: FieldView<D>) {
         if W::SHARES {
-            self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
+            self.forces(body, u, view_mut(&mut zeros(body.len)), Sweep::Hold, None);
         }
     }
 
     pub(super) fn each_tangent(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         self.update_pressures(body, u);
@@ -159,7 +159,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     pub(super) fn each_pull(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) {
         self.update_pressures(body, u);
@@ -167,7 +167,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     }
 
     /// Σ of distance times force over the pairs, on threads.
-    pub(super) fn virial_of_pulls(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 6] {
+    pub(super) fn virial_of_pulls(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 6] {
         self.update_pressures(body, u);
         let kernel = Virial { of: self, body, u };
         PerBlock::sums(self.tiles.len().div_ceil(TILES)).sum(self.simd, &kernel)
@@ -177,7 +177,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     fn pulls_of(
         &self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         tiles: Range<usize>,
         mut visit: impl FnMut(BondForce<D>),
     ) {

@@ -1,7 +1,7 @@
 //! What the bonds of a stencil remember: which are whole, which were cut, and from which stretch they break.
 
 use super::StencilInteraction;
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView};
 use crate::execute::lane::TILE;
 use crate::interaction::history::{self, Crosses};
 use crate::law::Law;
@@ -75,7 +75,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     pub(super) fn mend_where(
         &mut self,
         body: &Body<D>,
-        u: &Field<D>,
+        u: FieldView<D>,
         heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> u64 {
         let grid = body.grid();

@@ -2,7 +2,7 @@
 
 use super::bodies::Bodies;
 use super::bonds::Bonds;
-use crate::body::zeros;
+use crate::body::{view, zeros};
 use crate::condition::applied::AppliedForces;
 use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::error::BuildError;
@@ -182,7 +182,7 @@ fn limits<const D: usize>(
     if spec.damage.healing.is_some() {
         // a step is stable when all is whole again
         let rest = body.at_rest();
-        interaction.mend(body, &rest, &|_, _, _| true);
+        interaction.mend(body, view(&rest), &|_, _, _| true);
     }
     let inertia = Inertia::of(spec, body)?;
     let limits = match trust || !spec.run.schedule.stepper.has_inertia() {

@@ -8,9 +8,8 @@ use crate::condition::load::Load;
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::spec::LinearBody;
-use crate::statics::cg::{self, Goal};
 use crate::statics::{
-    self, Assembled, Block, Direct, LinearOperator, Shifted, Solved, Support, Swept, norm,
+    self, Assembled, Block, Direct, Goal, LinearOperator, Shifted, Solved, Support, Swept, norm,
 };
 
 impl<const D: usize> Problem<'_, D> {
@@ -161,7 +160,7 @@ impl<const D: usize> Problem<'_, D> {
                 (None, _) => {
                     let operator = &mut Swept::new(&system.body, system.interaction.as_mut());
                     let mut operator = Shifted { operator, added };
-                    cg::solve(&mut operator, support, b, x, goal)?
+                    statics::cg::solve(&mut operator, support, b, x, goal)?
                 }
             };
             iterations += solved.iterations.max(1);
@@ -240,5 +239,5 @@ pub(super) fn solve_assembled<const D: usize>(
         return Err(SolveError::NotSymmetric { asymmetry });
     }
     let operator = &mut Assembled(body);
-    cg::solve(&mut Shifted { operator, added }, support, b, x, goal)
+    statics::cg::solve(&mut Shifted { operator, added }, support, b, x, goal)
 }

@@ -17,7 +17,7 @@ pub(super) mod tried;
 use self::problem::Problem;
 use self::state::StaticState;
 use super::system::System;
-use crate::body::{Field, zeros};
+use crate::body::{Field, view, view_mut, zeros};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::interaction::Sweep;
@@ -113,13 +113,13 @@ impl<const D: usize> System<D> {
         let still = zeros(self.body.len);
         let mut f = zeros(self.body.len);
         let sweep = Sweep::Evolve {
-            v: &still,
+            v: view(&still),
             steps: [0.0; 2],
             release: self.release,
         };
         let tally = self
             .interaction
-            .forces(&self.body, &rest, &mut f, sweep, None);
+            .forces(&self.body, view(&rest), view_mut(&mut f), sweep, None);
         self.accounts.book(&tally);
         self.take_heat_of_flow();
     }
@@ -227,8 +227,8 @@ impl<const D: usize> Problem<'_, D> {
             false => {
                 system.interaction.forces(
                     &system.body,
-                    &system.u,
-                    &mut system.f,
+                    view(&system.u),
+                    view_mut(&mut system.f),
                     Sweep::Hold,
                     None,
                 );

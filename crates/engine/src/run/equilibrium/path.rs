@@ -185,11 +185,7 @@ impl<const D: usize> Problem<'_, D> {
                 return Ok((solved, followed));
             }
         }
-        Err(SolveError::NotConverged {
-            iterations: TRIALS,
-            residual: now.left,
-            tolerance: goal.tolerance,
-        })
+        Err(goal.missed(TRIALS, now.left))
     }
 
     /// What is left over at the end of a way.

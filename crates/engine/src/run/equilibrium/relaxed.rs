@@ -3,6 +3,7 @@
 
 use super::problem::Problem;
 use super::state::StaticState;
+use crate::body::view;
 use crate::condition::indenter::Indenter;
 use crate::condition::load::Load;
 use crate::dynamics::stable_step::largest_ratio;
@@ -31,7 +32,7 @@ impl<const D: usize> Problem<'_, D> {
         let body = &self.system.body;
         self.system
             .interaction
-            .tangents(body, &reference, &mut |bond| {
+            .tangents(body, view(&reference), &mut |bond| {
                 let trace: f64 = (0..D).map(|a| bond.stiffness[a][a].abs()).sum();
                 sum[bond.i] += body.volume.at(bond.i) * trace;
             });
@@ -88,11 +89,7 @@ impl<const D: usize> Problem<'_, D> {
                 return Ok(total);
             }
         }
-        Err(SolveError::NotConverged {
-            iterations: total.iterations,
-            residual: total.residual,
-            tolerance: goal.tolerance,
-        })
+        Err(goal.missed(total.iterations, total.residual))
     }
 
     /// Raises masses where points touch or forces hold them: they stay light enough to settle elsewhere. `sum` is room for a number per slot.
@@ -121,7 +118,8 @@ impl<const D: usize> Problem<'_, D> {
     /// Do points repel that are in each other's family?
     fn repels_inside(&mut self) -> bool {
         let system = &mut *self.system;
-        system.contact.is_some() && system.interaction.energy(&system.body, &system.u)[1] > 0.0
+        system.contact.is_some()
+            && system.interaction.energy(&system.body, view(&system.u))[1] > 0.0
     }
 
     /// Raises masses by what repulsion inside families resists with.

@@ -14,7 +14,7 @@
 use super::held::Held;
 use super::problem::Problem;
 use super::state::{Critical, Sequence, StaticState};
-use crate::body::Field;
+use crate::body::{Field, view};
 use crate::error::{BuildError, SolveError};
 use crate::interaction::bond::critical_stretch;
 use crate::interaction::{BondState, history};
@@ -64,7 +64,7 @@ impl<const D: usize> System<D> {
     pub(super) fn criticals(&self) -> Vec<f64> {
         let mut out = vec![];
         self.interaction
-            .read_column(&self.body, &self.u, history::ELONGATION, &mut out);
+            .read_column(&self.body, view(&self.u), history::ELONGATION, &mut out);
         out
     }
 
@@ -104,7 +104,7 @@ impl<const D: usize> Problem<'_, D> {
         if let Some(last) = &last {
             self.system.interaction.read_column(
                 &self.system.body,
-                &self.system.u,
+                view(&self.system.u),
                 history::WHOLE,
                 &mut whole,
             );

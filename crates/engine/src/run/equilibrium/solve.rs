@@ -4,13 +4,12 @@ use super::equations::solve_assembled;
 use super::problem::Problem;
 use super::state::StaticState;
 use super::tried::{Inertia, Tried};
-use crate::body::zeros;
+use crate::body::{view, view_mut, zeros};
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::interaction::Sweep;
 use crate::spec::Statics;
-use crate::statics::cg::{self, Goal};
-use crate::statics::{self, Assembled, Direct, Solved, Support, Swept, norm};
+use crate::statics::{self, Assembled, Direct, Goal, Solved, Support, Swept, norm};
 
 /// Relative residual above which a direct solution is none: the matrix is singular to round-off.
 const SOLVED: f64 = 1e-6;
@@ -50,8 +49,8 @@ impl<const D: usize> Problem<'_, D> {
             let u = self.system.body.at_rest();
             self.system.interaction.forces(
                 &self.system.body,
-                &u,
-                &mut reference,
+                view(&u),
+                view_mut(&mut reference),
                 Sweep::Hold,
                 None,
             );
@@ -125,7 +124,7 @@ impl<const D: usize> Problem<'_, D> {
             if asymmetry > statics::SYMMETRIC {
                 return Err(SolveError::NotSymmetric { asymmetry });
             }
-            cg::solve(&mut operator, support, b, x, goal)
+            statics::cg::solve(&mut operator, support, b, x, goal)
         } else {
             let body = self.reference_body();
             solve_assembled(&body, &[], support, b, x, goal)
@@ -228,11 +227,7 @@ impl<const D: usize> Problem<'_, D> {
                 part *= 0.5;
             }
         }
-        Err(SolveError::NotConverged {
-            iterations,
-            residual: missing.size / scale,
-            tolerance: goal.tolerance,
-        })
+        Err(goal.missed(iterations, missing.size / scale))
     }
 
     /// Forces that are missing on the free components and on bodies, less what inertia takes.

@@ -8,6 +8,7 @@ use super::names::Names;
 use super::stages::{Stage, Stages};
 use super::stepper::{self, Stepper};
 use super::system::System;
+use crate::body::view;
 use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
@@ -170,7 +171,11 @@ impl<const D: usize> System<D> {
     /// Motion begins where statics ended: cracks are cut, and first forces found.
     fn set_in_motion(&mut self, cuts: &[Crack<D>]) {
         if !cuts.is_empty() {
-            let held: f64 = self.interaction.energy(&self.body, &self.u).iter().sum();
+            let held: f64 = self
+                .interaction
+                .energy(&self.body, view(&self.u))
+                .iter()
+                .sum();
             for crack in cuts {
                 self.info.cut +=
                     self.interaction
@@ -178,7 +183,11 @@ impl<const D: usize> System<D> {
                             crack.crosses(&from, &to)
                         });
             }
-            let kept: f64 = self.interaction.energy(&self.body, &self.u).iter().sum();
+            let kept: f64 = self
+                .interaction
+                .energy(&self.body, view(&self.u))
+                .iter()
+                .sum();
             self.accounts.released.book(held - kept);
         }
         let step = [self.clock.time(), self.clock.dt()];

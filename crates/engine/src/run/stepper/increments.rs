@@ -1,9 +1,10 @@
 //! Statics: every step is an increment of load, and ends in equilibrium.
 
 use super::{SplitStep, Stepper};
-use crate::body::{Field, zeros};
+use crate::body::{Field, view, view_mut, zeros};
 use crate::error::{BuildError, RunError};
 use crate::interaction::Sweep;
+use crate::interaction::criterion;
 use crate::interaction::friction::Pressed;
 use crate::message;
 use crate::quantity::Dimension;
@@ -180,7 +181,7 @@ fn forces_before<const D: usize>(system: &mut System<D>) {
         let (body, u) = (&system.body, &system.u);
         system
             .interaction
-            .forces(body, u, &mut system.f, Sweep::Hold, None);
+            .forces(body, view(u), view_mut(&mut system.f), Sweep::Hold, None);
     }
     if system.clock.has_gone_on() {
         system.other_forces(system.clock.trial());
@@ -193,11 +194,14 @@ fn wear<const D: usize>(system: &mut System<D>, cycles: Option<Cycles>) {
         return;
     };
     system.refresh_images();
+    let (body, u) = (&system.body, view(&system.u));
+    let Some(bonds) = system.interaction.wearing(body, u, &cycles) else {
+        return;
+    };
     let left = (cycles.most - system.accounts.cycles).max(0.0);
-    let passed = system
-        .interaction
-        .wear(&system.body, &system.u, &cycles, left);
-    system.accounts.cycles += passed.unwrap_or(0.0);
+    let passed = criterion::cycles(&bonds, &cycles, left);
+    system.interaction.wear(body, u, &cycles, passed);
+    system.accounts.cycles += passed;
 }
 
 /// The start of the run was no equilibrium.

@@ -1,6 +1,7 @@
 //! Motion in time by velocity Verlet, and the way back from a step that failed.
 
 use super::{SplitStep, Stepper};
+use crate::body::view;
 use crate::dynamics::verlet::Verlet;
 use crate::error::RunError;
 use crate::execute::simd::Simd;
@@ -196,7 +197,7 @@ impl VelocityVerlet {
             return 1;
         };
         system.refresh_images();
-        let shortest = system.interaction.shortest(&system.body, &system.u);
+        let shortest = system.interaction.shortest(&system.body, view(&system.u));
         let most = fraction.max(HELD);
         let parts = (fraction / (most * shortest)).ceil().clamp(1.0, PARTS) as u32;
         parts.max(parts_of_indenters(system, fraction))
@@ -277,9 +278,11 @@ fn refused<const D: usize>(system: &System<D>, limit: f64) -> RunError {
 /// Does a slot's repulsion hold more energy than its bonds?
 fn is_pushed<const D: usize>(system: &System<D>, slot: usize) -> bool {
     let mut seen = PointEnergies::default();
-    system
-        .interaction
-        .observe(&system.body, &system.u, &mut seen);
+    system.interaction.observe(
+        &system.body,
+        view(&system.u),
+        &mut seen.for_slots(system.body.len),
+    );
     if let Some(contact) = &system.contact {
         let repulsion = &mut seen.repulsion;
         contact

@@ -1,7 +1,7 @@
 //! Forces of everything that acts.
 
 use super::System;
-use crate::body::Field;
+use crate::body::{Field, view, view_mut};
 use crate::interaction::friction::Pressed;
 use crate::interaction::{Evaluation, Sweep};
 use crate::run::Watched;
@@ -12,7 +12,7 @@ impl<const D: usize> System<D> {
         self.refresh_images();
         let (body, u) = (&self.body, &self.u);
         self.interaction
-            .forces(body, u, &mut self.f, Sweep::Hold, None);
+            .forces(body, view(u), view_mut(&mut self.f), Sweep::Hold, None);
         self.other_forces(at);
     }
 
@@ -44,16 +44,18 @@ impl<const D: usize> System<D> {
                 self.body.fill_images(c);
             }
             self.tell_toughness();
+            let room = self.body.len;
+            let mut seen = watched.as_mut().map(|w| w.for_slots(room));
             let tally = self.interaction.forces(
                 &self.body,
-                &self.u,
-                &mut self.f,
+                view(&self.u),
+                view_mut(&mut self.f),
                 Sweep::Evolve {
-                    v: &self.v,
+                    v: view(&self.v),
                     steps,
                     release: self.release,
                 },
-                watched.as_mut(),
+                seen.as_mut(),
             );
             self.fault = tally.fault;
             self.accounts.book(&tally);
@@ -61,7 +63,7 @@ impl<const D: usize> System<D> {
         } else {
             self.f.iter_mut().for_each(|c| c.fill(0.0));
             if let Some(w) = &mut watched {
-                w.zeros(self.body.len);
+                w.for_slots(self.body.len).zeros(self.body.len);
             }
         }
         self.watch.energies = watched;

@@ -3,7 +3,7 @@
 //! Near incompressibility the two differ by much: the small rotations of a linear solution change volumes in second order.
 
 use super::System;
-use crate::body::Field;
+use crate::body::{Field, view, view_mut};
 use crate::interaction::{PointEnergies, Sweep};
 use crate::law::descriptor::Memory;
 use crate::run::constitutive::Laws;
@@ -72,14 +72,19 @@ impl<const D: usize> System<D> {
         let mut seen = PointEnergies::default();
         match self.is_linear() {
             true => self.see_linear(&mut seen),
-            false => self.interaction.observe(&self.body, &self.u, &mut seen),
+            false => self.interaction.observe(
+                &self.body,
+                view(&self.u),
+                &mut seen.for_slots(self.body.len),
+            ),
         }
         seen
     }
 
     fn see_linear(&self, seen: &mut PointEnergies) {
         let (u, small) = self.made_small();
-        self.interaction.observe(&self.body, &u, seen);
+        self.interaction
+            .observe(&self.body, view(&u), &mut seen.for_slots(self.body.len));
         for energy in seen.strain.iter_mut().chain(&mut seen.repulsion) {
             *energy = *energy / small / small;
         }
@@ -89,15 +94,20 @@ impl<const D: usize> System<D> {
     /// `½ uᵀK u` (energy).
     pub fn quadratic_energy(&mut self) -> [f64; 2] {
         let (u, small) = self.made_small();
-        let energy = self.interaction.energy(&self.body, &u);
+        let energy = self.interaction.energy(&self.body, view(&u));
         energy.map(|e| e / small / small)
     }
 
     /// Forces `−K u` of bonds in place of those of the law; no loads.
     pub fn linear_forces(&mut self) {
         let (u, small) = self.made_small();
-        self.interaction
-            .forces(&self.body, &u, &mut self.f, Sweep::Hold, None);
+        self.interaction.forces(
+            &self.body,
+            view(&u),
+            view_mut(&mut self.f),
+            Sweep::Hold,
+            None,
+        );
         for &s in &self.body.slots {
             for a in 0..D {
                 self.f[a][s as usize] /= small;

@@ -2,6 +2,7 @@
 
 use super::make::Maker;
 use super::state::Transfers;
+use crate::body::view;
 use crate::error::BuildError;
 use crate::run::constitutive::general;
 use crate::run::system::System;
@@ -60,7 +61,11 @@ impl<const D: usize> Maker<'_, D> {
         };
         let mut trace = vec![0.0; system.body.len];
         let (body, u) = (&system.body, &system.u);
-        if D == 2 && system.expands() && !system.interaction.add_stress_across(body, u, &mut trace)
+        if D == 2
+            && system.expands()
+            && !system
+                .interaction
+                .add_stress_across(body, view(u), &mut trace)
         {
             return Err(BuildError::unsupported(
                 transfers[n].quantity.name(),
@@ -128,9 +133,9 @@ impl<const D: usize> System<D> {
         }
         let (body, transfers) = (&self.body, &mut self.transfers);
         self.interaction.expand(body, &transfers.past);
-        let past = self.interaction.energy(body, &u)[0];
+        let past = self.interaction.energy(body, view(&u))[0];
         self.interaction.expand(body, &transfers.strain);
-        let price = part * (self.interaction.energy(body, &u)[0] - past);
+        let price = part * (self.interaction.energy(body, view(&u))[0] - past);
         transfers.price += price;
         self.accounts.past.conditions += price;
     }
@@ -150,7 +155,7 @@ impl<const D: usize> System<D> {
         };
         let mut trace: Vec<f64> = all.iter().enumerate().map(per).collect();
         self.interaction
-            .add_stress_across(&self.body, &self.u, &mut trace);
+            .add_stress_across(&self.body, view(&self.u), &mut trace);
         let whole = trace.iter().enumerate();
         Some(whole.map(|(i, s)| -volume(i) * s).collect())
     }

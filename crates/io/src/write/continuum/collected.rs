@@ -6,6 +6,7 @@ use super::slice::SliceFilm;
 use super::{write_arrays, write_image, write_profiles, write_slice, write_table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, create_directory, write_file};
+use crate::write::grown::Seal;
 use crate::write::pvd::Pvd;
 use peridyne::state::{Archive, Owner};
 use peridyne_fields::average::Average;
@@ -27,7 +28,10 @@ pub struct Collected {
     read: Vec<Frame>,
     average: Average,
     last: Option<(Table, Option<f64>)>,
+    /// Frames of a grid.
     pvd: Pvd,
+    /// Names of the others, and what is in them.
+    tables: Vec<(String, Seal)>,
     written: Vec<PathBuf>,
 }
 
@@ -44,6 +48,7 @@ impl Collected {
             read: vec![],
             average: Average::default(),
             last: None,
+            tables: vec![],
             written: vec![],
         }
     }
@@ -80,6 +85,11 @@ impl Collected {
             archive.one("time", time);
         });
         archive.part("list", &mut self.pvd);
+        let none = || (String::new(), Seal::default());
+        archive.items("tables", &mut self.tables, none, |(name, seal), archive| {
+            archive.text("name", name);
+            archive.part("file", seal);
+        });
     }
 
     /// Writes the list of frames as it was when the state was saved, and takes away frames that came after it.
@@ -88,6 +98,9 @@ impl Collected {
     /// The operating system's; a frame is not as it was.
     pub fn rewind(&mut self) -> Result<(), WriteError> {
         self.pvd.holds()?;
+        for (name, seal) in &self.tables {
+            seal.holds(&self.dir.join(name))?;
+        }
         if self.each {
             // frames are counted: those beyond are of later states
             for index in self.read.len().. {
@@ -137,8 +150,9 @@ impl Collected {
                     self.pvd.push(shown.unwrap_or(index as f64), &own, seal)?;
                 }
                 None => {
-                    let path = self.dir.join(format!("{stem}.csv"));
-                    write_table(&path, &table)?;
+                    let name = format!("{stem}.csv");
+                    let path = self.dir.join(&name);
+                    self.tables.push((name, write_table(&path, &table)?));
                     self.written.push(path);
                 }
             }
@@ -214,7 +228,9 @@ fn save(
 ) -> Result<Vec<PathBuf>, WriteError> {
     let mut pictures = vec![];
     match table.grid {
-        None => write_table(&dir.join("points.csv"), table)?,
+        None => {
+            write_table(&dir.join("points.csv"), table)?;
+        }
         Some(_) => {
             write_image(dir, "fields", table, time)?;
             pictures = write_slice(dir, table, about.units)?;

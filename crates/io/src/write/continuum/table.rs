@@ -2,21 +2,22 @@
 //! where one is missing altogether, a last column without values says why.
 
 use super::columns::{Column, Table, components};
-use crate::write::atomic::{WriteError, write_file};
+use crate::write::atomic::WriteError;
+use crate::write::grown::{Seal, write_sealed};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes the table; of means also `errors` beside it, with the standard errors.
+/// Writes the table, and says what is in it; of means also `errors` beside it, with the standard errors.
 ///
 /// # Errors
 /// The operating system's.
-pub fn write_table(path: &Path, table: &Table) -> Result<(), WriteError> {
-    write_file(path, |w| rows(w, table, |c| c.values.as_deref().ok()))?;
+pub fn write_table(path: &Path, table: &Table) -> Result<Seal, WriteError> {
+    let seal = write_sealed(path, |w| rows(w, table, |c| c.values.as_deref().ok()))?;
     if table.columns.iter().any(|c| c.errors.is_some()) {
         let errors = path.with_file_name("errors.csv");
-        write_file(&errors, |w| rows(w, table, |c| c.errors.as_deref()))?;
+        write_sealed(&errors, |w| rows(w, table, |c| c.errors.as_deref()))?;
     }
-    Ok(())
+    Ok(seal)
 }
 
 fn rows<W: Write>(

@@ -2,7 +2,7 @@
 
 use super::cells::{Cells, Extent, Sorted};
 use super::{BLOCK, Lines, NOBODY, NearList, Reaches, Tile, atoms_of, ghosts, position};
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView};
 use crate::execute::blocks::{PerBlock, Shared, for_each_piece, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
@@ -89,7 +89,7 @@ impl Block {
 }
 
 impl<const D: usize> NearList<D> {
-    pub(super) fn build(&mut self, body: &Body<D>, u: &Field<D>, simd: Simd) {
+    pub(super) fn build(&mut self, body: &Body<D>, u: FieldView<D>, simd: Simd) {
         let mut base = vec![[0.0; 4]; body.points()];
         let wrap = Wrap {
             body,
@@ -177,7 +177,7 @@ impl<const D: usize> NearList<D> {
     }
 
     /// Put own atoms in order of kinds, and those of a kind in order of cells; where kinds are mixed in order of cells alone.
-    fn arrange(&mut self, cells: &Cells<D>, base: &[[f64; 4]], body: &Body<D>, u: &Field<D>) {
+    fn arrange(&mut self, cells: &Cells<D>, base: &[[f64; 4]], body: &Body<D>, u: FieldView<D>) {
         let slots = &body.slots;
         let groups = self.groups();
         let kind = |n: usize| body.material_of(slots[n] as usize);
@@ -238,7 +238,7 @@ fn in_tiles_of_a_kind(
 /// What to add to displacements so that atoms are inside the box, by id, and how far they reach.
 struct Wrap<'a, const D: usize> {
     body: &'a Body<D>,
-    u: &'a Field<D>,
+    u: FieldView<'a, D>,
     period: &'a [Option<f64>; D],
     base: Shared<[f64; 4]>,
 }

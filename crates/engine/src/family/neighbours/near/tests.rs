@@ -1,4 +1,5 @@
 use super::*;
+use crate::body::view;
 use crate::samples::Random;
 
 /// So many atoms anywhere in a box.
@@ -21,7 +22,7 @@ fn check<const D: usize>(n: usize, length: f64, periodic: bool) {
     let (cutoff, skin) = (0.21 * length, 0.05 * length);
     let mut list = NearList::new(&body, cutoff, skin);
     for round in 0..4 {
-        list.update(&body, &u, Simd::detect());
+        list.update(&body, view(&u), Simd::detect());
         let mut found = vec![];
         for b in 0..list.blocks() {
             for tile in list.tiles_of_kinds(b) {
@@ -120,9 +121,11 @@ fn trace(threads: usize, kinds: usize, lines: Lines) -> Vec<u64> {
                     c[s as usize] += length * random.next();
                 }
             }
-            assert_eq!(list.update(&body, &u, Simd::detect()), anew);
+            assert_eq!(list.update(&body, view(&u), Simd::detect()), anew);
             assert!(list.ghosts.len() > 8000);
-            assert!(list.positions_at(&u, Simd::detect()).as_deref() == Some(list.positions()));
+            assert!(
+                list.positions_at(view(&u), Simd::detect()).as_deref() == Some(list.positions())
+            );
             bits.extend(list.positions().iter().flatten().map(|x| x.to_bits()));
             for tile in (0..list.blocks()).flat_map(|b| list.tiles_of_kinds(b)) {
                 bits.extend(list.slots(tile.number).iter().map(|s| u64::from(*s)));
@@ -157,7 +160,7 @@ fn of_kinds(lines: Lines) {
     let reaches = reaches(3);
     let mut list = NearList::of_kinds(&body, reaches.clone(), 0.3, lines);
     for round in 0..3 {
-        list.update(&body, &u, Simd::detect());
+        list.update(&body, view(&u), Simd::detect());
         let mut found = vec![];
         for tile in (0..list.blocks()).flat_map(|b| list.tiles_of_kinds(b)) {
             for (l, &slot) in list.slots(tile.number).iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Bonded terms one by one, and what each atom gathers from its own.
 
-use crate::body::{Body, Field};
+use crate::body::{Body, FieldView};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::Lane;
 use crate::execute::simd::Kernel;
@@ -49,7 +49,7 @@ impl Term {
 /// Where the particles of a term are, seen from the first, each by the nearest image of that before it, and the ξ of their pairs.
 pub(super) fn places<const D: usize>(
     body: &Body<D>,
-    u: &Field<D>,
+    u: FieldView<D>,
     term: &Term,
 ) -> ([[f64; D]; 4], [f64; 6]) {
     let mut at = [[0.0; D]; 4];
@@ -105,7 +105,7 @@ pub(super) fn left_out<const D: usize>(
 
 pub(super) struct Evaluate<'a, const D: usize> {
     pub body: &'a Body<D>,
-    pub u: &'a Field<D>,
+    pub u: FieldView<'a, D>,
     pub forms: &'a [Form],
     pub pair: &'a PairEnergy,
     pub terms: &'a [Term],

@@ -1,4 +1,5 @@
 use super::*;
+use crate::body::{Field, FieldView, view, view_mut};
 use crate::interaction::atoms::current::CurrentAtoms;
 use crate::law::bonded::{Wave, cosine_powers};
 use crate::law::jet::Jet;
@@ -100,10 +101,10 @@ fn bonded(body: &Body<3>, spec: &Arc<BondedSpec>) -> BondedAtoms<3> {
     BondedAtoms::new(inner, body, spec.clone(), pair, simd)
 }
 
-fn forces(made: &mut BondedAtoms<3>, body: &Body<3>, u: &Field<3>) -> Vec<[f64; 3]> {
+fn forces(made: &mut BondedAtoms<3>, body: &Body<3>, u: FieldView<3>) -> Vec<[f64; 3]> {
     let mut f = body.at_rest();
     let sweep = Sweep::Hold;
-    made.forces(body, u, &mut f, sweep, None);
+    made.forces(body, u, view_mut(&mut f), sweep, None);
     let slots = body.slots.iter().map(|s| *s as usize);
     slots.map(|s| std::array::from_fn(|a| f[a][s])).collect()
 }
@@ -119,12 +120,12 @@ fn forces_are_slopes_of_the_energy() {
     let (body, spec) = chains();
     let mut made = bonded(&body, &spec);
     let u = body.at_rest();
-    let f = forces(&mut made, &body, &u);
+    let f = forces(&mut made, &body, view(&u));
     let size = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     for (n, f) in f.iter().enumerate() {
         let slot = body.slots[n] as usize;
         for a in 0..3 {
-            let mut at = |h| made.energy(&body, &moved(&u, slot, a, h))[0];
+            let mut at = |h| made.energy(&body, view(&moved(&u, slot, a, h)))[0];
             let slope = (8.0 * (at(1e-4) - at(-1e-4)) - (at(2e-4) - at(-2e-4))) / 12e-4;
             assert!(
                 (slope + f[a]).abs() < 1e-8 * size,
@@ -134,10 +135,10 @@ fn forces_are_slopes_of_the_energy() {
         }
     }
     // the energies of points are all of it
-    let mut seen = PointEnergies::default();
-    made.observe(&body, &u, &mut seen);
+    let mut seen = crate::interaction::PointEnergies::default();
+    made.observe(&body, view(&u), &mut seen.for_slots(body.len));
     let sum: f64 = body.slots.iter().map(|s| seen.strain[*s as usize]).sum();
-    let whole = made.energy(&body, &u)[0];
+    let whole = made.energy(&body, view(&u))[0];
     assert!((sum - whole).abs() < 1e-11 * whole.abs());
 }
 
@@ -153,7 +154,7 @@ fn tangents_are_slopes_of_forces() {
     }
     let mut block = vec![[[0.0; 3]; 3]; n * n];
     let mut pulled = vec![[0.0; 3]; n];
-    made.tangents(&body, &u, &mut |bond| {
+    made.tangents(&body, view(&u), &mut |bond| {
         let (i, j) = (point[bond.i], point[bond.j]);
         for a in 0..3 {
             pulled[i][a] += bond.tension * bond.y[a];
@@ -162,7 +163,7 @@ fn tangents_are_slopes_of_forces() {
             }
         }
     });
-    let f = forces(&mut made, &body, &u);
+    let f = forces(&mut made, &body, view(&u));
     let size = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     let stiff = block
         .iter()
@@ -174,7 +175,13 @@ fn tangents_are_slopes_of_forces() {
     }
     for j in 0..n {
         for b in 0..3 {
-            let mut at = |h| forces(&mut made, &body, &moved(&u, body.slots[j] as usize, b, h));
+            let mut at = |h| {
+                forces(
+                    &mut made,
+                    &body,
+                    view(&moved(&u, body.slots[j] as usize, b, h)),
+                )
+            };
             let [p, m, pp, mm] = [at(1e-4), at(-1e-4), at(2e-4), at(-2e-4)];
             for i in (0..n).filter(|i| *i != j) {
                 for a in 0..3 {
@@ -204,7 +211,7 @@ fn the_virial_is_the_slope_by_strain() {
         .collect();
     let body = Body::<3>::from_cloud(&x, &[1.0; 30], &[], 1.0, [None; 3]).unwrap();
     let mut made = bonded(&body, &spec);
-    let virial = made.virial(&body, &body.at_rest()).unwrap();
+    let virial = made.virial(&body, view(&body.at_rest())).unwrap();
     let size = virial.iter().fold(1.0f64, |m, x| m.max(x.abs()));
     let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
     for (n, (a, b)) in pairs.into_iter().enumerate() {
@@ -213,7 +220,7 @@ fn the_virial_is_the_slope_by_strain() {
             for (x, s) in x.iter().zip(&body.slots) {
                 u[a][*s as usize] += h * x[b];
             }
-            made.energy(&body, &u)[0]
+            made.energy(&body, view(&u))[0]
         };
         let slope = (8.0 * (at(1e-5) - at(-1e-5)) - (at(2e-5) - at(-2e-5))) / 12e-5;
         assert!(
@@ -231,7 +238,7 @@ fn the_number_of_threads_does_not_show() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap().install(|| {
             let mut made = bonded(&body, &spec);
-            forces(&mut made, &body, &body.at_rest())
+            forces(&mut made, &body, view(&body.at_rest()))
         })
     };
     assert!(of(1) == of(3));

@@ -1,7 +1,7 @@
 //! The force pass: forces, breaking, and what the next step remembers.
 
 use super::{End, View, scatter};
-use crate::body::Field;
+use crate::body::FieldView;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{Lane, TILE};
@@ -170,7 +170,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
 /// `(ξ+η)·(v_j − v_i)`; `y` points from i to j.
 #[inline(always)]
 unsafe fn parting<L: Lane, const D: usize>(
-    v: &Field<D>,
+    v: FieldView<D>,
     y: [L; D],
     rows: *const u32,
     partners: *const u32,

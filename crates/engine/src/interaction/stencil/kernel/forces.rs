@@ -3,7 +3,7 @@
 use super::chunk::{CHUNK, Chunk};
 use super::offsets::Offsets;
 use super::{Bond, MOST, View};
-use crate::body::Field;
+use crate::body::FieldView;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{Lane, Piece, TILE};
@@ -396,7 +396,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
 
 /// `(ξ+η)·(v_j − v_i)`; `y` points from j to i.
 #[inline(always)]
-unsafe fn parting<L: Lane, const D: usize>(v: &Field<D>, y: [L; D], i: usize, j: usize) -> L {
+unsafe fn parting<L: Lane, const D: usize>(v: FieldView<D>, y: [L; D], i: usize, j: usize) -> L {
     let mut rate = L::splat(0.0);
     for a in 0..D {
         // SAFETY: slots lie inside the arrays
