@@ -726,6 +726,67 @@ fn pairs_of_materials_are_springs_in_series() {
     assert!(build(&spec, Options::default()).is_ok());
 }
 
+/// Whatever the influence function, bonds of pairs that are all alike are those of one material; one without a horizon goes with shorter bonds,
+/// too.
+#[test]
+fn alike_pairs_weigh_their_bonds_as_one_material() {
+    let law = LawSpec::Pmb(PmbStiffness::Micromodulus(2.0));
+    let solid = LawSpec::LpsAsTyped {
+        bulk: 1.0,
+        shear: 0.4,
+    };
+    let written = |text: &str| Influence::Formula(Formula::parse(text, &[]).unwrap());
+    let directed = written("1 + 0.5*xi_x/r");
+    for (law, influence, horizon) in [
+        (&law, Influence::Conical, 2.3),
+        (&law, Influence::Gaussian, 2.3),
+        (&solid, written("exp(-(r/delta)^2)"), 2.3),
+        (&solid, written("exp(-r)"), 1.6),
+        (&law, directed, 1.6),
+    ] {
+        let mut one = block([12.0, 5.0, 0.0], 2, law.clone());
+        one.bonds.horizon = Horizon::Length(horizon);
+        one.bonds.family = FamilyChoice::List;
+        one.bonds.influence = influence;
+        one.run.schedule.stepper = Stepper::Verlet;
+        one.run.schedule.time_step = TimeStep::Fixed(0.05);
+        one.run.schedule.force_unstable = true;
+        one.run.schedule.steps = 40;
+        one.loading.initial = vec![InitialSpec {
+            set: "all".into(),
+            displacement: [None, None, None],
+            velocity: [text("0.02*sin(0.5*x)"), text("0.01*cos(0.4*x + y)"), None],
+        }];
+        let mut pairs = one.clone();
+        pairs.bonds.horizon = Horizon::Length(2.3);
+        pairs.interactions.pairs = vec![PairSpec {
+            horizon,
+            law: law.clone(),
+            critical_stretch: f64::INFINITY,
+            alpha: 0.0,
+        }];
+        let [a, b] = [&one, &pairs].map(|spec| {
+            let mut sim = build(spec, Options::default()).unwrap_or_else(|e| panic!("{e}"));
+            sim.start(true);
+            for _ in 0..40 {
+                sim.step().unwrap();
+            }
+            sim.displacements()
+        });
+        let most = a.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        assert!(most > 1e-3);
+        for (a, b) in a.iter().flatten().zip(b.iter().flatten()) {
+            assert!((a - b).abs() < 1e-10 * most, "{influence:?}: {a} {b}");
+        }
+        // which horizon would it be?
+        if horizon == 1.6 {
+            pairs.bonds.influence = Influence::Conical;
+            let error = build(&pairs, Options::default()).err().unwrap();
+            assert_eq!(error.path, "pairs");
+        }
+    }
+}
+
 /// Implicit steps move a body of pairs of materials that are all alike as one of its material.
 #[test]
 fn alike_pairs_move_implicitly_as_one_material() {

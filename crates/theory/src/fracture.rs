@@ -2,6 +2,7 @@
 
 use peridyne::law::fracture_energy;
 use peridyne::law::micromodulus::{Moments, micromodulus};
+use peridyne::law::solid::eam_like::Solid;
 use peridyne::spec::{Influence, LawSpec, Plane, PmbStiffness};
 
 /// What of a body the conversion depends on.
@@ -41,7 +42,16 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
         | LawSpec::Springs(_)
         | LawSpec::Atoms(_)
         | LawSpec::Micromoduli(_)
-        | LawSpec::Named(_) => None,
+        | LawSpec::Named(_) => {
+            let solid = Solid::of_law(d, plane, law)?;
+            Some(match d {
+                1 => {
+                    let young = PmbStiffness::Young(solid.along_a_line());
+                    fracture_energy::bond_based(d, micromodulus(d, plane, young, moments), moments)
+                }
+                _ => fracture_energy::of_solid(d, solid, horizon, influence),
+            })
+        }
     }
 }
 

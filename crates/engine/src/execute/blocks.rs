@@ -27,8 +27,7 @@ pub fn for_each_block<K: Kernel>(simd: Simd, kernel: &K, out: &mut [K::Out]) {
 
 /// Run `kernel`, which returns nothing, on so many blocks.
 pub fn run_blocks<K: Kernel<Out = ()>>(simd: Simd, kernel: &K, blocks: usize) {
-    // a vector of nothing takes no memory
-    for_each_block(simd, kernel, &mut vec![(); blocks]);
+    spread(blocks, &|b| simd.run(kernel, b));
 }
 
 /// Room for a result per block, kept from sweep to sweep so that sweeps do not allocate.
@@ -59,10 +58,15 @@ impl<T: Copy + Send> PerBlock<T> {
 
     /// Run `kernel` on every block and fold its results, in the order of blocks.
     pub fn fold<K: Kernel<Out = T>>(&self, simd: Simd, kernel: &K, add: impl Fn(&mut T, T)) -> T {
+        self.fold_of(&|room| for_each_block(simd, kernel, room), &add)
+    }
+
+    /// The same of who fills the room: the kernel does not show in this code.
+    fn fold_of(&self, fill: &dyn Fn(&mut [T]), add: &dyn Fn(&mut T, T)) -> T {
         // taken, not held: a thread that waits for its blocks may be lent to a sweep that also wants the room
         let mut room = std::mem::take(&mut *self.room());
         room.resize(self.blocks, self.empty);
-        for_each_block(simd, kernel, &mut room);
+        fill(&mut room);
         let mut total = self.empty;
         room.iter().for_each(|x| add(&mut total, *x));
         *self.room() = room;

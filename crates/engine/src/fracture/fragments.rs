@@ -1,7 +1,7 @@
 //! Fragments: points connected by whole bonds.
 
 use crate::body::Body;
-use crate::interaction::{BondState, Interaction};
+use crate::interaction::{BondStatus, Interaction};
 
 /// The pieces of a body, the one with the most points first (ties: the one that holds the lowest point id).
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +18,7 @@ impl Fragments {
     /// Connected components over the whole bonds of `interaction`. A point without whole bonds is a fragment of one.
     pub fn of<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Fragments {
         Self::by(body, interaction, |_, _, _, state| {
-            state == BondState::Whole
+            state == BondStatus::Whole
         })
     }
 
@@ -26,7 +26,7 @@ impl Fragments {
     pub fn by<const D: usize>(
         body: &Body<D>,
         interaction: &dyn Interaction<D>,
-        joins: impl Fn(usize, usize, &[f64; D], BondState) -> bool,
+        joins: impl Fn(usize, usize, &[f64; D], BondStatus) -> bool,
     ) -> Fragments {
         let mut sets = Sets::new(body.len);
         interaction.each_bond(body, &mut |i, j, xi, state| {

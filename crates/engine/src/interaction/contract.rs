@@ -1,7 +1,7 @@
 //! What every law on every family can do: the contract between bonds and those who move, load and watch a body.
 
 use super::{
-    BondForce, BondState, BondTangent, PointEnergiesMut, Sweep, Tally, Wearing, add_virial, along,
+    BondForce, BondStatus, BondTangent, PointEnergiesMut, Sweep, Tally, Wearing, add_virial, along,
     history,
 };
 use crate::body::{Body, FieldView, FieldViewMut, Identity, view};
@@ -172,12 +172,12 @@ pub trait Interaction<const D: usize>: Send + Sync {
     }
 
     /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState));
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus));
 
     /// Of [`each_bond`](Interaction::each_bond) those that are broken and whose points repel inside the family: not those of interfaces.
     fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         self.each_bond(body, &mut |i, j, xi, state| {
-            if state == BondState::Broken {
+            if state == BondStatus::Broken {
                 visit(i, j, xi);
             }
         });
@@ -189,7 +189,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Every undirected bond of the reference family, those of interfaces too, that is not whole, as one of an absent crack is not.
     fn each_gone(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         self.each_bond(body, &mut |i, j, xi, state| {
-            if state == BondState::Broken {
+            if state == BondStatus::Broken {
                 visit(i, j, xi);
             }
         });

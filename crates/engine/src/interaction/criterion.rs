@@ -29,11 +29,6 @@ pub enum Measure {
 }
 
 impl Criteria {
-    /// Is the stretch of now all that counts?
-    pub fn is_plain(&self) -> bool {
-        matches!(self.measure, Measure::Stretch) && self.rate.is_empty() && self.fatigue.is_empty()
-    }
-
     /// Those of one material.
     pub fn only(&self, n: usize) -> Criteria {
         let one = |all: &[f64]| all.get(n).copied().into_iter().collect::<Vec<f64>>();

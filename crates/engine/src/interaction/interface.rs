@@ -1,7 +1,7 @@
 //! Bonds between two of several bodies: an interaction on the points of both that are near to the other, as a cloud of its own.
 
 use super::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
     history,
 };
 use crate::body::{Body, Field, FieldView, FieldViewMut, view, view_mut, zeros};
@@ -231,7 +231,7 @@ impl<const D: usize> Interface<D> {
         }
     }
 
-    pub fn each_bond(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    pub fn each_bond(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         let points = &self.points;
         self.bonds.each_bond(&points.cloud, &mut |i, j, xi, state| {
             let (i, j) = (points.whole(i), points.whole(j));

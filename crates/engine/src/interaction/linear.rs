@@ -4,7 +4,7 @@
 //! along their reference direction and may go through each other.
 
 use super::scale::{Scale, TileFactors};
-use super::{BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
+use super::{BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
 use crate::body::{Body, FieldView, FieldViewMut, Grid, Identity, Values};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
@@ -263,9 +263,9 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         true
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         self.links
-            .each(body, &mut |i, j, xi| visit(i, j, xi, BondState::Whole));
+            .each(body, &mut |i, j, xi| visit(i, j, xi, BondStatus::Whole));
     }
 
     fn scale_bonds(

@@ -13,7 +13,7 @@ use super::pairs::BondTable;
 use super::point_constants::pressure_factor;
 use super::weight::BondWeight;
 use super::{
-    BondForce, BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
+    BondForce, BondStatus, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
     PointEnergiesMut, Repulsion, Sweep, Tally, Toughness, along,
 };
 use crate::body::{Body, FieldView, FieldViewMut, Identity};
@@ -281,7 +281,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         true
     }
 
-    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         self.each_of_family(visit);
     }
 

@@ -1,6 +1,6 @@
 //! Given micromoduli: `f_i = Σ_j C_ij (u_j − u_i)`, a block for every directed bond. Coarsened bodies, composites, defects.
 
-use super::{BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
+use super::{BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
 use crate::body::{Body, FieldView, FieldViewMut, Identity};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::Lane;
@@ -234,7 +234,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         }
     }
 
-    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         for (row, &slot) in self.slots.iter().enumerate() {
             let i = slot as usize;
             // a bond that only its other end knows is visited there
@@ -244,7 +244,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
                     i.min(j),
                     i.max(j),
                     if i < j { *xi } else { xi.map(|x| -x) },
-                    BondState::Whole,
+                    BondStatus::Whole,
                 );
             }
         }

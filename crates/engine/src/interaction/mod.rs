@@ -3,6 +3,7 @@
 
 pub(crate) mod atoms;
 pub(crate) mod bond;
+pub(crate) mod bonds;
 pub mod cohesion;
 pub mod contact;
 mod contact_forces;
@@ -53,16 +54,16 @@ pub struct Toughness {
 
 /// Is a bond of the reference family whole?
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BondState {
+pub enum BondStatus {
     Whole,
     Broken,
 }
 
-impl BondState {
+impl BondStatus {
     fn of(whole: bool) -> Self {
         match whole {
-            true => BondState::Whole,
-            false => BondState::Broken,
+            true => BondStatus::Whole,
+            false => BondStatus::Broken,
         }
     }
 }

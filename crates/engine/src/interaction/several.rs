@@ -5,7 +5,7 @@ mod columns;
 
 use super::interface::{Interface, has_bonds};
 use super::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally, Wearing,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally, Wearing,
     history,
 };
 use crate::body::several::Piece;
@@ -375,7 +375,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.at(slot, |bonds, _, s| bonds.gain(s)).unwrap_or(0.0)
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         for (p, bonds) in self.each(body) {
             bonds.each_bond(&p.body, &mut |i, j, xi, state| {
                 visit(i + p.first, j + p.first, xi, state);
@@ -421,7 +421,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn each_broken_between(&self, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         for interface in &self.interfaces {
             interface.each_bond(&mut |i, j, xi, state| {
-                if state == BondState::Broken {
+                if state == BondStatus::Broken {
                     visit(i, j, xi);
                 }
             });
@@ -455,7 +455,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.each_bond(body, &mut |i, j, _, state| {
             for (s, volume) in [(i, body.volume.at(j)), (j, body.volume.at(i))] {
                 family[s][0] += volume;
-                if state == BondState::Broken {
+                if state == BondStatus::Broken {
                     family[s][1] += volume;
                 }
             }

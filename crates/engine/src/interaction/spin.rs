@@ -8,7 +8,7 @@
 //! Of a couple M on two points i takes `P_i Q M` and j takes `P_j Q M`, `Q = (P_i + P_j)⁻¹`: half each where both can, all where one can. What
 //! none can take (`M − (P_i + P_j) Q M`) is left out. Dual to it both turn with `Q (ω_i + ω_j)`.
 
-use super::{BondState, Interaction};
+use super::{BondStatus, Interaction};
 use crate::body::{Body, Field};
 use crate::law::material::tensor::{Matrix, inverse_within, product, times};
 use crate::space::{Point, cross, dot, full};
@@ -191,7 +191,7 @@ impl<const D: usize> Families<D> {
             if !wanted || i == j || body.piece_of(i) != body.piece_of(j) {
                 return;
             }
-            let torn = if state == BondState::Broken { now } else { 0 };
+            let torn = if state == BondStatus::Broken { now } else { 0 };
             for (from, to, way) in [(i, j, 1.0), (j, i, -1.0)] {
                 if let Some(own) = (place[from] as usize).checked_sub(1) {
                     known[own].partners.push(Partner {

@@ -11,7 +11,7 @@ use super::history;
 use super::point_constants::pressure_factor;
 use super::scale::Scale;
 use super::{
-    BondForce, BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
+    BondForce, BondStatus, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
     PointEnergiesMut, Repulsion, Sweep, Tally, Toughness,
 };
 use crate::body::{Body, Column, FieldView, FieldViewMut, Identity};
@@ -278,7 +278,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         }
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         self.each_of_family(body, false, visit);
     }
 
@@ -294,7 +294,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
 
     fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         self.each_of_family(body, true, &mut |i, j, xi, state| {
-            if state == BondState::Broken {
+            if state == BondStatus::Broken {
                 visit(i, j, xi);
             }
         });

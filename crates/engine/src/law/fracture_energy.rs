@@ -1,6 +1,7 @@
 //! The energy that a crack takes: `G0 / s0²` (energy / area) where every bond across a plane breaks at the stretch s0.
 
 use super::micromodulus::{Moments, mean_length};
+use super::solid::eam_like::Solid;
 use crate::spec::{Influence, Moduli, Plane};
 use std::f64::consts::{FRAC_2_PI, PI};
 
@@ -42,13 +43,26 @@ pub fn state_based(
     let (k, g) = (moduli.bulk(), moduli.shear());
     let n = dimension as f64;
     let pairs = 0.5 * mean_across(dimension) * n * (n + 2.0) * g;
-    let volume = if dimension == 3 {
-        0.75f64.powi(4) * (k - 5.0 * g / 3.0)
-    } else {
-        let in_plane = moduli.lame_of(dimension, plane) + g;
-        16.0 * (in_plane - 2.0 * g) / (9.0 * PI.powi(2))
+    let kappa = match dimension {
+        3 => k - 5.0 * g / 3.0,
+        _ => moduli.lame_of(dimension, plane) + g - 2.0 * g,
     };
-    pairs * mean_length(dimension, horizon, influence) + volume * horizon
+    pairs * mean_length(dimension, horizon, influence) + of_volume(dimension, kappa) * horizon
+}
+
+/// The same of any constants n, κ and β: the dilatation is `n/D` of the trace of the strain.
+pub fn of_solid(dimension: usize, solid: Solid, horizon: f64, influence: Influence) -> f64 {
+    let pairs = 0.5 * mean_across(dimension) * solid.beta;
+    let kappa = solid.kappa * (solid.n / dimension as f64).powi(2);
+    pairs * mean_length(dimension, horizon, influence) + of_volume(dimension, kappa) * horizon
+}
+
+/// The volumetric part per horizon, see [`state_based`].
+fn of_volume(dimension: usize, kappa: f64) -> f64 {
+    match dimension {
+        3 => 0.75f64.powi(4) * kappa,
+        _ => 16.0 * kappa / (9.0 * PI.powi(2)),
+    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::system::System;
 use crate::body::view;
 use crate::condition::driven::Driven;
 use crate::error::RunError;
-use crate::interaction::{BondState, Fault};
+use crate::interaction::{BondStatus, Fault};
 use crate::observe::Ledger;
 
 impl<const D: usize> System<D> {
@@ -154,7 +154,7 @@ impl<const D: usize> System<D> {
         self.interaction
             .each_bond(&self.body, &mut |i, j, xi, state| {
                 if crossed.is_none()
-                    && state == BondState::Whole
+                    && state == BondStatus::Whole
                     && counts(i)
                     && xi[0].abs() < 1.5 * self.body.spacing_at(i)
                     && (xi[0] + self.u[0][j] - self.u[0][i]) * xi[0] <= 0.0

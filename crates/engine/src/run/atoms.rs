@@ -1,6 +1,6 @@
 //! What atoms need beyond peridynamic points: their crystal looked at before it runs, and a temperature.
 
-use super::constitutive::{AnyPotentials, breaking, breaks};
+use super::constitutive::{AnyPotentials, breaks};
 use super::reference::{SplitMix, current_neighbours};
 use super::system::System;
 use crate::error::BuildError;
@@ -13,63 +13,33 @@ use crate::space::lattice::LatticeKind;
 use crate::spec::{BodySpec, FamilyChoice, Horizon, Spec, ThermalSpec};
 
 /// What a spec's family means for its law. Potentials of pairs and densities have their reference family on a lattice as a stencil.
-pub(super) fn resolve_family(
-    spec: &mut Spec,
-    potentials: Option<&AnyPotentials>,
-) -> Result<(), BuildError> {
-    let refused =
-        |message: &str, help: &str| Err(BuildError::unsupported("family", message).help(help));
-    match (spec.bonds.family, potentials) {
-        (FamilyChoice::List, Some(_)) => refused(
-            "a list stores bonds of peridynamic laws, and this law is an interatomic potential",
-            "write family = \"reference\": those within the horizon in the reference, for ever; or leave it out: those that are near now",
-        ),
-        (FamilyChoice::Reference, None) => refused(
-            "family = \"reference\" belongs to interatomic potentials: the families of this law are always those of the reference",
-            "leave family out",
-        ),
-        (FamilyChoice::Auto | FamilyChoice::Neighbours, Some(_))
-            if let Some(path) = breaking(spec) =>
-        {
-            Err(BuildError::unsupported(
-                path,
-                "atoms feel those that are near now, and who comes near again is a neighbour again: no bond can break or be cut",
-            )
-            .help("write family = \"reference\" with a horizon, or remove fracture and pre-cracks"))
-        }
+pub(super) fn resolve_family(spec: &mut Spec, potentials: &AnyPotentials) {
+    let whole = !breaks(spec);
+    let lattice = matches!(
+        spec.body,
+        BodySpec::Lattice { perturb: None, .. } | BodySpec::Sites { .. }
+    );
+    let molecules = spec.interactions.bonded.is_some();
+    let family = &mut spec.bonds.family;
+    match family {
         // bonds of lists can be taken out one by one
-        (FamilyChoice::Stencil, Some(_)) if breaks(spec) => {
-            spec.bonds.family = FamilyChoice::Reference;
-            Ok(())
+        FamilyChoice::Stencil if !whole => *family = FamilyChoice::Reference,
+        FamilyChoice::Reference if lattice && potentials.has_stencil() && !molecules && whole => {
+            *family = FamilyChoice::Stencil;
         }
-        (FamilyChoice::Reference, Some(potentials)) => {
-            let lattice = matches!(
-                spec.body,
-                BodySpec::Lattice { perturb: None, .. } | BodySpec::Sites { .. }
-            );
-            let molecules = spec.interactions.bonded.is_some();
-            if lattice && potentials.has_stencil() && !molecules && !breaks(spec) {
-                spec.bonds.family = FamilyChoice::Stencil;
-            }
-            Ok(())
-        }
-        (FamilyChoice::Auto | FamilyChoice::Stencil | FamilyChoice::Neighbours, _)
-        | (FamilyChoice::List, None) => Ok(()),
+        FamilyChoice::Auto
+        | FamilyChoice::Stencil
+        | FamilyChoice::Neighbours
+        | FamilyChoice::List
+        | FamilyChoice::Reference => {}
     }
 }
 
-/// Can atoms be carried along by nodes?
-pub(super) fn check_smooth(spec: &Spec, atoms: bool) -> Result<(), BuildError> {
+/// Are the lengths of nodes some?
+pub(super) fn check_smooth(spec: &Spec) -> Result<(), BuildError> {
     let Some(smooth) = &spec.bonds.smooth else {
         return Ok(());
     };
-    if !atoms || spec.bonds.family != FamilyChoice::Reference {
-        return Err(BuildError::unsupported(
-            "smooth",
-            "smoothing averages the force states of a potential, which are those of the reference",
-        )
-        .help("write family = \"reference\", with an interatomic potential as the law"));
-    }
     for (path, length) in [
         ("smooth.width", Some(smooth.width)),
         ("smooth.spacing", smooth.spacing),

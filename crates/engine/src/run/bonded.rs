@@ -1,12 +1,12 @@
 //! Molecules: bonded terms beside the potential of a body of atoms.
 
-use super::constitutive::{Shelf, breaking};
+use super::constitutive::Shelf;
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::Interaction;
 use crate::interaction::atoms::bonded::BondedAtoms;
-use crate::spec::{BodySpec, BondedSpec, FamilyChoice, Spec};
+use crate::spec::{BodySpec, BondedSpec, Spec};
 
 /// The interaction with what is bonded in the spec, if anything is.
 pub(super) fn around<const D: usize>(
@@ -22,33 +22,13 @@ pub(super) fn around<const D: usize>(
     let refused =
         |message: &str, help: &str| Err(BuildError::unsupported("bonded", message).help(help));
     let Some(potentials) = shelf.potentials(spec)? else {
-        return refused(
-            "bonds, angles and dihedrals stand beside a potential of atoms",
-            "give the material a pair potential",
-        );
+        return Ok(interaction);
     };
-    if spec.bonds.family == FamilyChoice::Stencil {
-        return refused(
-            "molecules have no stencil",
-            "remove family = \"stencil\": atoms feel those that are near now, or with family = \"reference\" those of the reference",
-        );
-    }
     if !matches!(spec.body, BodySpec::Cloud(_)) {
         return refused(
             "bonded terms name atoms by their place in a file",
             "give body.file",
         );
-    }
-    if spec.materials.len() > 1 {
-        return refused(
-            "molecules leave out pairs of one potential, and several materials have several",
-            "give the atoms one material",
-        );
-    }
-    if let Some(path) = breaking(spec) {
-        let message =
-            "the bonds of a molecule are terms of its force field, which hold at any length";
-        return Err(BuildError::unsupported(path, message).help("remove fracture and pre-cracks"));
     }
     fits(bonded, body.points())?;
     let pair = potentials.pair()?;

@@ -4,7 +4,7 @@ use super::Gap;
 use crate::body::Body;
 use crate::family::cells::Cells;
 use crate::fracture::fragments::Fragments;
-use crate::interaction::{BondState, Interaction};
+use crate::interaction::{BondStatus, Interaction};
 use crate::message;
 use crate::quantity::{Dimension, Message, place};
 use crate::spec::{BodySpec, PieceSpec, Spec};
@@ -153,7 +153,7 @@ pub(super) fn bridged<const D: usize>(
         let along = |s: usize| (0..D).map(|a| inward[s][a] * xi[a]).sum::<f64>();
         // most points are inside
         let [from, to] = [-along(i), along(j)];
-        if !(from > 0.0 && to > 0.0 && state == BondState::Whole) {
+        if !(from > 0.0 && to > 0.0 && state == BondStatus::Whole) {
             return;
         }
         let r = square(&xi).sqrt();
@@ -193,7 +193,7 @@ pub(super) fn across<const D: usize>(
     let next =
         |i: usize, j: usize, xi: &[f64; D]| square(xi) < (NEXT * length(i).max(length(j))).powi(2);
     let near = Fragments::by(body, interaction, |i, j, xi, state| {
-        state == BondState::Whole && next(i, j, xi)
+        state == BondStatus::Whole && next(i, j, xi)
     });
     if near.count() == 1 || near.count() == Fragments::of(body, interaction).count() {
         return vec![];
@@ -205,7 +205,7 @@ pub(super) fn across<const D: usize>(
     let mut shortest: Option<(f64, usize, usize)> = None;
     let mut bonds = 0u64;
     interaction.each_bond(body, &mut |i, j, xi, state| {
-        if state == BondState::Whole && label[i] != label[j] {
+        if state == BondStatus::Whole && label[i] != label[j] {
             bonds += 1;
             let r = square(&xi).sqrt();
             if shortest.is_none_or(|(least, ..)| r < least) {

@@ -9,7 +9,7 @@ use crate::error::BuildError;
 use crate::expression::nearest;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::history;
-use crate::interaction::{BondForce, BondState};
+use crate::interaction::{BondForce, BondStatus};
 use crate::observe::observables::{Needs, Observable};
 use crate::observe::{Column, FamilyBond, Observed, PointForce, Snapshot, State, Values};
 use crate::space::{Point, full};
@@ -148,7 +148,7 @@ impl<const D: usize> State for View<'_, D> {
                     ends: [i, j].map(|s| id[s] as usize),
                     xi: full(&xi),
                     weight: system.constitutive.at(i).0.weight(&xi, r0),
-                    whole: state == BondState::Whole,
+                    whole: state == BondStatus::Whole,
                 });
             });
     }
@@ -303,7 +303,7 @@ impl<const D: usize> System<D> {
         let mut broken = 0;
         self.interaction
             .each_bond(&self.body, &mut |_, _, _, state| {
-                broken += 2 * u64::from(state == BondState::Broken);
+                broken += 2 * u64::from(state == BondStatus::Broken);
             });
         broken
     }
@@ -313,7 +313,7 @@ impl<const D: usize> System<D> {
         let (id, mut bonds) = (self.body.ids_by_slot(), vec![]);
         self.interaction
             .each_bond(&self.body, &mut |i, j, _, state| {
-                if state == BondState::Whole {
+                if state == BondStatus::Whole {
                     let (a, b) = (id[i], id[j]);
                     bonds.push((a.min(b), a.max(b)));
                 }

@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::fracture::precrack::Crack;
-use crate::interaction::{BondState, Interaction};
+use crate::interaction::{BondStatus, Interaction};
 use crate::message;
 use crate::quantity::{Message, Warnings, place};
 use crate::spec::{CrackKind, Spec};
@@ -45,7 +45,7 @@ pub(super) fn cut<const D: usize>(
 pub(super) fn left<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> u64 {
     let mut left = 0;
     interaction.each_bond(body, &mut |_, _, _, state| {
-        left += u64::from(state == BondState::Whole);
+        left += u64::from(state == BondStatus::Whole);
     });
     left
 }

@@ -3,7 +3,7 @@
 use super::system::System;
 use super::{AtomBond, Families};
 use crate::body::view;
-use crate::interaction::{BondState, PointEnergies};
+use crate::interaction::{BondStatus, PointEnergies};
 use crate::space::full;
 
 pub(super) fn count_families<const D: usize>(system: &System<D>) -> Families {
@@ -13,7 +13,7 @@ pub(super) fn count_families<const D: usize>(system: &System<D>) -> Families {
     system
         .interaction
         .each_bond(&system.body, &mut |i, j, _, state| {
-            if state == BondState::Whole {
+            if state == BondStatus::Whole {
                 volume[i] += system.body.volume.at(j);
                 volume[j] += system.body.volume.at(i);
                 let unlike = of(i) != of(j);

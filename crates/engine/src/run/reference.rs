@@ -238,17 +238,21 @@ fn periods_fit<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildE
     Ok(())
 }
 
+/// Does the spec want lists of neighbours, wherever its points lie?
+pub(super) fn listed(spec: &Spec) -> bool {
+    let listed = matches!(
+        spec.bonds.family,
+        FamilyChoice::List | FamilyChoice::Reference
+    );
+    listed || !spec.interactions.pairs.is_empty() || current_neighbours(spec)
+}
+
 /// As a cloud, where the spec wants lists of neighbours.
 fn listed_if_asked<const D: usize>(
     spec: &Spec,
     r: Reference<D>,
 ) -> Result<Reference<D>, BuildError> {
-    let listed = matches!(
-        spec.bonds.family,
-        FamilyChoice::List | FamilyChoice::Reference
-    );
-    let list = listed || !spec.interactions.pairs.is_empty();
-    if list || current_neighbours(spec) {
+    if listed(spec) {
         Ok(Reference {
             body: r.body.to_cloud()?,
             stencil: None,

@@ -2,7 +2,7 @@
 
 use super::system::System;
 use crate::body::{view, view_mut, zeros};
-use crate::interaction::{BondState, Sweep};
+use crate::interaction::{BondStatus, Sweep};
 use crate::law::material::tensor::{inverse, times};
 use crate::message;
 use crate::quantity::{Message, place, rounded};
@@ -144,7 +144,7 @@ fn stretch_alone<const D: usize>(system: &System<D>, all: &mut [Loaded<D>]) {
     system
         .interaction
         .each_bond(&system.body, &mut |i, j, xi, state| {
-            if state != BondState::Whole {
+            if state != BondStatus::Whole {
                 return;
             }
             let xi = full(&xi);

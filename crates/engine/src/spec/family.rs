@@ -120,6 +120,15 @@ impl Influence {
         matches!(self, Influence::Formula(f) if f.is_directed())
     }
 
+    /// Does it depend on the horizon?
+    pub fn knows_horizon(self) -> bool {
+        match self {
+            Influence::Constant | Influence::Inverse => false,
+            Influence::Conical | Influence::Gaussian | Influence::CubicSpline => true,
+            Influence::Formula(f) => f.knows_horizon(),
+        }
+    }
+
     /// Those with a name.
     pub const ALL: [Influence; 5] = [
         Influence::Constant,

@@ -71,6 +71,15 @@ impl AnyLinearBody {
         }
     }
 
+    /// Has it a mass matrix that couples its points?
+    pub fn couples_masses(&self) -> bool {
+        match self {
+            Self::One(b) => b.mass.is_some(),
+            Self::Two(b) => b.mass.is_some(),
+            Self::Three(b) => b.mass.is_some(),
+        }
+    }
+
     /// Longest bond that acts (length).
     pub fn range(&self) -> f64 {
         match self {

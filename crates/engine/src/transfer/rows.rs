@@ -4,7 +4,7 @@ use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::blocks::for_each_piece;
 use crate::execute::memory;
-use crate::interaction::{BondState, Interaction};
+use crate::interaction::{BondStatus, Interaction};
 
 /// Of every directed bond, row by row; points stand in the order of their slots.
 #[derive(Debug, Clone)]
@@ -132,8 +132,8 @@ impl Rows {
                 let at = next[row];
                 next[row] += 1;
                 conductance[at] = match state {
-                    BondState::Whole => 1.0,
-                    BondState::Broken => 0.0,
+                    BondStatus::Whole => 1.0,
+                    BondStatus::Broken => 0.0,
                 };
                 moment[row] += conductance[at] * part[at];
             }

@@ -16,6 +16,7 @@ use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::*;
+use std::sync::Arc;
 
 const CELLS: usize = 5;
 const PERIOD: f64 = 1.1 * CELLS as f64;
@@ -300,6 +301,69 @@ fn potentials_of_one_body_are_added() {
     consistent("sum", &spec);
 }
 
+/// Of bonded pairs all potentials between their kinds are left out in the same part, whatever these are.
+#[test]
+fn molecules_of_several_kinds_and_potentials() {
+    use peridyne::law::potential::cut::{Cut, Ends};
+    let own = [
+        smooth(lj(1.0, 0.9, 2.2), 2.2),
+        smooth(lj(0.4, 1.1, 2.0), 2.0),
+    ];
+    let more = vec![
+        between(0, 0, smooth(lj(0.2, 0.8, 1.9), 1.9)),
+        between(0, 1, smooth(lj(0.7, 1.0, 2.1), 2.1)),
+    ];
+    let mut spec = mixed(&own, more, None);
+    let bonds: Vec<[usize; 2]> = (0..CELLS.pow(3))
+        .filter(|n| matches!(n % CELLS, 0 | 2))
+        .map(|n| [n, n + 1])
+        .collect();
+    let (stiffness, length, left) = (20.0, 1.05, 0.3);
+    spec.interactions.bonded = Some(Arc::new(BondedSpec {
+        forms: vec![Form::HarmonicBond { stiffness, length }],
+        terms: { bonds.iter() }
+            .map(|[a, b]| BondedTerm {
+                form: 0,
+                points: [*a as u32, *b as u32, 0, 0],
+            })
+            .collect(),
+        special: [left, 0.0, 0.0],
+    }));
+    let phi = |i: usize, j: usize, q: f64| {
+        let lj = |epsilon, sigma, cutoff: f64| {
+            let end = Ends {
+                cutoff,
+                end: End::ShiftedForce,
+            };
+            match q < cutoff * cutoff {
+                true => Cut::new(LennardJones { epsilon, sigma }, end).pair(q),
+                false => 0.0,
+            }
+        };
+        match (i, j) {
+            (0, 0) => lj(1.0, 0.9, 2.2) + lj(0.2, 0.8, 1.9),
+            (0, 1) => lj(0.7, 1.0, 2.1),
+            _ => lj(0.4, 1.1, 2.0),
+        }
+    };
+    let (x, kind) = atoms_of(&spec);
+    let mut exact = pairs(&spec, phi);
+    let mut seen = [false; 3];
+    for [a, b] in bonds {
+        let q = square(vector(x[a], x[b]));
+        seen[kind[a] + kind[b]] = true;
+        exact += stiffness * (q.sqrt() - length).powi(2);
+        exact -= (1.0 - left) * phi(kind[a].min(kind[b]), kind[a].max(kind[b]), q);
+    }
+    assert_eq!(seen, [true; 3]);
+    let found = started(&spec).ledger().unwrap().strain;
+    assert!(
+        (found - exact).abs() < 1e-11 * exact.abs(),
+        "{found} {exact}"
+    );
+    consistent("molecules", &spec);
+}
+
 /// Two elements whose densities depend on both ends, as eam/fs has them.
 fn tables() -> [TableSpec; 2] {
     let (n, cutoff) = (600, 2.1);
@@ -479,6 +543,15 @@ fn fixed_neighbours_of_several_kinds() {
         smooth(lj(0.4, 1.1, 1.8), 1.8),
     ];
     let half = PotentialSpec::of(NoPotential);
+    let morse = PotentialSpec::of(Morse {
+        depth: 0.6,
+        alpha: 4.0,
+        distance: 1.0,
+    });
+    let several = vec![
+        between(0, 1, smooth(morse, 2.0)),
+        between(0, 0, smooth(lj(0.2, 0.9, 2.0), 2.0)),
+    ];
     for (name, spec) in [
         ("gases", mixed(&gases, vec![], Some(Mixing::Arithmetic))),
         ("alloy", mixed(&metals, vec![], None)),
@@ -486,6 +559,7 @@ fn fixed_neighbours_of_several_kinds() {
             "nothing between",
             mixed(&gases, vec![between(0, 1, half)], None),
         ),
+        ("sum", mixed(&gases, several, None)),
     ] {
         let spec = fixed(spec, LatticeKind::Cubic, &anyhow);
         let mut near = spec.clone();

@@ -690,14 +690,6 @@ fn criteria_that_mean_nothing_are_refused() {
         });
     });
     assert_eq!(path, "statics.cycles");
-    let (path, _) = said(&|s: &mut Spec| {
-        s.materials[0].law = LawSpec::LpsAsTyped {
-            bulk: 2.0,
-            shear: 1.0,
-        };
-        s.materials[0].fracture = Some(work);
-    });
-    assert_eq!(path, "materials[0].law");
     let (path, message) = said(&|s: &mut Spec| {
         s.materials[0].fracture = Some(FractureSpec::new(Criterion::VonMises(1.0)));
         s.damage.toughness = vec![ToughnessSpec {

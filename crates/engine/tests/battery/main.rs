@@ -26,6 +26,7 @@ mod stability;
 mod state_hash;
 mod tangents;
 mod tearing;
+mod typed;
 mod waves;
 
 #[path = "../allocations/mod.rs"]

@@ -4,6 +4,7 @@ use crate::sample::*;
 use peridyne::run::Simulation;
 use peridyne::space::Point;
 use peridyne::spec::*;
+use std::collections::BTreeMap;
 
 /// Force density that a strain of order one would make.
 const STIFF: f64 = 3.0 / H;
@@ -134,6 +135,55 @@ fn momentum_and_angular_momentum_are_kept() {
     }
     println!(
         "Σ V f = 0 to {:.1e}, Σ V y × f = 0 to {:.1e}",
+        worst[0], worst[1]
+    );
+}
+
+/// Bond by bond, forces add up to those of points, and what a bond does to one of its ends it does against the other.
+#[test]
+fn forces_of_bonds_are_those_of_points() {
+    let mut worst: [f64; 2] = [0.0; 2];
+    for case in cases() {
+        for family in [FamilyChoice::Stencil, FamilyChoice::List] {
+            let mut spec = case.spec();
+            spec.bonds.family = family;
+            breaking(&mut spec, 0.06);
+            let mut sim = at_rest(&spec);
+            let volumes = sim.scalars("volume");
+            let n = volumes.len();
+            let mut random = Random(7);
+            sim.set_displacements(&random.vectors(n, case.d(), LARGE));
+            sim.start(true);
+            sim.start(true);
+            steps(sim.as_mut(), 2);
+            assert!(sim.broken() > 0, "{}", case.name());
+            let u = random.vectors(n, case.d(), LARGE);
+            let f = sim.forces_under(&u);
+            sim.set_displacements(&u);
+            let mut sum = vec![[0.0; 3]; n];
+            let mut pairs = BTreeMap::<[usize; 2], Point>::new();
+            let known = sim.each_force(&mut |bond| {
+                let (i, j) = (bond.id, bond.partner);
+                let pair = pairs.entry([i.min(j), i.max(j)]).or_default();
+                for a in 0..3 {
+                    sum[i][a] += bond.force[a];
+                    pair[a] += volumes[i] * bond.force[a];
+                }
+            });
+            assert!(known, "{}", case.name());
+            let pairs: Vec<Point> = pairs.into_values().collect();
+            let off = [
+                distance(&sum, &f) / largest(&f),
+                largest(&pairs) / (volumes[0] * largest(&f)),
+            ];
+            for k in 0..2 {
+                worst[k] = worst[k].max(off[k]);
+                assert!(off[k] < 1e-12, "{} {family:?}: {off:?}", case.name());
+            }
+        }
+    }
+    println!(
+        "Σ f_ij = f_i to {:.1e}, V_i f_ij + V_j f_ji = 0 to {:.1e}",
         worst[0], worst[1]
     );
 }

@@ -32,8 +32,6 @@ const IN_CIRCLES: &[&str] = &[
     "interaction/list/kernel/energies",
     "interaction/list/kernel/forces",
     "interaction/list/kernel/share",
-    "interaction/material",
-    "interaction/material/measured",
     "interaction/pull",
     "interaction/spin",
     "interaction/stencil",

@@ -293,14 +293,74 @@ fn what_knows_one_horizon_is_refused() {
         said(&|s| s.bonds.influence = Influence::Conical),
         "influence"
     );
+    let moduli = Parameters::numbers(&[("young", 1.0), ("poisson", 0.3)]);
+    assert_eq!(
+        said(&|s| s.materials[0].law = LawSpec::named("position_aware", moduli.clone())),
+        "own_horizon"
+    );
     let softening = Parameters::numbers(&[("young", 1.0), ("onset", 0.2)]);
     assert_eq!(
         said(&|s| {
             s.materials[0].law = LawSpec::named("softening", softening.clone());
-            s.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
+            s.materials[0].fracture = Some(FractureSpec::new(Criterion::Energy(0.1)));
         }),
         "own_horizon"
     );
+}
+
+/// Bonds that expand, that soften later, and those of two materials of the same constants are those of pmb, whatever the horizons.
+#[test]
+fn laws_of_bonds_answer_at_every_horizon_as_pmb_does() {
+    for size in [&[20.0][..], &[12.0, 8.0], &[12.0, 5.0, 5.0]] {
+        let pmb = solid(size, 3.6, Some(GRADED));
+        let mut expanding = pmb.clone();
+        expanding.materials[0].law =
+            LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 1.0)]));
+        let mut softening = pmb.clone();
+        softening.materials[0].law = LawSpec::named(
+            "softening",
+            Parameters::numbers(&[("young", 1.0), ("onset", 0.5)]),
+        );
+        softening.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(1.0)));
+        let mut two = pmb.clone();
+        for (n, text) in ["x < 7", "x >= 7"].into_iter().enumerate() {
+            let name = ["low", "high"][n].to_string();
+            two.sets.push(SetSpec {
+                name: name.clone(),
+                members: Members::Where(Expression::parse(text, &[]).unwrap()),
+            });
+            if n > 0 {
+                two.materials.push(two.materials[0].clone());
+            }
+            two.materials[n].set = name;
+        }
+        let mut expected = started(&pmb);
+        let u = bent(expected.as_mut());
+        let f = expected.forces_under(&u);
+        expected.set_displacements(&u);
+        expected.start(true);
+        let energy = expected.ledger().unwrap().strain;
+        let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        for (name, spec) in [
+            ("thermoelastic", &expanding),
+            ("softening", &softening),
+            ("two materials", &two),
+        ] {
+            let mut sim = started(spec);
+            for (f, g) in f.iter().zip(&sim.forces_under(&u)) {
+                for a in 0..3 {
+                    assert!((f[a] - g[a]).abs() < 1e-12 * most, "{name}: {f:?} {g:?}");
+                }
+            }
+            sim.set_displacements(&u);
+            sim.start(true);
+            let found = sim.ledger().unwrap().strain;
+            assert!(
+                (found / energy - 1.0).abs() < 1e-12,
+                "{name}: {found:e} {energy:e}"
+            );
+        }
+    }
 }
 
 /// Laws that compute from a horizon or a family what each of their points uses, and what shows it.
@@ -590,7 +650,10 @@ fn stress_flow_and_rates_break_alike_at_every_horizon() {
         }),
         ..FractureSpec::new(Criterion::Stretch(0.01))
     };
+    let pmb = LawSpec::Pmb(PmbStiffness::Young(1.0));
     for (law, fracture) in [
+        (&pmb, FractureSpec::new(Criterion::VonMises(0.012))),
+        (&pmb, fast),
         (&lps, FractureSpec::new(Criterion::VonMises(0.012))),
         (&plastic, FractureSpec::new(Criterion::PlasticStrain(0.005))),
         (&lps, fast),

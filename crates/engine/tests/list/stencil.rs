@@ -6,7 +6,7 @@ use peridyne::execute::simd::Simd;
 use peridyne::family::volume_fraction;
 use peridyne::interaction::stencil::{StencilInteraction, StencilParts};
 use peridyne::interaction::{
-    BondForce, BondState, Interaction, PointConstants, PointEnergies, Sweep, Tally,
+    BondForce, BondStatus, Interaction, PointConstants, PointEnergies, Sweep, Tally,
 };
 use peridyne::law::Law;
 use peridyne::law::influence::influence;
@@ -28,7 +28,7 @@ fn bonds<const D: usize>(
     let mut all = BTreeSet::new();
     it.each_bond(body, &mut |i, j, _, state| {
         let (i, j) = (id[i].min(id[j]), id[i].max(id[j]));
-        let new = all.insert((i, j, state == BondState::Whole));
+        let new = all.insert((i, j, state == BondStatus::Whole));
         assert!(new, "twice: {i}-{j}");
     });
     all

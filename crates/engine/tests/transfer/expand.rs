@@ -68,8 +68,18 @@ fn statics(spec: &mut Spec) {
 /// As one homogeneous strain of all points, in equilibrium with nothing.
 #[test]
 fn a_free_body_expands_without_stress() {
+    let typed = [
+        LawSpec::LpsAsTyped {
+            bulk: 1.0,
+            shear: 0.5,
+        },
+        LawSpec::EamLike {
+            pair: 15.0,
+            volume: 0.5,
+        },
+    ];
     for d in 2..=3 {
-        for law in laws() {
+        for law in laws().into_iter().chain(typed.clone()) {
             for cloud in [false, true] {
                 let spec = block(d, law.clone(), cloud, told(1e-3, "20 + 60"));
                 let mut sim = built(&spec);
@@ -650,11 +660,8 @@ fn laws_without_temperature_refuse() {
         change(&mut spec);
         build(&spec, Options::default()).map(|_| ()).unwrap_err()
     };
-    let typed = LawSpec::LpsAsTyped {
-        bulk: 1.0,
-        shear: 0.5,
-    };
-    let error = refused(typed, &|_| {});
+    let springs = LawSpec::Springs(PmbStiffness::Young(1.0));
+    let error = refused(springs, &|_| {});
     assert_eq!(error.kind, BuildErrorKind::Unsupported);
     assert!(
         error.path == "heat" && error.message.contains("know no expansion"),

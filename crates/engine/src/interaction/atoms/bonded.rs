@@ -7,7 +7,7 @@
 mod kernel;
 
 use super::super::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::body::{Body, FieldView, FieldViewMut, Identity, view, view_mut};
 use crate::columns::Declaration;
@@ -257,7 +257,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     }
 
     /// Of atoms that do not feel each other otherwise those that are bonded.
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         self.inner.each_bond(body, visit);
         if self.bonded.is_empty() {
             return;
@@ -272,7 +272,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
             (sorted.slots[0], sorted.slots[1]) = (i as u32, j as u32);
             let (at, _) = kernel::places(body, view(&rest), &sorted);
             let xi = std::array::from_fn(|a| at[1][a] - at[0][a]);
-            visit(i, j, xi, BondState::Whole);
+            visit(i, j, xi, BondStatus::Whole);
         }
     }
 

@@ -19,7 +19,7 @@ use crate::family::neighbours::near::NearList;
 use crate::interaction::criterion::Measure;
 use crate::interaction::history::{self, crossed, damage};
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::interaction::{Motion, Released, Toughness};
 use crate::spec::{CrackKind, Release};
@@ -414,12 +414,12 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         self.inner.virial(body, u)
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         self.each_place(body, |i, j, xi, place| {
             if i < j {
                 let state = match self.is_whole(place) {
-                    true => BondState::Whole,
-                    false => BondState::Broken,
+                    true => BondStatus::Whole,
+                    false => BondStatus::Broken,
                 };
                 visit(i, j, xi, state);
             }

@@ -12,7 +12,7 @@ use crate::execute::simd::Simd;
 use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
@@ -378,10 +378,10 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     }
 
     /// Pairs of the current list that are within the cut-off now.
-    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         self.each_near(|near| {
             if near.slot < near.other {
-                visit(near.slot, near.other, near.y, BondState::Whole);
+                visit(near.slot, near.other, near.y, BondStatus::Whole);
             }
         });
     }

@@ -20,7 +20,7 @@ use crate::execute::simd::{Kernel, Simd};
 use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::law::fan::{Fan, tangents};
 use crate::law::terms::Near;
@@ -389,11 +389,11 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     }
 
     /// Pairs of the current list that are within the cut-off now.
-    fn each_bond(&self, _: &Body<3>, visit: &mut dyn FnMut(usize, usize, [f64; 3], BondState)) {
+    fn each_bond(&self, _: &Body<3>, visit: &mut dyn FnMut(usize, usize, [f64; 3], BondStatus)) {
         self.each_near(&mut |slot, near, slots| {
             for (near, &j) in near.iter().zip(slots) {
                 if slot < j {
-                    visit(slot, j, near.y, BondState::Whole);
+                    visit(slot, j, near.y, BondStatus::Whole);
                 }
             }
         });

@@ -9,7 +9,7 @@ use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::simd::Simd;
 use crate::family::links::{Links, Tiles};
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
@@ -239,9 +239,9 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         self.curvatures.at(slot)
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         self.links
-            .each(body, &mut |i, j, xi| visit(i, j, xi, BondState::Whole));
+            .each(body, &mut |i, j, xi| visit(i, j, xi, BondStatus::Whole));
     }
 
     fn directed_bonds(&self) -> u64 {

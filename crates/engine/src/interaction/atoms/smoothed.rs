@@ -16,7 +16,7 @@ use crate::body::{Body, Field, FieldView, FieldViewMut, Identity, view, view_mut
 use crate::execute::blocks::for_each_piece;
 use crate::family::nodes::Nodes;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
 };
 use crate::spec::CrackKind;
 use crate::state::Archive;
@@ -130,7 +130,7 @@ fn family<const D: usize>(
     atoms: &Body<D>,
     inner: &dyn Interaction<D>,
     carried: &Nodes,
-    such: impl Fn(BondState) -> bool,
+    such: impl Fn(BondStatus) -> bool,
 ) -> Vec<Vec<u32>> {
     let mut place = vec![u32::MAX; atoms.len];
     for (n, (slot, _)) in carried.points.iter().enumerate() {
@@ -338,8 +338,8 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
     }
 
     /// Nodes that feel each other: a bond is as long as that to the nearest image, and whole as long as a whole bond of atoms ties them.
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
-        let whole = |state| state == BondState::Whole;
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+        let whole = |state| state == BondStatus::Whole;
         let tied = self
             .breaks
             .then(|| family(&self.atoms, self.inner.as_ref(), &self.carried, whole));
@@ -347,8 +347,8 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
             for &h in others {
                 let tied = tied.as_ref().is_none_or(|t| t[g].binary_search(&h).is_ok());
                 let state = match tied {
-                    true => BondState::Whole,
-                    false => BondState::Broken,
+                    true => BondStatus::Whole,
+                    false => BondStatus::Broken,
                 };
                 let h = h as usize;
                 visit(g, h, between(body, g, h), state);

@@ -3,7 +3,7 @@
 use crate::body::{Body, Field, FieldView, FieldViewMut, Identity, view_mut, zeros};
 use crate::interaction::history::damage;
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
 };
 use crate::spec::CrackKind;
 use crate::state::Archive;
@@ -43,7 +43,7 @@ impl<const D: usize> Together<D> {
     fn count_broken(&mut self, body: &Body<D>) -> u64 {
         let mut broken = 0;
         self.each_bond(body, &mut |_, _, _, state| {
-            broken += 2 * u64::from(state == BondState::Broken);
+            broken += 2 * u64::from(state == BondStatus::Broken);
         });
         let before = std::mem::replace(&mut self.broken, broken);
         broken.saturating_sub(before)
@@ -158,7 +158,7 @@ impl<const D: usize> Interaction<D> for Together<D> {
     }
 
     /// A pair is one bond, however many potentials it has.
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         let mut all = vec![];
         for part in &self.parts {
             part.each_bond(body, &mut |i, j, xi, state| all.push((i, j, xi, state)));
@@ -190,7 +190,7 @@ impl<const D: usize> Interaction<D> for Together<D> {
             for [i, j] in [[i, j], [j, i]] {
                 let volume = body.volume.at(j);
                 family[i] += volume;
-                out[i] += if state == BondState::Whole {
+                out[i] += if state == BondStatus::Whole {
                     volume
                 } else {
                     0.0
@@ -212,7 +212,7 @@ impl<const D: usize> Interaction<D> for Together<D> {
             let (mut all_of, mut whole) = (0, 0);
             all.each_bond(body, &mut |_, _, _, state| {
                 all_of += 2;
-                whole += 2 * u64::from(state == BondState::Whole);
+                whole += 2 * u64::from(state == BondStatus::Whole);
             });
             [all_of, whole]
         };

@@ -3,7 +3,7 @@
 use super::ListInteraction;
 use crate::body::{Body, FieldView, view_mut, zeros};
 use crate::execute::lane::TILE;
-use crate::interaction::{BondForce, BondState, BondTangent, Interaction, Sweep};
+use crate::interaction::{BondForce, BondStatus, BondTangent, Interaction, Sweep};
 use crate::law::{BondFactors, Law};
 
 impl<const D: usize, W: Law> ListInteraction<D, W> {
@@ -83,11 +83,11 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     }
 
     /// Every undirected bond of the reference family.
-    pub(super) fn each_of_family(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+    pub(super) fn each_of_family(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
         let view = self.view(&self.moved);
         self.each_line(|row, line, [i, j]| {
             if i <= j {
-                let state = BondState::of(self.is_whole(row, line));
+                let state = BondStatus::of(self.is_whole(row, line));
                 visit(i, j, view.constant(i, j).0, state);
             }
         });

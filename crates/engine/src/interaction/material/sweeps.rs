@@ -1,13 +1,13 @@
 //! The sweeps of a law: sums of each pass, answers of bonds, what is remembered, energies.
 
-use super::family::{Family, Slots, put};
-use super::store::OwnRows;
-use super::view::{Drift, GroupOf, View, mirrored, save};
+use super::view::{GroupOf, View, mirrored, save};
 use crate::execute::blocks::Shared;
-use crate::execute::lane::{Lane, Piece, TILE};
+use crate::execute::lane::Lane;
 use crate::execute::simd::Kernel;
-use crate::interaction::material::repulsion::Pushed;
-use crate::interaction::{EnergyFields, Tally};
+use crate::interaction::Tally;
+use crate::interaction::bonds::family::{Family, Slots, put};
+use crate::interaction::bonds::repulsion::Pushed;
+use crate::interaction::bonds::store::OwnRows;
 use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site, part_of};
 
 /// A pass: sums over bonds, and what the points make of them.
@@ -31,7 +31,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> 
             }
             // SAFETY: groups of the family; each is written by one block
             unsafe {
-                let at = v.group::<L>(group, 0);
+                let at = v.group::<L>(group);
                 let mut point = <M::Point<L> as Numbers<L>>::constant(0.0);
                 if pass > 0 {
                     point = v.point::<L>(at.rows);
@@ -60,11 +60,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Forces<'_, D, F, M
         for group in v.block(block) {
             // SAFETY: groups of the family; each is written by one block
             unsafe {
-                let at = v.group::<L>(group, 0);
+                let at = v.group::<L>(group);
                 let point = v.point::<L>(at.rows);
                 let mut acc = [L::splat(0.0); D];
                 for k in 0..v.family.bonds(group) {
-                    let pull = pull::<L, D, F, M>(v, &at, &point, k, 0);
+                    let pull = pull::<L, D, F, M>(v, &at, &point, k);
                     for a in 0..D {
                         acc[a] = acc[a] + pull[a];
                     }
@@ -83,23 +83,22 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Forces<'_, D, F, M
 /// What the points of a group get from their bond `k` (force / volume).
 ///
 /// # Safety
-/// A bond of the group; `part` as of the group.
+/// A bond of the group.
 #[inline(always)]
 pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     v: &View<D, F, M>,
     at: &GroupOf<L, D, F, M>,
     point: &M::Point<L>,
     k: usize,
-    part: usize,
 ) -> [L; D] {
     // SAFETY: the caller's promise
     unsafe {
-        let (mut pull, _, weight) = pull_of::<L, D, F, M>(v, at, point, k, part);
+        let (mut pull, weight) = pull_of::<L, D, F, M>(v, at, point, k);
         for a in 0..D {
             pull[a] = weight * pull[a];
         }
         if !v.expansion.is_empty() {
-            let ends = v.family.ends(at.number, k).from(part);
+            let ends = v.family.ends(at.number, k);
             let per_length = v.per_length::<L>(at, ends);
             for a in 0..D {
                 pull[a] = per_length * pull[a];
@@ -109,7 +108,7 @@ pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     }
 }
 
-/// `T_i⟨ξ⟩ − T_j⟨−ξ⟩` of bond `k` of a group (force / volume²), the bond, and `ν V_j`.
+/// `T_i⟨ξ⟩ − T_j⟨−ξ⟩` of bond `k` of a group (force / volume²), and `ν V_j`.
 ///
 /// # Safety
 /// As of [`pull`].
@@ -119,14 +118,13 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     at: &GroupOf<L, D, F, M>,
     point: &M::Point<L>,
     k: usize,
-    part: usize,
-) -> ([L; D], Bond<L, D>, L) {
+) -> ([L; D], L) {
     // SAFETY: the caller's promise
     unsafe {
-        let ends = v.family.ends(at.number, k).from(part);
-        let dead = L::dead_in_part(*v.alive.at(v.family.byte(at.number, k)), part);
+        let ends = v.family.ends(at.number, k);
+        let dead = v.dead::<L>(at.number, k);
         let (bond, weight) = v.bond::<L>(at, k, ends, dead);
-        let memory = v.memory::<L>(at.number, k, part);
+        let memory = v.memory::<L>(at.number, k);
         let end = End {
             constants: &at.constants,
             point,
@@ -139,7 +137,7 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
             let back = if M::ALIKE {
                 memory
             } else {
-                v.memory_back::<L>(at.number, k, part)
+                v.memory_back::<L>(at.number, k)
             };
             let partner = v.point::<L>(ends);
             let constants = if v.alike || !M::READS {
@@ -160,7 +158,7 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
             own = own.times(v.integrity::<L>(at.rows));
             other = other.times(v.integrity::<L>(ends));
         }
-        (own.pull(other, &bond), bond, weight)
+        (own.pull(other, &bond), weight)
     }
 }
 
@@ -174,43 +172,16 @@ pub unsafe fn answers<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     at: &GroupOf<L, D, F, M>,
     point: &M::Point<L>,
     k: usize,
-    part: usize,
     bond: &Bond<L, D>,
 ) -> M::State<L> {
     // SAFETY: the caller's promise
-    let (memory, left) = unsafe { (v.memory::<L>(at.number, k, part), v.integrity::<L>(at.rows)) };
+    let (memory, left) = unsafe { (v.memory::<L>(at.number, k), v.integrity::<L>(at.rows)) };
     let end = End {
         constants: &at.constants,
         point,
         memory: &memory,
     };
     v.law.answer(bond, &end).times(left)
-}
-
-/// What of it is the point's own force state; `pull` has the rest.
-///
-/// # Safety
-/// As of [`pull`].
-#[inline(always)]
-pub unsafe fn own_pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
-    v: &View<D, F, M>,
-    at: &GroupOf<L, D, F, M>,
-    point: &M::Point<L>,
-    k: usize,
-    part: usize,
-) -> [L; D] {
-    // SAFETY: the caller's promise
-    unsafe {
-        let ends = v.family.ends(at.number, k).from(part);
-        let dead = L::dead_in_part(*v.alive.at(v.family.byte(at.number, k)), part);
-        let (bond, weight) = v.bond::<L>(at, k, ends, dead);
-        let mut own = answers::<L, D, F, M>(v, at, point, k, part, &bond).alone(&bond);
-        let weight = weight * v.per_length::<L>(at, ends);
-        for own in &mut own {
-            *own = weight * *own;
-        }
-        own
-    }
 }
 
 /// What bonds and points remember at the end of a step.
@@ -238,7 +209,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
             }
             // SAFETY: groups of the family; each is written by one block
             unsafe {
-                let at = v.group::<L>(group, 0);
+                let at = v.group::<L>(group);
                 let point = v.point::<L>(at.rows);
                 if !v.law.moves::<L>(&point) {
                     continue;
@@ -252,10 +223,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                 let count = <M::Memory<L> as Numbers<L>>::COUNT;
                 if count > 0 {
                     for k in 0..v.family.bonds(group) {
-                        let dead = v.dead(&at, k);
+                        let dead = v.dead::<L>(group, k);
                         let ends = v.family.ends(group, k);
                         let (bond, weight) = v.bond::<L>(&at, k, ends, dead);
-                        let old = v.memory::<L>(group, k, 0);
+                        let old = v.memory::<L>(group, k);
                         let end = End {
                             constants: &at.constants,
                             point: &point,
@@ -293,155 +264,5 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
             }
         }
         tally
-    }
-}
-
-/// Strain energy density of a group, with all passes of its own.
-pub struct EnergyOf<'a, 'b, L: Lane, const D: usize, F: Family<D>, M: Material<D>> {
-    pub view: &'a View<'b, D, F, M>,
-    pub at: &'a GroupOf<L, D, F, M>,
-    /// A byte per bond: these are whole.
-    pub bits: &'a [u8],
-    /// Of displacements that are away.
-    pub drift: Option<Drift<'a, D>>,
-    pub form: &'a M::Form<L>,
-}
-
-impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> EnergyOf<'_, '_, L, D, F, M> {
-    /// # Safety
-    /// A bond of the group.
-    #[inline(always)]
-    unsafe fn bond(&self, k: usize) -> (Bond<L, D>, L) {
-        let (v, at, dead) = (self.view, self.at, L::dead(self.bits[k]));
-        let ends = v.family.ends(at.number, k);
-        // SAFETY: the caller's promise
-        unsafe {
-            let mut eta = v.apart::<L>(at, ends, dead);
-            if let Some(drift) = &self.drift {
-                for a in 0..D {
-                    let column = drift.v[a].as_ptr();
-                    let rate = ends.one::<L>(column) - at.rows.one::<L>(column);
-                    eta[a] = rate.fma(L::splat(drift.time), eta[a]).zero_if(dead);
-                }
-            }
-            v.deformed(at, k, ends, dead, eta)
-        }
-    }
-}
-
-impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> Piece for EnergyOf<'_, '_, L, D, F, M> {
-    type Out = L;
-
-    #[inline(always)]
-    fn run(self) -> L {
-        let (v, at) = (self.view, self.at);
-        // SAFETY: a group of the family
-        unsafe {
-            let past = at.rows.load::<L, M::Past<L>>(v.past);
-            let site = Site {
-                constants: &at.constants,
-                form: self.form,
-                past: &past,
-                around: v.around::<L>(at.rows),
-            };
-            let mut point = <M::Point<L> as Numbers<L>>::constant(0.0);
-            let mut sum = <M::Sum<L> as Numbers<L>>::constant(0.0);
-            let mut energy = L::splat(0.0);
-            // the last round is that of energies
-            for pass in 0..=M::PASSES {
-                let last = pass == M::PASSES;
-                if last {
-                    energy = v.law.point_energy(&site, sum, &point);
-                }
-                sum = <M::Sum<L> as Numbers<L>>::constant(0.0);
-                for k in 0..v.family.bonds(at.number) {
-                    let (bond, weight) = self.bond(k);
-                    let memory = v.memory::<L>(at.number, k, 0);
-                    let end = End {
-                        constants: &at.constants,
-                        point: &point,
-                        memory: &memory,
-                    };
-                    if last {
-                        energy = weight.fma(v.law.energy(&bond, &end), energy);
-                    } else {
-                        sum = sum.plus(weight, v.law.share(pass, &bond, &end));
-                    }
-                }
-                if !last {
-                    v.law.settle(pass, &site, sum, &mut point);
-                }
-            }
-            part_of(v.integrity::<L>(at.rows), energy)
-        }
-    }
-}
-
-/// Energy pass: strain and repulsion energy densities, `Σ ω ν V |ξ|² s` and `Σ ω ν V |ξ|²` over whole bonds.
-pub struct Energies<'a, const D: usize, F, M> {
-    pub view: View<'a, D, F, M>,
-    /// What a section stores that is held, per material; empty: nothing ([`MaterialInteraction::held_energies`](super::MaterialInteraction)).
-    pub held: &'a [f64],
-    pub pushed: Option<Pushed<'a, D>>,
-    pub volume: &'a crate::body::Values,
-    pub fields: Option<EnergyFields>,
-}
-
-impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Energies<'_, D, F, M> {
-    type Out = [f64; 2];
-    const SELDOM: bool = true;
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
-        let v = &self.view;
-        let mut sums = [0.0; 2];
-        for group in v.block(block) {
-            // SAFETY: groups of the family; each is written by one block
-            unsafe {
-                let at = v.group::<L>(group, 0);
-                let bits = v.bits(group);
-                let form = at.rows.load::<L, M::Form<L>>(v.form);
-                let strain = L::apart(EnergyOf::<L, D, F, M> {
-                    view: v,
-                    at: &at,
-                    bits,
-                    drift: None,
-                    form: &form,
-                });
-                let repulsion = match &self.pushed {
-                    Some(pushed) => pushed.energy::<L, F>(v.family, &v.moved, group),
-                    None => [0.0; TILE],
-                };
-                let mut all = strain.to_array();
-                for l in 0..TILE {
-                    if v.family.is_point(group, l) {
-                        if !self.held.is_empty() {
-                            let slot = at.rows.slot(l);
-                            let material = v.material.get(slot).map_or(0, |m| usize::from(*m));
-                            all[l] += self.held[material] * v.expansion[slot].powi(2);
-                        }
-                        let volume = self.volume.at(at.rows.slot(l));
-                        sums[0] += all[l] * volume;
-                        sums[1] += repulsion[l] * volume;
-                    }
-                }
-                let Some(out) = self.fields else { continue };
-                let (mut share, mut weight) = (L::splat(0.0), L::splat(0.0));
-                for k in 0..v.family.bonds(group) {
-                    let ends = v.family.ends(group, k);
-                    let (bond, w) = v.bond::<L>(&at, k, ends, L::dead(bits[k]));
-                    let part = w * bond.omega * bond.length * bond.length;
-                    share = part.fma(bond.stretch, share);
-                    weight = weight + part;
-                }
-                put(L::load(all.as_ptr()), out.strain, at.rows);
-                for l in 0..TILE {
-                    *out.repulsion.at(at.rows.slot(l)) = repulsion[l];
-                }
-                put(share, out.share, at.rows);
-                put(weight, out.weight, at.rows);
-            }
-        }
-        sums
     }
 }

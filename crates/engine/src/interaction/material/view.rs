@@ -1,43 +1,30 @@
-//! What all sweeps of a law read, and the arithmetic of one bond. No closure touches a lane (see the stencil's kernel).
+//! What the sweeps of a law read, and the arithmetic of one bond. No closure touches a lane (see the stencil's kernel).
 
-use super::family::{Family, Moved, Slots};
-use super::store::{OwnRows, Rows};
 use crate::body::FieldView;
-use crate::execute::blocks::Seen;
 use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::interaction::bond::relative_square_stretch;
+use crate::interaction::bonds::family::{Family, Slots};
+use crate::interaction::bonds::store::OwnRows;
+use crate::interaction::bonds::view::{BondView, grown};
 use crate::law::material::{Around, Bond, End, Material, Numbers, Sink, Site, part_of};
 use crate::law::number::Number;
+use std::ops::Deref;
 
-/// Groups per block of work.
-pub const BLOCK: usize = 32;
-
+/// Bonds, and their law.
 pub struct View<'a, const D: usize, F, M> {
     pub law: &'a M,
-    pub family: &'a F,
-    pub moved: Moved<'a, D>,
-    /// Bits of whole bonds.
-    pub alive: Seen<u8>,
-    /// `[materials][numbers]`
-    pub constants: &'a [f64],
-    /// Material per slot; empty: one.
-    pub material: &'a [u8],
-    /// Constants of every point, of laws whose constants differ from place to place.
-    pub placed: Rows,
-    /// Are those of all points the same?
-    pub alike: bool,
-    pub form: Rows,
-    pub point: Rows,
-    pub past: Rows,
-    /// What bonds remember.
-    pub memory: Seen,
-    /// Strain by temperature or swelling per slot; empty: none.
-    pub expansion: &'a [f64],
-    /// Is the section held, as in plane strain?
-    pub held: bool,
-    /// What is left of each slot's energy and force states ([`Tear`](super::breaking::Tear)); empty: all of them.
-    pub integrity: &'a [f64],
+    pub bonds: BondView<'a, D, F>,
+}
+
+/// A law reads bonds wherever it stands.
+impl<'a, const D: usize, F, M> Deref for View<'a, D, F, M> {
+    type Target = BondView<'a, D, F>;
+
+    #[inline(always)]
+    fn deref(&self) -> &BondView<'a, D, F> {
+        &self.bonds
+    }
 }
 
 /// The points of a group.
@@ -66,15 +53,11 @@ pub type GroupOf<L, const D: usize, F, M> = Group<
 >;
 
 impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
-    pub fn block(&self, block: usize) -> std::ops::Range<usize> {
-        block * BLOCK..((block + 1) * BLOCK).min(self.family.groups())
-    }
-
     /// # Safety
-    /// A group of the family; for lanes of one, `part` is which of its points.
+    /// A group of the family.
     #[inline(always)]
-    pub unsafe fn group<L: Lane>(&self, number: usize, part: usize) -> GroupOf<L, D, F, M> {
-        let rows = self.family.rows(number).from(part);
+    pub unsafe fn group<L: Lane>(&self, number: usize) -> GroupOf<L, D, F, M> {
+        let rows = self.family.rows(number);
         // SAFETY: rows of the family
         unsafe {
             Group {
@@ -262,22 +245,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         }
     }
 
-    /// Lanes without a whole bond.
-    #[inline(always)]
-    pub unsafe fn dead<L: Lane>(&self, at: &GroupOf<L, D, F, M>, k: usize) -> L::Mask {
-        // SAFETY: a byte per bond
-        L::dead(unsafe { *self.alive.at(self.family.byte(at.number, k)) })
-    }
-
     /// What a group's bond remembers.
     #[inline(always)]
-    pub unsafe fn memory<L: Lane>(&self, number: usize, k: usize, part: usize) -> M::Memory<L> {
+    pub unsafe fn memory<L: Lane>(&self, number: usize, k: usize) -> M::Memory<L> {
         let count = <M::Memory<L> as Numbers<L>>::COUNT;
         let mut out = <M::Memory<L> as Numbers<L>>::constant(0.0);
         for n in 0..count {
             // SAFETY: numbers for every bond
             unsafe {
-                let place = self.family.own(number, k, n, count) + part;
+                let place = self.family.own(number, k, n, count);
                 out.set(n, L::load(self.memory.at(place)));
             }
         }
@@ -286,19 +262,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
 
     /// What the bonds remember that lead back.
     #[inline(always)]
-    pub unsafe fn memory_back<L: Lane>(
-        &self,
-        number: usize,
-        k: usize,
-        part: usize,
-    ) -> M::Memory<L> {
+    pub unsafe fn memory_back<L: Lane>(&self, number: usize, k: usize) -> M::Memory<L> {
         let count = <M::Memory<L> as Numbers<L>>::COUNT;
         let mut out = <M::Memory<L> as Numbers<L>>::constant(0.0);
         for n in 0..count {
             // SAFETY: numbers for every bond
             out.set(n, unsafe {
-                self.family
-                    .back::<L>(self.memory, number, k, part, n, count)
+                self.family.back::<L>(self.memory, number, k, 0, n, count)
             });
         }
         out
@@ -326,8 +296,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         unsafe {
             for k in 0..self.family.bonds(at.number) {
                 let ends = self.family.ends(at.number, k);
-                let (bond, weight) = self.bond::<L>(at, k, ends, self.dead(at, k));
-                let memory = self.memory::<L>(at.number, k, 0);
+                let (bond, weight) = self.bond::<L>(at, k, ends, self.dead::<L>(at.number, k));
+                let memory = self.memory::<L>(at.number, k);
                 let end = End {
                     constants: &at.constants,
                     point,
@@ -361,19 +331,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
             self.law.settle(pass, &site, sum, point);
         }
     }
-}
-
-/// ε and `1/(1 + ε)` of bonds, ε the mean of both ends. Laws see `(ξ + η)/(1 + ε) = ξ + (η − ε ξ)/(1 + ε)`.
-///
-/// # Safety
-/// A number for each of the slots.
-#[inline(always)]
-pub unsafe fn grown<L: Lane, S: Slots>(expansion: &[f64], own: S, ends: S) -> [L; 2] {
-    let column = expansion.as_ptr();
-    // SAFETY: the caller's promise
-    let both = unsafe { own.one::<L>(column) + ends.one::<L>(column) };
-    let strain = L::splat(0.5) * both;
-    [strain, L::splat(1.0).div(strain + L::splat(1.0))]
 }
 
 /// `bond` from its other end.
@@ -416,21 +373,5 @@ impl<L: Lane, S: Slots> Sink<L> for RowsOf<S> {
                 x.store(rows.data.at(rows.layout.at(n, slots.slot(0))));
             }
         }
-    }
-}
-
-impl<const D: usize, F: Family<D>, M> View<'_, D, F, M> {
-    /// Bits of the bonds of a group.
-    ///
-    /// # Safety
-    /// A group of the family; nobody writes them meanwhile.
-    #[inline(always)]
-    pub unsafe fn bits(&self, group: usize) -> &[u8] {
-        let bonds = self.family.bonds(group);
-        if bonds == 0 {
-            return &[];
-        }
-        // SAFETY: the bytes of a group lie side by side
-        unsafe { std::slice::from_raw_parts(self.alive.at(self.family.byte(group, 0)), bonds) }
     }
 }

@@ -7,7 +7,7 @@ use crate::execute::blocks::PerBlock;
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::tangent::Stretched;
-use crate::interaction::{BondForce, BondState, BondTangent, Interaction, Sweep, add_virial};
+use crate::interaction::{BondForce, BondStatus, BondTangent, Interaction, Sweep, add_virial};
 use crate::law::Law;
 use std::ops::Range;
 
@@ -223,7 +223,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         &self,
         body: &Body<D>,
         torn: bool,
-        visit: &mut dyn FnMut(usize, usize, [f64; D], BondState),
+        visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
     ) {
         let grid = body.grid();
         let original = body.originals();
@@ -243,7 +243,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 let j = original(j);
                 // a bond between a point and its own image counts from one side only
                 if p.slot < j || (p.slot == j && b.shift > 0) {
-                    let state = BondState::of(bits >> p.lane & 1 == 1);
+                    let state = BondStatus::of(bits >> p.lane & 1 == 1);
                     visit(p.slot, j, b.back.map(|x| -x), state);
                 }
             }

@@ -43,6 +43,7 @@ impl<L: BondLaw<K>, const K: usize, const D: usize> Material<D> for Bonds<L, K> 
     type State<N: Number> = Along<N>;
     const PASSES: usize = 0;
     const ALIKE: bool = true;
+    const OF_BONDS: bool = true;
 
     fn constants(&self, material: usize, _: f64) -> Constants<f64, K> {
         self.materials[material]

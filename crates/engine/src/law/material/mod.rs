@@ -353,6 +353,9 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const ALIKE: bool = false;
     /// Do the sums of the family make its stiffness, with ω once in each of them and in each answer? Points may have horizons of their own then.
     const OF_FAMILY: bool = false;
+    /// Do bonds make its stiffness, each with a micromodulus for all of its answer and ω once in it? Points may have horizons of their own
+    /// then, too: c goes as `δ^−(D+1)`.
+    const OF_BONDS: bool = false;
     /// Does it look at what is across a body in plane strain ([`Around::section`])? Bonds of a law that does not are expanded by (1 + ν) times
     /// what temperature or swelling gives them there: exact where it is linear and isotropic.
     const SECTION: bool = false;

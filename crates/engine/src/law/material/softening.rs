@@ -131,6 +131,7 @@ impl<const D: usize> Material<D> for Softening {
     type State<N: Number> = Along<N>;
     const PASSES: usize = 0;
     const ALIKE: bool = true;
+    const OF_BONDS: bool = true;
 
     fn columns(&self) -> Columns {
         Columns {

@@ -3,9 +3,10 @@
 //! `T⟨ξ⟩ = ω ((nκθ/m) |ξ| + α e)` along the bond, over its whole bonds, with the m of the family as it was.
 
 use super::{Along, Bond, End, Kin, Material, Site};
-use crate::law::descriptor::{self, Descriptor, Given, MODULI, Shelved};
+use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Shelved, word};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
+use crate::law::solid::linear::{EamLike, Linear, Lps, LpsAsTyped};
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
 /// See the module.
@@ -25,8 +26,29 @@ const DILATED: usize = 2;
 
 type Ends<'a, N> = End<'a, [N; 2], [N; 3], [N; 0]>;
 
+/// Whose κ and β the moduli give.
+const FORMULAS: Key = word(
+    ThermoelasticSolid::FORMULAS,
+    &[
+        (
+            Lps::NAME,
+            "those of a solid of as many dimensions as the body has",
+        ),
+        (
+            LpsAsTyped::NAME,
+            "those of three dimensions in any body: κ = K − 5G/3, β = 15 G",
+        ),
+        (
+            EamLike::NAME,
+            "the same, with contact as stiff as in a body of as many dimensions",
+        ),
+    ],
+    "The law whose constants the moduli give.",
+);
+
 impl ThermoelasticSolid {
     pub const NAME: &'static str = "thermoelastic_solid";
+    pub(crate) const FORMULAS: &'static str = "formulas";
 }
 
 impl<const D: usize> Material<D> for ThermoelasticSolid {
@@ -104,10 +126,24 @@ impl Shelved for ThermoelasticSolid {
         .example("{ young = \"72 GPa\", poisson = 0.22 }")
         .influence(Influence::Inverse)
         .keys(&MODULI)
+        .keys(&[FORMULAS])
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
-        descriptor::moduli(parameters).map(LawSpec::Lps)
+        let moduli = descriptor::moduli(parameters)?;
+        let typed = ["bulk", "shear"].map(|key| parameters.number(key));
+        let [bulk, shear] = match typed {
+            [Some(bulk), Some(shear)] => [bulk, shear],
+            _ => [moduli.bulk(), moduli.shear()],
+        };
+        Ok(match parameters.word(Self::FORMULAS) {
+            Some(LpsAsTyped::NAME) => LawSpec::LpsAsTyped { bulk, shear },
+            Some(EamLike::NAME) => LawSpec::EamLike {
+                pair: 30.0 * shear,
+                volume: 3.0 * bulk - 5.0 * shear,
+            },
+            _ => LawSpec::Lps(moduli),
+        })
     }
 
     fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {

@@ -5,7 +5,7 @@
 //! `Σ_j ½ (c_i ν_i + c_j ν_j) V_j s (ξ+η)/|ξ+η|`, with `ν = clamp(½ + (δ − r0)/h, 0, 1)` the part of a cell of width h that is within δ, so
 //! that nothing jumps where a horizon passes a point. Either half is action and reaction, so momentum and angular momentum stay; with the
 //! micropotential `½ (…) s² r0` so does energy. State-based laws weigh their bonds by `ω ν_i` at i and `ω ν_j` at j
-//! (`interaction/material/cloud.rs`): what T_i gives to j it takes from i.
+//! (`interaction/bonds/cloud.rs`): what T_i gives to j it takes from i.
 
 use crate::execute::lane::Lane;
 use crate::law::Law;

@@ -95,6 +95,11 @@ impl Solid {
         }
     }
 
+    /// Young's modulus of a line of it: `n² κ + β`.
+    pub fn along_a_line(&self) -> f64 {
+        self.n * self.n * self.kappa + self.beta
+    }
+
     /// `n² κ / β²`.
     pub fn ratio(&self) -> f64 {
         self.n * self.n * self.kappa / (self.beta * self.beta)

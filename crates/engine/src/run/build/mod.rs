@@ -66,8 +66,10 @@ pub fn build_in<const D: usize>(
     }
     consistent(&resolved, shelf)?;
     let potentials = shelf.potentials(&resolved)?;
-    atoms::check_smooth(&resolved, potentials.is_some())?;
-    atoms::resolve_family(&mut resolved, potentials.as_ref())?;
+    atoms::check_smooth(&resolved)?;
+    if let Some(potentials) = &potentials {
+        atoms::resolve_family(&mut resolved, potentials);
+    }
     let spec = &resolved;
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = Warnings::default();

@@ -54,7 +54,7 @@ pub(super) fn constants<const D: usize>(
         kinds
             .solid
             .extend(Solid::of_law(D, spec.space.plane, m.law.linear()));
-        possible(spec, n, m)?;
+        possible(n, m)?;
         let (value, hard) = kinds.take::<D>(spec, n, &m.law, &to)?;
         sound(spec, n, &m.law, value, moments)?;
         contact.push(15.0 * hard / horizon);
@@ -69,28 +69,13 @@ fn at(n: usize, key: &str) -> String {
     format!("materials[{n}].{key}")
 }
 
-/// May material `n` be what it says, beside contact and fracture?
-fn possible(spec: &Spec, n: usize, m: &MaterialSpec) -> Result<(), BuildError> {
+/// Has material `n` a mass?
+fn possible(n: usize, m: &MaterialSpec) -> Result<(), BuildError> {
     if !(m.density > 0.0 && m.density.is_finite()) {
         return Err(BuildError::invalid(
             at(n, "density"),
             format!("density is {}, expected a positive number", m.density),
         ));
-    }
-    let linear = matches!(m.law, LawSpec::Springs(_) | LawSpec::Micromoduli(_));
-    if linear && (spec.interactions.contact.is_some() || super::breaks(spec)) {
-        return Err(BuildError::unsupported(
-            at(n, "law"),
-            "springs and micromoduli have no bonds that break and no contact of their own",
-        )
-        .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
-    }
-    if matches!(m.law, LawSpec::Atoms(_)) && spec.interactions.contact.is_some() {
-        return Err(BuildError::unsupported(
-            at(n, "law"),
-            "how atoms repel each other is what their potential says, and no stiffness of contact follows from it",
-        )
-        .help("remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps"));
     }
     Ok(())
 }

@@ -1,14 +1,12 @@
 //! What materials break by beside their critical stretch.
 
-use super::Shelf;
-use super::general::general;
+use super::general::generalised;
 use crate::error::BuildError;
 use crate::interaction::criterion::{Criteria, Measure};
-use crate::law::descriptor::Memory;
 use crate::law::fracture_energy;
 use crate::law::micromodulus::Moments;
 use crate::quantity::Message;
-use crate::spec::{Criterion, FractureSpec, LawSpec, MaterialSpec, Plane, Spec};
+use crate::spec::{Criterion, FractureSpec, MaterialSpec, Spec};
 
 fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
     BuildError::unsupported(format!("materials[{n}].{key}"), message)
@@ -18,35 +16,16 @@ fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
 /// laws changed?
 pub(in crate::run) fn remembering(spec: &mut Spec) -> bool {
     let remembers = |m: &MaterialSpec| m.fracture.is_some_and(|f| f.remembers());
-    if !spec.materials.iter().any(remembers) {
-        return false;
-    }
-    for m in &mut spec.materials {
-        if let (LawSpec::Pmb(_) | LawSpec::Lps(_), Some(law)) = (&m.law, general(&m.law)) {
-            m.law = law;
-        }
-    }
-    true
+    spec.materials.iter().any(remembers) && generalised(spec, |_| true)
 }
 
 /// Of all materials of a body.
 pub(super) fn criteria<const D: usize>(
     spec: &Spec,
     moments: Moments,
-    shelf: &Shelf,
 ) -> Result<Criteria, BuildError> {
     let all = || spec.materials.iter().enumerate();
     let breaking = || all().filter_map(|(n, m)| Some((n, m.fracture?)));
-    for (n, fracture) in breaking().filter(|(_, f)| f.remembers()) {
-        if fracture.alpha != 0.0 {
-            return Err(unsupported(
-                n,
-                "fracture",
-                "strengthening under compression (alpha) is of critical stretches alone",
-            )
-            .help("leave alpha out"));
-        }
-    }
     let kind = |f: &FractureSpec| match f.criterion {
         Criterion::Energy(_) => std::mem::discriminant(&Criterion::Stretch(0.0)),
         other => std::mem::discriminant(&other),
@@ -74,12 +53,7 @@ pub(super) fn criteria<const D: usize>(
             Measure::Work(limits(fracture_energy::of_unit_work(D, moments)))
         }
         Criterion::PlasticStrain(_) => Measure::PlasticStrain(limits(1.0)),
-        Criterion::VonMises(_) => {
-            for (n, m) in all() {
-                across_known::<D>(spec, n, m, shelf)?;
-            }
-            Measure::VonMises(limits(1.0))
-        }
+        Criterion::VonMises(_) => Measure::VonMises(limits(1.0)),
     };
     let rates = || all().map(|(_, m)| m.fracture.and_then(|f| f.rate));
     let fatigues = || all().map(|(_, m)| m.fracture.and_then(|f| f.fatigue));
@@ -94,41 +68,6 @@ pub(super) fn criteria<const D: usize>(
             false => vec![],
         },
     })
-}
-
-/// Is the stress across a body in plane strain known?
-fn across_known<const D: usize>(
-    spec: &Spec,
-    n: usize,
-    m: &MaterialSpec,
-    shelf: &Shelf,
-) -> Result<(), BuildError> {
-    if D != 2 || spec.space.plane == Plane::Stress {
-        return Ok(());
-    }
-    let known = match &m.law {
-        LawSpec::Named(law) => {
-            let of = shelf.descriptor(&law.name);
-            let elastic = law.isotropic && of.is_some_and(|d| d.memory == Memory::Nothing);
-            elastic || shelf.across(&law.name)
-        }
-        LawSpec::Pmb(_)
-        | LawSpec::Springs(_)
-        | LawSpec::Lps(_)
-        | LawSpec::LpsAsTyped { .. }
-        | LawSpec::EamLike { .. }
-        | LawSpec::Micromoduli(_)
-        | LawSpec::Atoms(_) => true,
-    };
-    match known {
-        true => Ok(()),
-        false => Err(unsupported(
-            n,
-            "fracture",
-            "the stress across plane strain does not follow from that in the plane: this law is anisotropic, or its bonds soften",
-        )
-        .help("give another criterion, or take three dimensions")),
-    }
 }
 
 /// Are there cycles where bonds wear, and bonds that wear where there are cycles?

@@ -2,20 +2,27 @@
 //! horizons of their own, and influence functions that know directions.
 
 use crate::law::material::{Thermoelastic, ThermoelasticSolid};
-use crate::law::solid::linear::{Linear, Lps, of_stiffness};
-use crate::spec::{BodySpec, Influence, LawSpec, NamedLaw, PieceSpec, Spec};
+use crate::law::solid::linear::{EamLike, Linear, Lps, LpsAsTyped, of_stiffness};
+use crate::spec::{BodySpec, Influence, LawSpec, NamedLaw, Parameter, Parameters, PieceSpec, Spec};
 
 /// The same law there; `None`: it has no kernel of its own, or is not among them.
 pub(in crate::run) fn general(law: &LawSpec) -> Option<LawSpec> {
+    let typed = |name: &str, bulk, shear| {
+        let mut parameters = Parameters::numbers(&[("bulk", bulk), ("shear", shear)]);
+        let word = Parameter::Word(name.into());
+        (parameters.0).push((ThermoelasticSolid::FORMULAS.into(), word));
+        (ThermoelasticSolid::NAME, parameters)
+    };
     let (name, parameters) = match law {
         LawSpec::Pmb(stiffness) => (Thermoelastic::NAME, of_stiffness(*stiffness)),
         LawSpec::Lps(_) => (ThermoelasticSolid::NAME, Lps::parameters(law)?),
-        LawSpec::LpsAsTyped { .. }
-        | LawSpec::EamLike { .. }
-        | LawSpec::Springs(_)
-        | LawSpec::Micromoduli(_)
-        | LawSpec::Atoms(_)
-        | LawSpec::Named(_) => return None,
+        LawSpec::LpsAsTyped { bulk, shear } => typed(LpsAsTyped::NAME, *bulk, *shear),
+        LawSpec::EamLike { pair, volume } => {
+            typed(EamLike::NAME, volume / 3.0 + pair / 18.0, pair / 30.0)
+        }
+        LawSpec::Springs(_) | LawSpec::Micromoduli(_) | LawSpec::Atoms(_) | LawSpec::Named(_) => {
+            return None;
+        }
     };
     Some(LawSpec::Named(NamedLaw {
         name: name.into(),
@@ -26,7 +33,7 @@ pub(in crate::run) fn general(law: &LawSpec) -> Option<LawSpec> {
 }
 
 /// Does the influence function of any body?
-pub(in crate::run) fn knows_directions(spec: &Spec) -> bool {
+fn knows_directions(spec: &Spec) -> bool {
     let pieces: &[PieceSpec] = match &spec.body {
         BodySpec::Several(pieces) => pieces,
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => &[],
@@ -35,15 +42,22 @@ pub(in crate::run) fn knows_directions(spec: &Spec) -> bool {
     spec.bonds.influence.is_directed() || own.any(Influence::is_directed)
 }
 
-/// Where an influence function knows directions, `lps` is a law of `law/material`: its own kernel weighs a bond alike at both ends. Were laws
+/// Where an influence function knows directions, solids are laws of `law/material`: their own kernel weighs a bond alike at both ends. Were laws
 /// changed?
 pub(in crate::run) fn directed(spec: &mut Spec) -> bool {
-    if !knows_directions(spec) {
-        return false;
-    }
+    knows_directions(spec) && generalised(spec, is_solid)
+}
+
+/// Is it state-based, with a kernel of its own?
+pub(in crate::run) fn is_solid(law: &LawSpec) -> bool {
+    !matches!(law, LawSpec::Pmb(_))
+}
+
+/// Laws for which `which` holds become those of `law/material`. Were laws changed?
+pub(in crate::run) fn generalised(spec: &mut Spec, which: impl Fn(&LawSpec) -> bool) -> bool {
     let mut changed = false;
     for m in &mut spec.materials {
-        if let (LawSpec::Lps(_), Some(law)) = (&m.law, general(&m.law)) {
+        if let Some(law) = general(&m.law).filter(|_| which(&m.law)) {
             m.law = law;
             changed = true;
         }

@@ -21,10 +21,10 @@ use crate::law::micromodulus::Moments;
 use crate::spec::{Calibration, FamilyChoice, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
-pub(super) use general::{directed, general, knows_directions};
+pub(super) use general::{directed, generalised, is_solid};
 pub(super) use pairs::contact_stiffness;
 pub use shelf::Shelf;
-pub(super) use shelf::{AnyPotentials, Softens};
+pub(super) use shelf::{AnyPotentials, Softens, Stiffness};
 use std::sync::Arc;
 use toughness::toughness;
 
@@ -192,7 +192,7 @@ impl ConstitutiveModel {
                 toughness::<D>(spec, m, horizon, moments, shelf, &path)
             })
             .collect::<Result<Vec<_>, _>>()?;
-        let criteria = criteria::criteria::<D>(spec, moments, shelf)?;
+        let criteria = criteria::criteria::<D>(spec, moments)?;
         let repulsion = match &spec.interactions.contact {
             Some(contact_spec) => Some(Repulsion {
                 stiffness: contact_stiffness(&contact_spec.stiffness, &contact)?,
@@ -204,14 +204,6 @@ impl ConstitutiveModel {
         };
         let pairs = pairs::bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
         let named = shelf::chosen::<D>(spec, shelf, (horizon, moments, bulk.family), &toughness)?;
-        let atoms = matches!(laws, Laws::Atoms(_));
-        if named.is_none() && !atoms && !criteria.is_plain() {
-            return Err(BuildError::unsupported(
-                "materials[0].fracture",
-                "these bonds break by their critical stretch alone",
-            )
-            .help("give critical_stretch or energy, without criterion, rate and fatigue"));
-        }
         Ok(ConstitutiveModel {
             laws,
             toughness,

@@ -7,7 +7,7 @@ use crate::interaction::{PairTable, Toughness, in_series};
 use crate::law::solid::eam_like::Solid;
 use crate::message;
 use crate::quantity::{Dimension, Message, rounded};
-use crate::spec::{ContactStiffness, Influence, LawSpec, PmbStiffness, Spec};
+use crate::spec::{ContactStiffness, LawSpec, PairSpec, PmbStiffness, Spec};
 
 /// What pairs of materials have, checked.
 pub(super) fn bond_table(
@@ -29,12 +29,15 @@ pub(super) fn bond_table(
             materials * materials
         )]);
     }
-    if !matches!(
-        spec.bonds.influence,
-        Influence::Constant | Influence::Inverse
-    ) {
+    let shorter = |p: &PairSpec| p.horizon > 0.0 && p.horizon < horizon * (1.0 - 1e-9);
+    if spec.bonds.influence.knows_horizon() && spec.interactions.pairs.iter().any(shorter) {
         return unsupported(
-            "an influence function other than constant and inverse, with horizons of pairs",
+            "an influence function of the horizon is one of a single horizon, and these pairs have several",
+        );
+    }
+    if spec.bonds.influence.is_directed() && matches!(laws, Laws::Solid(_)) {
+        return unsupported(
+            "an influence function that knows directions is one of each family, and pairs of state-based materials have constants of each bond",
         );
     }
     let mut pairs = vec![];

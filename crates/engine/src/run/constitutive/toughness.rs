@@ -5,7 +5,14 @@ use crate::error::BuildError;
 use crate::interaction::Toughness;
 use crate::law::fracture_energy;
 use crate::law::micromodulus::{Moments, micromodulus};
+use crate::law::solid::eam_like::Solid;
 use crate::spec::{Criterion, LawSpec, MaterialSpec, PmbStiffness, Spec};
+
+/// No stretch breaks its bonds.
+const UNBREAKABLE: Toughness = Toughness {
+    s00: f64::INFINITY,
+    alpha: 0.0,
+};
 
 /// Of a material; `path` is where the spec has it.
 pub(super) fn toughness<const D: usize>(
@@ -17,44 +24,21 @@ pub(super) fn toughness<const D: usize>(
     path: &str,
 ) -> Result<Toughness, BuildError> {
     let Some(fracture) = m.fracture else {
-        return Ok(Toughness {
-            s00: f64::INFINITY,
-            alpha: 0.0,
-        });
+        return Ok(UNBREAKABLE);
     };
     let s00 = match fracture.criterion {
         Criterion::Stretch(s) => s,
         Criterion::BondEnergy(_) | Criterion::VonMises(_) | Criterion::PlasticStrain(_) => {
-            return Ok(Toughness {
-                s00: f64::INFINITY,
-                alpha: 0.0,
-            });
+            return Ok(UNBREAKABLE);
         }
         Criterion::Energy(energy) => {
-            if let LawSpec::Named(law) = &m.law
-                && !law.isotropic
-            {
-                return Err(BuildError::unsupported(
-                    path,
-                    format!("a bond of the law {} has another energy in every direction: a fracture energy gives no critical stretch", law.name),
-                )
-                .help("give critical_stretch instead"));
-            }
-            if let LawSpec::Named(law) = &m.law
-                && shelf.turns(&law.name)
-            {
-                return Err(BuildError::unsupported(
-                    path,
-                    format!("bonds of the law {} store energy by turning, too: a fracture energy gives no critical stretch", law.name),
-                )
-                .help("write criterion = \"bond_energy\" beside energy, or give critical_stretch"));
-            }
             let energy = shelf.brittle_energy(&m.law, energy);
             let bonds = |stiffness| {
                 let c = micromodulus(D, spec.space.plane, stiffness, moments);
                 fracture_energy::bond_based(D, c, moments)
             };
-            let of_unit_stretch = match m.law.linear() {
+            let linear = m.law.linear();
+            let of_unit_stretch = match linear {
                 LawSpec::Pmb(s) => bonds(*s),
                 LawSpec::Lps(m) if D == 1 => bonds(PmbStiffness::Young(m.young)),
                 LawSpec::Lps(m) => fracture_energy::state_based(
@@ -64,24 +48,17 @@ pub(super) fn toughness<const D: usize>(
                     horizon,
                     spec.bonds.influence,
                 ),
-                LawSpec::Atoms(_) => {
-                    return Err(BuildError::unsupported(
-                        path,
-                        "the energy of a stretched bond of a potential is no square of its stretch: a fracture energy gives no critical stretch",
-                    )
-                    .help("write criterion = \"bond_energy\" beside energy, or give critical_stretch"));
-                }
                 LawSpec::LpsAsTyped { .. }
                 | LawSpec::EamLike { .. }
                 | LawSpec::Springs(_)
                 | LawSpec::Micromoduli(_)
-                | LawSpec::Named(_) => {
-                    return Err(BuildError::unsupported(
-                        path,
-                        "a fracture energy is known for pmb and lps materials only",
-                    )
-                    .help("give critical_stretch instead"));
-                }
+                | LawSpec::Atoms(_)
+                | LawSpec::Named(_) => match Solid::of_law(D, spec.space.plane, linear) {
+                    Some(s) if D == 1 => bonds(PmbStiffness::Young(s.along_a_line())),
+                    Some(s) => fracture_energy::of_solid(D, s, horizon, spec.bonds.influence),
+                    // nobody breaks such bonds by a stretch of an energy
+                    None => return Ok(UNBREAKABLE),
+                },
             };
             let s00 = (energy / of_unit_stretch).sqrt();
             if !(s00 > 0.0) {

@@ -19,7 +19,7 @@ use super::problem::Problem;
 use super::state::{Followed, StaticState};
 use crate::body::Field;
 use crate::error::{BuildError, SolveError};
-use crate::interaction::BondState;
+use crate::interaction::BondStatus;
 use crate::run::system::System;
 use crate::spec::Control;
 use crate::statics::{Assembled, Direct, Solved, Support, dot, norm};
@@ -275,7 +275,7 @@ impl<const D: usize> Problem<'_, D> {
         system
             .interaction
             .each_bond(&system.body, &mut |i, j, xi, state| {
-                if state != BondState::Whole {
+                if state != BondStatus::Whole {
                     return;
                 }
                 let [i, j] = [i, j].map(|s| id[s] as usize);

@@ -17,7 +17,7 @@ use super::state::{Critical, Sequence, StaticState};
 use crate::body::{Field, view};
 use crate::error::{BuildError, SolveError};
 use crate::interaction::bond::critical_stretch;
-use crate::interaction::{BondState, history};
+use crate::interaction::{BondStatus, history};
 use crate::run::system::System;
 use crate::run::traits;
 use crate::spec::CrackKind;
@@ -214,7 +214,7 @@ impl<const D: usize> Problem<'_, D> {
         system
             .interaction
             .each_bond(&system.body, &mut |i, j, xi, state| {
-                if state != BondState::Whole {
+                if state != BondStatus::Whole {
                     return;
                 }
                 let limit = system.interaction.bond_limit([i, j], &xi, limits(i, j));

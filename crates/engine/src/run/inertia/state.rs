@@ -40,13 +40,6 @@ impl<const D: usize> Inertia<D> {
         let Some(masses) = linear.as_ref().and_then(Masses::of) else {
             return Ok(None);
         };
-        if spec.loading.thermal.is_some() {
-            return Err(BuildError::unsupported(
-                "thermal",
-                "points whose masses are coupled have no velocities that are independent of each other, which a Maxwell-Boltzmann distribution of points is",
-            )
-            .help("take a body with lumped masses: peridyne coarsen --mass lumped"));
-        }
         let support = Support::none(body.points());
         let factors = factors(&masses, &support).map_err(|e| {
             BuildError::invalid(

@@ -2,7 +2,6 @@
 //! ledger goes on through it: what loads and reactions did in statics is the strain energy that motion begins with.
 
 use super::conditions::tell_loads;
-use super::constitutive::Laws;
 use super::model::Model;
 use super::names::Names;
 use super::stages::{Stage, Stages};
@@ -14,7 +13,7 @@ use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::spec::{CrackKind, Method, PreloadSpec, Spec, Statics, Stepper as Kind};
+use crate::spec::{CrackKind, PreloadSpec, Spec, Statics, Stepper as Kind};
 use crate::statics::Solved;
 use std::collections::{HashMap, VecDeque};
 
@@ -61,14 +60,6 @@ impl<const D: usize> System<D> {
             timed: preload.duration.is_some(),
             ..preload.statics
         };
-        let linear = |l: &Laws| matches!(l, Laws::Springs(_) | Laws::Micromoduli(_));
-        if statics.method == Method::Linear && !self.constitutive.all().all(|m| linear(&m.laws)) {
-            return Err(BuildError::unsupported(
-                "preload.statics.method",
-                "a linear solution is no equilibrium of the law that moves the body: motion would begin with a jolt",
-            )
-            .help("leave method out, or write method = \"newton\""));
-        }
         let cuts = preload.cuts.iter().enumerate().map(|(n, cut)| {
             Crack::new(&cut.shape, self.body.period).map_err(|e| e.at(format!("preload.cuts[{n}]")))
         });

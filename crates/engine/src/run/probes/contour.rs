@@ -44,19 +44,6 @@ impl<const D: usize> System<D> {
                 format!("a contour is one in two dimensions, this body has {D}"),
             ));
         }
-        if self.interaction.is_potential() {
-            return Err(BuildError::unsupported(
-                path,
-                "a contour goes through a solid, these are atoms",
-            ));
-        }
-        if !self.regime.equilibrium {
-            return Err(BuildError::unsupported(
-                path,
-                "a contour integral needs equilibrium: in motion the inertia inside it counts, too",
-            )
-            .help("write [statics] instead of [run]"));
-        }
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for &s in &self.body.slots {
             let x = self.body.position(s as usize);

@@ -1,16 +1,22 @@
 //! What the parts of a spec have not.
 
 use super::{Lack, Property};
+use crate::law::descriptor::Memory;
 use crate::law::solid::eam_like::Solid;
-use crate::run::constitutive::Shelf;
+use crate::run::constitutive::{Shelf, Stiffness};
+use crate::run::own_horizons::of_energy;
+use crate::run::reference::{current_neighbours, listed};
 use crate::spec::{
-    BodySpec, Control, CrackKind, Criterion, FractureSpec, IndenterMotion, LawSpec, MaterialSpec,
-    Method, PreloadSpec, Quantity, Release, Solver, Spec, Stepper, ToughnessFactor, TransferMethod,
-    TransferSpec,
+    BodySpec, Calibration, Control, CrackKind, Criterion, FamilyChoice, FractureSpec,
+    IndenterMotion, Influence, LawSpec, MaterialSpec, Measure, Method, PreloadSpec, Quantity,
+    Release, Solver, Spec, Stepper, ToughnessFactor, TransferMethod, TransferSpec,
 };
 
 pub(super) fn of(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     let mut all = of_bodies(spec);
+    all.extend(of_families(spec));
+    all.extend(of_horizons(spec, shelf));
+    all.extend(of_probes(spec));
     all.extend(of_transfers(spec));
     all.extend(of_statics(spec));
     all.extend(of_atoms(spec));
@@ -82,6 +88,144 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
         let instead = "leave t out of it; increments count cycles, whose number is in history.csv";
         let lack = Lack::new(Property::SameInCycles, says, instead);
         all.push(lack.at(format!("conditions[{n}]")));
+    }
+    all
+}
+
+/// Of families, and of what goes with some of them.
+fn of_families(spec: &Spec) -> Vec<Lack> {
+    let mut all = vec![];
+    match spec.bonds.family {
+        FamilyChoice::List => {
+            let says = "a list stores bonds of peridynamic laws";
+            let instead = "write family = \"reference\": those within the horizon in the reference, for ever; or leave it out: those that are near now";
+            all.push(Lack::new(Property::Potentials, says, instead).at("family"));
+        }
+        FamilyChoice::Reference => {
+            let says = "family = \"reference\" belongs to interatomic potentials: the families of this law are always those of the reference";
+            all.push(Lack::new(Property::Solids, says, "leave family out").at("family"));
+        }
+        FamilyChoice::Auto | FamilyChoice::Stencil | FamilyChoice::Neighbours => {}
+    }
+    if current_neighbours(spec) {
+        let says = "atoms feel those that are near now, and who comes near again is a neighbour again: no bond can break or be cut";
+        let instead =
+            "write family = \"reference\" with a horizon, or remove fracture and pre-cracks";
+        all.push(Lack::new(Property::Breaks, says, instead));
+    }
+    if spec.bonds.smooth.is_some() {
+        let says =
+            "smoothing averages the force states of a potential, which are those of the reference";
+        let instead = "write family = \"reference\", with an interatomic potential as the law";
+        for property in [Property::Solids, Property::OfNow] {
+            all.push(Lack::new(property, says, instead).at("smooth"));
+        }
+    }
+    if spec.interactions.bonded.is_some() {
+        let says = "bonds, angles and dihedrals stand beside a potential of atoms";
+        let instead = "give the material a pair potential";
+        all.push(Lack::new(Property::Solids, says, instead).at("bonded"));
+        let says = "molecules have no stencil";
+        let instead = "remove family = \"stencil\": atoms feel those that are near now, or with family = \"reference\" those of the reference";
+        all.push(Lack::new(Property::OfStencil, says, instead).at("bonded"));
+        let says = "the bonds of a molecule are terms of its force field, which hold at any length";
+        let instead = "remove fracture and pre-cracks";
+        all.push(Lack::new(Property::Breaks, says, instead));
+    }
+    all
+}
+
+/// Of what stands in the way of horizons of points.
+fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
+    let mut all = vec![];
+    let mut lack = |path: &str, says: &str, instead| {
+        all.push(Lack::new(Property::OwnHorizons, says, instead).at(path));
+    };
+    if !listed(spec)
+        && matches!(
+            spec.body,
+            BodySpec::Lattice { perturb: None, .. } | BodySpec::Sites { .. }
+        )
+    {
+        lack(
+            "own_horizon",
+            "horizons of points belong to a single cloud: a lattice has one stencil",
+            "write family = \"list\", or take the points from a file",
+        );
+    }
+    let mut of_bonds = false;
+    for m in &spec.materials {
+        match shelf.stiffness(&m.law) {
+            Some(Stiffness::OfFamily) => {}
+            Some(Stiffness::OfBonds) => of_bonds = true,
+            None if matches!(m.law, LawSpec::Pmb(_)) => of_bonds = true,
+            Some(Stiffness::OfHorizon) => lack(
+                "own_horizon",
+                "bonds of this law have the stiffness of one horizon",
+                "take pmb, lps or another law of sums over families, or leave own_horizon out",
+            ),
+            None => lack(
+                "own_horizon",
+                "points with horizons of their own are a body of pmb, or of laws that their families normalise",
+                "take lps, or leave own_horizon out",
+            ),
+        }
+    }
+    let constant = spec.bonds.influence == Influence::Constant;
+    if spec.bonds.influence.knows_horizon() || (of_bonds && !constant) {
+        lack(
+            "influence",
+            "an influence function of the horizon is not known where points have their own",
+            "leave influence out",
+        );
+    }
+    if !spec.bonds.volume_scaling {
+        lack(
+            "volume_scaling",
+            "volumes fade at the horizon of a point: else its stiffness jumps wherever that passes another point",
+            "leave volume_scaling out",
+        );
+    }
+    if spec.bonds.calibration != Calibration::Continuum {
+        lack(
+            "calibration",
+            "the constants of points with horizons of their own are those of the continuum",
+            "write calibration = \"continuum\"",
+        );
+    }
+    let mut materials = spec.materials.iter();
+    if let (Some(n), Influence::Formula(_)) = (
+        materials.position(|m| m.fracture.is_some_and(of_energy)),
+        spec.bonds.influence,
+    ) {
+        lack(
+            &format!("materials[{n}].fracture"),
+            "the stretch that a fracture energy stands for falls with the root of the horizon where nothing else is a length, and this influence function has one",
+            "give critical_stretch, or leave influence out",
+        );
+    }
+    all
+}
+
+/// Of what is measured.
+fn of_probes(spec: &Spec) -> Vec<Lack> {
+    let contour = |m: &Measure| matches!(m, Measure::Contour(_));
+    let Some(n) = (spec.run.probes.iter()).position(|p| contour(&p.measure)) else {
+        return vec![];
+    };
+    let lack =
+        |property, says, instead| Lack::new(property, says, instead).at(format!("probes[{n}]"));
+    let mut all = vec![lack(
+        Property::Inertia,
+        "a contour integral needs equilibrium: in motion the inertia inside it counts, too",
+        "write [statics] instead of [run]",
+    )];
+    if spec.bonds.smooth.is_none() {
+        all.push(lack(
+            Property::Potentials,
+            "a contour goes through a solid",
+            "leave it out",
+        ));
     }
     all
 }
@@ -176,6 +320,12 @@ fn of_statics(spec: &Spec) -> Vec<Lack> {
 /// Of statics that motion follows.
 fn of_preload(preload: &PreloadSpec) -> Vec<Lack> {
     let mut all = vec![];
+    if preload.statics.method == Method::Linear {
+        let says = "a linear solution is no equilibrium of the law that moves the body: motion would begin with a jolt";
+        let instead = "leave method out, or write method = \"newton\"";
+        let lack = Lack::new(Property::Nonlinear, says, instead);
+        all.push(lack.at("preload.statics.method"));
+    }
     if preload.statics.control != Control::Load {
         let says = "statics whose load is what the body bears ends anywhere";
         let lack = Lack::new(Property::TwoStages, says, "leave control out");
@@ -292,17 +442,6 @@ fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, shelf: &Shelf) -> Vec<La
         | LawSpec::Springs(_) => "",
     };
     all.extend(of_linear_laws(n, m, spec));
-    if m.fracture.is_some_and(|f| f.remembers()) && (shelf.ends(name) || shelf.kinds(name)) {
-        let says = format!(
-            "the law {name} has a critical stretch among its constants: its bonds break by nothing else"
-        );
-        let lack = Lack::new(
-            Property::OtherMeasures,
-            says,
-            "leave criterion, rate and fatigue out",
-        );
-        all.push(lack.at(format!("materials[{n}].fracture")));
-    }
     if shelf.ends(name) {
         let says = format!("the law {name} has its critical stretch among its constants");
         all.push(Lack::new(Property::StrengthOfPoints, says, ""));
@@ -335,22 +474,71 @@ fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
         all.push(Lack::new(Property::BondByBond, says, instead));
     }
     match &m.law {
-        LawSpec::LpsAsTyped { .. } | LawSpec::EamLike { .. } => {
-            let says =
-                "bonds of this law remember nothing: they break by their critical stretch alone";
-            let instead =
-                "take lps with the same moduli, or give critical_stretch without rate and fatigue";
-            all.push(Lack::new(Property::OtherMeasures, says, instead).at(&path));
-            let says = "this law weighs a bond alike at both ends";
-            let instead = "take lps, or an influence function of r and delta";
-            all.push(Lack::new(Property::Directed, says, instead).at(path));
-        }
         LawSpec::Springs(_) | LawSpec::Micromoduli(_) => {
             let says =
                 "springs and micromoduli have no bonds that break and no contact of their own";
             let instead = "remove fracture, contact and pre-cracks, or take pmb or lps";
-            for property in [Property::Separates, Property::OtherMeasures] {
-                all.push(Lack::new(property, says, instead).at(&path));
+            all.push(Lack::new(Property::Separates, says, instead).at(path));
+            if m.law.micromoduli().is_some_and(|b| b.couples_masses()) {
+                let says = "points whose masses are coupled have no velocities that are independent of each other";
+                let instead = "take a body with lumped masses: peridyne coarsen --mass lumped";
+                all.push(Lack::new(Property::Independent, says, instead));
+            }
+        }
+        LawSpec::Atoms(_) => {
+            if spec.interactions.contact.is_some() {
+                let says = "how atoms repel each other is what their potential says, and no stiffness of contact follows from it";
+                let instead = "remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps";
+                all.push(Lack::new(Property::Separates, says, instead).at(path));
+            }
+        }
+        LawSpec::Pmb(_)
+        | LawSpec::Lps(_)
+        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::EamLike { .. }
+        | LawSpec::Named(_) => {}
+    }
+    all
+}
+
+/// Of the law of a material, for what its own bonds break by; `path` is where that is said.
+pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
+    let mut all = vec![];
+    let mut lack = |property, says: String, instead| {
+        all.push(Lack::new(property, says, instead).at(path));
+    };
+    if m.fracture.is_some_and(|f| f.alpha != 0.0) {
+        let says = "strengthening under compression (alpha) is of critical stretches alone: no law is known of a work, stress or strain that grows with it";
+        lack(Property::OtherMeasures, says.into(), "leave alpha out");
+    }
+    match &m.law {
+        LawSpec::Named(law) => {
+            let name = law.name.as_str();
+            if shelf.ends(name) || shelf.kinds(name) {
+                let says = format!(
+                    "the law {name} has a critical stretch among its constants: its bonds break by nothing else"
+                );
+                let instead = "leave criterion, rate and fatigue out";
+                lack(Property::OtherMeasures, says, instead);
+            }
+            if !law.isotropic {
+                let says =
+                    format!("a bond of the law {name} has another energy in every direction");
+                let instead = "give critical_stretch instead";
+                lack(Property::EnergyOfStretch, says, instead);
+            }
+            if shelf.turns(name) {
+                let says = format!("bonds of the law {name} store energy by turning, too");
+                let instead =
+                    "write criterion = \"bond_energy\" beside energy, or give critical_stretch";
+                lack(Property::EnergyOfStretch, says, instead);
+            }
+            let memory = shelf.descriptor(name).map(|d| d.memory);
+            let elastic = law.isotropic && memory == Some(Memory::Nothing);
+            if !elastic && !shelf.across(name) {
+                let says = "the stress across plane strain does not follow from that in the plane: this law is anisotropic, or its bonds soften";
+                let instead = "give another criterion, or take three dimensions";
+                lack(Property::StressAcross, says.into(), instead);
             }
         }
         LawSpec::Atoms(_) => {
@@ -361,18 +549,28 @@ fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
             if !m.fracture.is_none_or(works) {
                 let says = "the bonds of a potential know how far they are stretched and the work that was done on them, and no stress, rate or age";
                 let instead = "give critical_stretch, or energy with criterion = \"bond_energy\"";
-                let lack = Lack::new(Property::OtherMeasures, says, instead);
-                all.push(lack.at(format!("materials[{n}].fracture")));
+                lack(Property::OtherMeasures, says.into(), instead);
             }
-            if spec.interactions.contact.is_some() {
-                let says = "how atoms repel each other is what their potential says, and no stiffness of contact follows from it";
-                let instead = "remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps";
-                all.push(Lack::new(Property::Separates, says, instead).at(path));
-            }
+            let says = "the energy of a stretched bond of a potential is no square of its stretch";
+            let instead =
+                "write criterion = \"bond_energy\" beside energy, or give critical_stretch";
+            lack(Property::EnergyOfStretch, says.into(), instead);
         }
-        LawSpec::Pmb(_) | LawSpec::Lps(_) | LawSpec::Named(_) => {}
+        LawSpec::Pmb(_)
+        | LawSpec::Lps(_)
+        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::EamLike { .. }
+        | LawSpec::Springs(_)
+        | LawSpec::Micromoduli(_) => {}
     }
     all
+}
+
+/// Of bonds between bodies, for what they break by.
+pub(super) fn of_interface() -> [Lack; 1] {
+    let says = "bonds of an interface break by their critical stretch";
+    let instead = "give critical_stretch or energy, without criterion, rate and fatigue";
+    [Lack::new(Property::OtherMeasures, says, instead)]
 }
 
 fn of_fracture(fracture: FractureSpec, path: &str) -> Vec<Lack> {

@@ -60,8 +60,26 @@ pub(super) enum Property {
     OtherMeasures,
     /// Bonds may break, or be cut, and points touch.
     Separates,
-    /// Its bonds may weigh otherwise in another direction.
-    Directed,
+    /// Bonds end for good where they break or are cut.
+    Breaks,
+    /// The energy of a bond is that of the square of its stretch.
+    EnergyOfStretch,
+    /// The stress across plane strain is known.
+    StressAcross,
+    /// Goes with laws of solids.
+    Solids,
+    /// Goes with interatomic potentials.
+    Potentials,
+    /// Goes with those that are near now.
+    OfNow,
+    /// Its family may be the stencil of a lattice.
+    OfStencil,
+    /// Goes with laws that are not linear.
+    Nonlinear,
+    /// Goes where points have inertia.
+    Inertia,
+    /// Points move independently of each other.
+    Independent,
     /// What a bond pulls is its own.
     BondByBond,
     /// What bonds bear may be another one at every point.
@@ -78,6 +96,8 @@ pub(super) enum Property {
     Continuum,
     /// All points have the horizon of the body.
     OneHorizon,
+    /// Every point may have another horizon.
+    OwnHorizons,
     /// Bonds are those of their points, not of a table of pairs.
     ConstantsOfPoints,
     /// May stand beside other bodies.
@@ -172,7 +192,18 @@ pub(super) fn met(needs: Vec<Need>, lacks: &[Lack]) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Do the parts of a spec go together?
+/// Do the parts of a spec go together, and those of each of its materials and interfaces?
 pub(super) fn agree(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
-    met(needs::of(spec), &lacks::of(spec, shelf))
+    met(needs::of(spec), &lacks::of(spec, shelf))?;
+    for (n, m) in spec.materials.iter().enumerate() {
+        let path = format!("materials[{n}].fracture");
+        let needs = needs::of_fracture(spec, m.fracture, &path);
+        met(needs, &lacks::of_law(m, &path, shelf))?;
+    }
+    for (n, i) in spec.interactions.interfaces.iter().enumerate() {
+        let path = format!("interface[{n}].fracture");
+        let needs = needs::of_fracture(spec, i.fracture, &path);
+        met(needs, &lacks::of_interface())?;
+    }
+    Ok(())
 }

@@ -1,11 +1,16 @@
 //! What the parts of a spec ask for.
 
 use super::{Need, Property};
-use crate::run::constitutive::{breaks, knows_directions};
-use crate::spec::{BodySpec, Control, Method, Spec, Statics, Stepper, ToughnessFactor};
+use crate::run::constitutive::{breaking, breaks};
+use crate::run::own_horizons;
+use crate::spec::{
+    BodySpec, Control, Criterion, FamilyChoice, FractureSpec, LawSpec, Method, Plane, Spec,
+    Statics, Stepper, ToughnessFactor,
+};
 
 pub(super) fn of(spec: &Spec) -> Vec<Need> {
     let mut all = of_bodies(spec);
+    all.extend(of_atoms(spec));
     all.extend(of_contact(spec));
     all.extend(of_strength(spec));
     all.extend(of_stages(spec));
@@ -29,12 +34,14 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
         let instead = "give the interface the stiffness that it shall have";
         all.push(Need::new(Property::Unbonded, "interface[0]", why, instead));
     }
-    if knows_directions(spec) {
-        let why = ": its influence function knows no directions";
-        all.push(Need::new(Property::Directed, "influence", why, ""));
-    }
     if spec.interactions.contact.is_some() || breaks(spec) {
         all.push(Need::new(Property::Separates, "materials", "", ""));
+    }
+    if let Some(path) = breaking(spec) {
+        all.push(Need::new(Property::Breaks, path, "", ""));
+    }
+    if spec.bonds.family == FamilyChoice::Stencil {
+        all.push(Need::new(Property::OfStencil, "family", "", ""));
     }
     for transfer in &spec.interactions.transfers {
         let why = ", through which heat and species go";
@@ -66,12 +73,72 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
         all.push(Need::new(Property::OneHorizon, "own_horizon", why, ""));
     }
     if spec.bonds.own_horizon.is_some() {
+        all.push(Need::new(Property::OwnHorizons, "own_horizon", "", ""));
+        if own_horizons::strengthen(spec) {
+            let why = ", and that of a fracture energy is another one at every horizon";
+            let instead = "give critical_stretch, or leave own_horizon out";
+            let need = Need::new(Property::StrengthOfPoints, "own_horizon", why, instead);
+            all.push(need);
+        }
         all.push(Need::new(
             Property::StretchAtEveryHorizon,
             "own_horizon",
             ", which follows from one horizon, and every point has another",
             "leave own_horizon out",
         ));
+    }
+    all
+}
+
+/// Of laws of solids, of potentials and of atoms that move.
+fn of_atoms(spec: &Spec) -> Vec<Need> {
+    let mut all = vec![];
+    let mut laws = spec.materials.iter().map(|m| &m.law);
+    match laws.all(|l| l.potential().is_some()) {
+        true => {
+            let why = ", and this law is an interatomic potential";
+            all.push(Need::new(Property::Potentials, "materials[0].law", why, ""));
+        }
+        false => all.push(Need::new(Property::Solids, "materials[0].law", "", "")),
+    }
+    if spec.bonds.family != FamilyChoice::Reference {
+        all.push(Need::new(Property::OfNow, "family", "", ""));
+    }
+    if spec.loading.thermal.is_some() {
+        let why = ", which a Maxwell-Boltzmann distribution of points is";
+        all.push(Need::new(Property::Independent, "thermal", why, ""));
+    }
+    let linear = |l: &LawSpec| matches!(l, LawSpec::Springs(_) | LawSpec::Micromoduli(_));
+    let mut laws = spec.materials.iter().map(|m| &m.law);
+    if !laws.all(linear) {
+        all.push(Need::new(Property::Nonlinear, "materials", "", ""));
+    }
+    all
+}
+
+/// Of what bonds of a material, or of an interface, break by; `path` is where that is said.
+pub(super) fn of_fracture(spec: &Spec, fracture: Option<FractureSpec>, path: &str) -> Vec<Need> {
+    let mut all = vec![];
+    let Some(fracture) = fracture else {
+        return all;
+    };
+    if fracture.remembers() {
+        let why = ", and more than the stretch of now is asked for";
+        all.push(Need::new(Property::OtherMeasures, path, why, ""));
+    }
+    let in_plane_strain = spec.space.dimension == 2 && spec.space.plane == Plane::Strain;
+    match fracture.criterion {
+        Criterion::Energy(_) => {
+            let why = ": a fracture energy gives no critical stretch";
+            all.push(Need::new(Property::EnergyOfStretch, path, why, ""));
+        }
+        Criterion::VonMises(_) if in_plane_strain => {
+            all.push(Need::new(Property::StressAcross, path, "", ""));
+        }
+        Criterion::VonMises(_)
+        | Criterion::Stretch(_)
+        | Criterion::BondEnergy(_)
+        | Criterion::PlasticStrain(_) => {}
     }
     all
 }
@@ -118,8 +185,6 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
     if let Some(n) = (spec.materials.iter()).position(|m| m.fracture.is_some_and(|f| f.remembers()))
     {
         let path = format!("materials[{n}].fracture");
-        let why = ", and more than the stretch of now is asked for";
-        all.push(Need::new(Property::OtherMeasures, path.as_str(), why, ""));
         all.push(Need::new(
             Property::ConstantsOfPoints,
             path,
@@ -181,6 +246,9 @@ fn of_stages(spec: &Spec) -> Vec<Need> {
             ", and without an energy explicit steps alone know where that goes",
             "take integrator = \"verlet\" without [statics]",
         ));
+    }
+    if spec.run.preload.is_none() && !spec.run.schedule.stepper.solves() {
+        all.push(Need::new(Property::Inertia, "schedule", "", ""));
     }
     match spec.run.schedule.stepper {
         Stepper::Newmark(_) => all.push(Need::new(

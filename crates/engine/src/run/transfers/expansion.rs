@@ -4,24 +4,14 @@ use super::make::Maker;
 use super::state::Transfers;
 use crate::body::view;
 use crate::error::BuildError;
-use crate::run::constitutive::general;
+use crate::run::constitutive::generalised;
 use crate::run::system::System;
 use crate::spec::{Spec, TransferSpec};
 
 /// Where a material expands, `pmb` and `lps` are laws of `law/material`: their own kernels know no temperature. Were laws changed?
 pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
     let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
-    if !spec.interactions.transfers.iter().any(expands) {
-        return false;
-    }
-    let mut changed = false;
-    for m in &mut spec.materials {
-        if let Some(law) = general(&m.law) {
-            m.law = law;
-            changed = true;
-        }
-    }
-    changed
+    spec.interactions.transfers.iter().any(expands) && generalised(spec, |_| true)
 }
 
 impl<const D: usize> Maker<'_, D> {

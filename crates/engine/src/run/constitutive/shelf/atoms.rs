@@ -527,12 +527,6 @@ impl AnyPotentials {
         if let [one] = &self.parts[..] {
             return one.bind(body, neighbours, simd);
         }
-        if let Neighbours::Linked(_) = neighbours {
-            return Err(
-                BuildError::unsupported("family", "a stencil knows one potential")
-                    .help("write family = \"reference\", or leave family out: atoms feel those that are near now"),
-            );
-        }
         if let Neighbours::Reference {
             breaks: Some(breaks),
             ..

@@ -6,10 +6,11 @@ use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
 use crate::family::stencil::Stencil;
+use crate::interaction::bonds::breaking::PLASTIC_STRAIN;
+use crate::interaction::bonds::state::BondParts;
+use crate::interaction::bonds::{CloudFamily, LatticeFamily};
 use crate::interaction::criterion::{Criteria, Measure};
-use crate::interaction::material::{
-    CloudFamily, LatticeFamily, MaterialInteraction, MaterialParts, PLASTIC_STRAIN,
-};
+use crate::interaction::material::MaterialInteraction;
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, Repulsion, Toughness};
 use crate::law::descriptor::{Given, Key, Memory, Shelved, Value};
@@ -60,9 +61,31 @@ pub(super) struct Materials {
     pub pulls: bool,
     /// [`Material::ACROSS`]
     pub across: bool,
+    stiffness: Stiffness,
     binders: Binders,
     /// Another law, and whether it fits the parameters of a material.
-    other: Option<(fn(&Parameters) -> bool, Binders)>,
+    other: Option<(fn(&Parameters) -> bool, Stiffness, Binders)>,
+}
+
+/// What makes the stiffness of a law, which horizons of points change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stiffness {
+    /// [`Material::OF_FAMILY`]
+    OfFamily,
+    /// [`Material::OF_BONDS`]
+    OfBonds,
+    /// Computed for one horizon.
+    OfHorizon,
+}
+
+impl Stiffness {
+    fn of<M: Material<2>>() -> Stiffness {
+        match (M::OF_FAMILY, M::OF_BONDS) {
+            (true, _) => Stiffness::OfFamily,
+            (false, true) => Stiffness::OfBonds,
+            (false, false) => Stiffness::OfHorizon,
+        }
+    }
 }
 
 /// [`Binder`]s of one, two and three dimensions.
@@ -79,8 +102,16 @@ impl Materials {
 
     /// The same with another where that fits.
     pub fn or(self, fits: fn(&Parameters) -> bool, other: Materials) -> Materials {
-        let other = Some((fits, other.binders));
+        let other = Some((fits, other.stiffness, other.binders));
         Materials { other, ..self }
+    }
+
+    /// What makes the stiffness of a material of these parameters.
+    pub fn stiffness(&self, parameters: &Parameters) -> Stiffness {
+        match self.other {
+            Some((fits, other, _)) if fits(parameters) => other,
+            Some(_) | None => self.stiffness,
+        }
     }
 
     /// Of a law that means nothing on a line.
@@ -105,6 +136,7 @@ impl Materials {
             kinds: M::KINDS,
             pulls: M::PULLS_AT_REST,
             across: <M as Material<2>>::ACROSS,
+            stiffness: Stiffness::of::<M>(),
             binders: [
                 line,
                 Arc::new(bind::<2, M> as Binder<2>),
@@ -151,12 +183,13 @@ struct Made {
     held: Option<[f64; 2]>,
 }
 
-/// ν and 2G in plane strain.
-fn held(solid: Option<Solid>, young: Option<f64>) -> Option<[f64; 2]> {
+/// ν and 2G in plane strain, of the solid that answers in the plane as this one does.
+fn held(d: usize, solid: Option<Solid>, young: Option<f64>) -> Option<[f64; 2]> {
     match (solid, young) {
         (Some(s), _) => {
-            let shear = s.beta / (s.n * (s.n + 2.0));
-            let lame = s.kappa + shear;
+            let n = d as f64;
+            let shear = s.beta / (n * (n + 2.0));
+            let lame = s.kappa * (s.n / n).powi(2) + shear;
             Some([lame / (2.0 * (lame + shear)), 2.0 * shear])
         }
         // bonds have ν = ¼
@@ -203,7 +236,7 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
         materials.push(Made {
             parameters: law.parameters.clone(),
             held: match law.isotropic {
-                true => held(solid, young),
+                true => held(D, solid, young),
                 false => None,
             },
             solid,
@@ -287,7 +320,7 @@ impl Chosen {
                     self.materials.iter().all(|made| fits(&made.parameters))
                 };
                 let binders = match &m.other {
-                    Some((fits, other)) if all(*fits) => other,
+                    Some((fits, _, other)) if all(*fits) => other,
                     Some(_) | None => &m.binders,
                 };
                 binders.get(D - 1)
@@ -371,10 +404,9 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 let [own, back] = weight.influence(xi, r, 1.0 / r);
                 [own, back, weight.volume_fraction(r)]
             };
-            let made = MaterialInteraction::new(MaterialParts {
+            let parts = BondParts {
                 body,
                 family: LatticeFamily::new(body, grid, stencil, &of),
-                law,
                 kind: "stencil",
                 near_horizon: 0,
                 toughness,
@@ -382,20 +414,25 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 repulsion,
                 held,
                 simd,
-            });
+            };
+            let made = MaterialInteraction::new(parts, law);
             Ok(Box::new(made.map_err(unfit)?))
         }
         _ => {
             let (list, weight) = match body.horizon.is_empty() {
                 true => (HorizonList::new(body, horizon)?, weight),
-                false => own_horizons::<D, M>(body, horizon, weight)?,
+                false => own_horizons(body, horizon, weight)?,
             };
             let remembers = <M::Memory<f64> as Numbers<f64>>::COUNT > 0;
             let near_horizon = list.near_horizon;
-            let made = MaterialInteraction::new(MaterialParts {
+            let family = CloudFamily::new(body, chosen.horizon, list, weight, remembers);
+            let family = match M::OF_BONDS {
+                true => family.of_bonds(chosen.horizon),
+                false => family,
+            };
+            let parts = BondParts {
                 body,
-                family: CloudFamily::new(body, chosen.horizon, list, weight, remembers),
-                law,
+                family,
                 kind: "list",
                 near_horizon,
                 toughness,
@@ -403,25 +440,19 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 repulsion,
                 held,
                 simd,
-            });
+            };
+            let made = MaterialInteraction::new(parts, law);
             Ok(Box::new(made.map_err(unfit)?))
         }
     }
 }
 
 /// Bonds of points with horizons of their own, up to `horizon`; at these volumes fade by themselves.
-fn own_horizons<const D: usize, M: Material<D>>(
+fn own_horizons<const D: usize>(
     body: &Body<D>,
     horizon: f64,
     weight: BondWeight,
 ) -> Result<(HorizonList, BondWeight), BuildError> {
-    if !M::OF_FAMILY {
-        return Err(BuildError::unsupported(
-            "own_horizon",
-            "bonds of this law have the stiffness of one horizon",
-        )
-        .help("take pmb, lps or another law of sums over families, or leave own_horizon out"));
-    }
     let half = 0.5 * body.spacing;
     let own = |i: usize| body.horizon[i];
     let reach = |i: usize, j: usize| own(i).max(own(j)) + half;

@@ -5,7 +5,7 @@ mod materials;
 
 pub(crate) use atoms::{AnyPotentials, Neighbours};
 pub(super) use materials::chosen;
-pub(crate) use materials::{Chosen, Place, Softens};
+pub(crate) use materials::{Chosen, Place, Softens, Stiffness};
 
 use crate::condition::point_force::{self, OfFunction, Placed, PointForce, Seen};
 use crate::error::BuildError;
@@ -393,6 +393,17 @@ impl Shelf {
         match self.entry(name).map(|e| &e.runs) {
             Some(Runs::Material(material)) => material.fades,
             Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
+        }
+    }
+
+    /// What makes the stiffness of a law of `law/material`; `None`: it is none.
+    pub(crate) fn stiffness(&self, law: &LawSpec) -> Option<Stiffness> {
+        let LawSpec::Named(law) = law else {
+            return None;
+        };
+        match &self.entry(&law.name)?.runs {
+            Runs::Material(material) => Some(material.stiffness(&law.parameters)),
+            Runs::Linear { .. } | Runs::Atoms(_) => None,
         }
     }
 

@@ -63,6 +63,8 @@ pub struct CloudFamily<const D: usize> {
     /// The same horizons over that of the body; empty: they have one.
     reach: Vec<f64>,
     rate: f64,
+    /// δ/h of the longest horizon, where points have their own and bonds the stiffness.
+    stiff: Option<f64>,
     /// `[slots][4]`: x, y, z, volume.
     reference: Vec<f64>,
     /// `[lines][8]`: place of the bond that leads back; empty: nobody asks.
@@ -96,6 +98,7 @@ impl<const D: usize> CloudFamily<D> {
             own,
             reach: body.horizon.iter().map(|d| d / horizon).collect(),
             rate,
+            stiff: None,
             reference,
             back,
             period: body.period.map(|p| p.unwrap_or(0.0)),
@@ -104,10 +107,38 @@ impl<const D: usize> CloudFamily<D> {
         }
     }
 
+    /// Of bonds that make the stiffness, whose micromodulus at the longest horizon is that of the law: of points with horizons of their own it
+    /// goes as `δ^−(D+1)`, and a bond has the mean of its ends.
+    pub fn of_bonds(self, longest: f64) -> Self {
+        CloudFamily {
+            stiff: (!self.own.is_empty()).then_some(longest * self.rate),
+            ..self
+        }
+    }
+
     /// What part of a cell at this distance is within a horizon.
     #[inline(always)]
     fn part<L: Lane>(&self, reach: L, length: L) -> L {
         part_within(length, reach, self.rate)
+    }
+
+    /// The same of both ends of a bond.
+    #[inline(always)]
+    fn parts<L: Lane>(&self, reach: [L; 2], length: L) -> [L; 2] {
+        let [mut here, mut there] = reach.map(|reach| self.part(reach, length));
+        if let Some(longest) = self.stiff {
+            let stiffer = |reach: L| {
+                // padding has no horizon
+                let own = (reach - L::splat(0.5)).max(L::splat(1e-3));
+                let ratio = L::splat(longest).div(own);
+                (0..D).fold(ratio, |all, _| all * ratio)
+            };
+            here = here * stiffer(reach[0]);
+            there = there * stiffer(reach[1]);
+            here = L::splat(0.5) * (here + there);
+            there = here;
+        }
+        [here, there]
     }
 
     fn line(&self, group: usize, k: usize) -> usize {
@@ -207,8 +238,9 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         if !self.own.is_empty() {
             // SAFETY: a number per slot
             let there = unsafe { ends.one::<L>(self.own.as_ptr()) };
-            omega = omega * self.part(at[4], length);
-            omega_back = omega_back * self.part(there, length);
+            let [here, there] = self.parts([at[4], there], length);
+            omega = omega * here;
+            omega_back = omega_back * there;
         }
         Reference {
             xi,

@@ -77,6 +77,13 @@ impl Store {
         self.data[self.layout.at(n, slot)]
     }
 
+    /// All of a slot.
+    pub fn numbers(&self, slot: usize) -> Vec<f64> {
+        (0..self.layout.numbers)
+            .map(|n| self.get(n, slot))
+            .collect()
+    }
+
     pub fn set(&mut self, n: usize, slot: usize, x: f64) {
         let at = self.layout.at(n, slot);
         self.data[at] = x;

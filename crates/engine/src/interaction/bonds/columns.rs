@@ -1,14 +1,13 @@
 //! The columns of a law: declared by it, read and written by name.
 
-use super::MaterialInteraction;
-use super::family::{Family, Slots};
-use super::measured::Before;
+use super::family::Family;
+use super::law::PointLaw;
+use super::state::{Before, BondState};
 use super::store::Store;
-use crate::body::{Body, Column, FieldView, view};
+use crate::body::Body;
 use crate::columns::{Declaration, Dimension, On, Shape};
-use crate::execute::lane::TILE;
 use crate::interaction::history;
-use crate::law::material::{Columns, Material, Numbers};
+use crate::law::material::Columns;
 use crate::state::Archive;
 
 /// Columns of criteria.
@@ -24,14 +23,14 @@ enum Place {
     Reference(usize),
 }
 
-impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
-    pub(super) fn declared(&self) -> Vec<Declaration> {
+impl<const D: usize, F: Family<D>> BondState<D, F> {
+    pub fn declared(&self) -> Vec<Declaration> {
         let Columns {
             memory,
             past,
             point,
             places,
-        } = self.law.columns();
+        } = self.law.columns.clone();
         let mut breaks = history::columns(!self.critical.is_empty() && self.work.is_empty());
         if !self.work.is_empty() {
             breaks.extend(history::of_work());
@@ -79,12 +78,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             past,
             point,
             places,
-        } = self.law.columns();
-        let found = |all: Vec<Declaration>| {
+        } = &self.law.columns;
+        let found = |all: &[Declaration]| {
             let mut first = 0;
             for d in all {
                 if d.name == name {
-                    return Some((d, first));
+                    return Some((d.clone(), first));
                 }
                 first += d.shape.stored(D);
             }
@@ -97,11 +96,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         memory.or_else(past).or_else(point).or_else(places)
     }
 
-    pub(super) fn read_named(
+    /// [`read_column`](crate::interaction::Interaction::read_column)
+    pub fn read_named(
         &self,
         body: &Body<D>,
-        _: FieldView<D>,
         name: &str,
+        law: &dyn PointLaw<D>,
         out: &mut Vec<f64>,
     ) -> bool {
         out.clear();
@@ -139,7 +139,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             Place::Reference(first) => {
                 out.resize(body.len * numbers, 0.0);
                 for slot in body.slots.iter().map(|s| *s as usize) {
-                    let all = (self.law).at_place(body.material_of(slot), &body.position(slot));
+                    let all = law.at_place(body.material_of(slot), &body.position(slot));
                     let own = &mut out[slot * numbers..][..numbers];
                     own.copy_from_slice(&all[first..first + numbers]);
                 }
@@ -152,7 +152,14 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         true
     }
 
-    pub(super) fn write_named(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+    /// [`write_column`](crate::interaction::Interaction::write_column)
+    pub fn write_named(
+        &mut self,
+        body: &Body<D>,
+        name: &str,
+        values: &[f64],
+        law: &dyn PointLaw<D>,
+    ) -> bool {
         if name == history::WHOLE {
             let bits: Vec<_> = self.bits().collect();
             if bits.len() != values.len() {
@@ -165,7 +172,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 }
             }
             if self.prepared {
-                self.look(body);
+                self.look(body, law);
             }
             return true;
         }
@@ -193,7 +200,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
             self.integrity.copy_from_slice(values);
             self.look_integrity(body);
-            self.look_stiffness(body, view(&crate::body::zeros(0)), |_, _| true);
+            self.look_stiffness(body, true, law);
             return true;
         }
         let Some((declaration, place)) = self.place(name) else {
@@ -225,9 +232,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 for (at, x) in places.into_iter().zip(values) {
                     self.memory[at] = *x;
                 }
-                let count = <M::Memory<f64> as Numbers<f64>>::COUNT;
-                self.family
-                    .fill_images(&body.images, &mut self.memory, count);
+                self.fill_memory(body);
                 true
             }
             (Place::Past(_) | Place::Point(_) | Place::Reference(_), _)
@@ -236,7 +241,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// [`archive`](crate::interaction::Interaction::archive).
-    pub(super) fn archive_memory(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>, law: &dyn PointLaw<D>) {
         archive.all("whole", &mut self.alive);
         archive.all("past", &mut self.past.data);
         archive.all("points", &mut self.point.data);
@@ -248,11 +253,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         archive.all("integrity", &mut self.integrity);
         archive.part("expansion", &mut self.expansion);
         let records = self.room.records.len();
-        let before = || Before {
-            u: crate::body::zeros(body.len),
-            records: vec![0.0; records],
-            expansion: Column::default(),
-        };
+        let before = || Before::zeros(body.len, records);
         archive.option("before", &mut self.before, before, |before, archive| {
             archive.columns("displacement", &mut before.u);
             archive.all("records", &mut before.records);
@@ -268,28 +269,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             // kernels follow every bit
             let there = self.counted.iter();
             self.alive.iter_mut().zip(there).for_each(|(a, t)| *a &= t);
-            self.look_forms(body);
+            self.look_forms(body, law);
         }
     }
 
-    /// Directed bonds of the reference family, in order of slots: group, bond and lane.
-    pub(super) fn directed(&self) -> impl Iterator<Item = (usize, usize, usize)> {
-        let mut rows = vec![];
-        for group in 0..self.family.groups() {
-            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
-                rows.push((self.family.rows(group).slot(l), group, l));
-            }
-        }
-        rows.sort_unstable();
-        rows.into_iter().flat_map(move |(_, group, l)| {
-            let there = move |k: &usize| self.counted[self.family.byte(group, *k)] >> l & 1 == 1;
-            (0..self.family.bonds(group))
-                .filter(there)
-                .map(move |k| (group, k, l))
-        })
-    }
-
-    /// Where their bits are: byte and lane.
+    /// Where the bits of [directed](BondState::directed) bonds are: byte and lane.
     fn bits(&self) -> impl Iterator<Item = (usize, usize)> {
         self.directed()
             .map(|(group, k, l)| (self.family.byte(group, k), l))
@@ -297,7 +281,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     /// Places of what they remember.
     fn memory_of(&self, first: usize, numbers: usize) -> impl Iterator<Item = usize> {
-        self.places_of(first, numbers, <M::Memory<f64> as Numbers<f64>>::COUNT)
+        self.places_of(first, numbers, self.law.memory)
     }
 
     /// The same of `count` numbers for each.

@@ -4,7 +4,7 @@ use super::store::Rows;
 use crate::body::FieldView;
 use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::{Lane, TILE};
-use crate::law::material::Numbers;
+use crate::law::material::{Kin, Numbers, Partner};
 
 /// Eight slots: where the points of a group are, or their partners along one of its bonds.
 pub trait Slots: Copy {
@@ -121,6 +121,35 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
     fn bond(&self, group: usize, k: usize, l: usize) -> ([f64; D], f64) {
         let r = self.plain(group, k, l);
         (r.xi, r.weight)
+    }
+
+    /// Bits of the bonds of a group, among those of all.
+    fn bits<'a>(&self, all: &'a [u8], group: usize) -> &'a [u8] {
+        match self.bonds(group) {
+            0 => &[],
+            bonds => &all[self.byte(group, 0)..][..bonds],
+        }
+    }
+
+    /// Asks something of the reference family of one point, of which these bonds are left.
+    fn kin(&self, group: usize, bits: &[u8], l: usize, ask: &mut dyn FnMut(Kin<D>)) {
+        let each = |visit: &mut dyn FnMut(&Partner<D>)| {
+            for (k, bits) in bits.iter().enumerate() {
+                if bits >> l & 1 == 0 {
+                    continue;
+                }
+                let r = self.plain(group, k, l);
+                visit(&Partner {
+                    xi: r.xi,
+                    omega: r.omega,
+                    volume: r.weight,
+                });
+            }
+        };
+        let slot = self.rows(group).from(l).slot(0);
+        let lost = |(k, bits): (usize, &u8)| self.is_bond(group, k, l) && bits >> l & 1 == 0;
+        let torn = bits.iter().enumerate().any(lost);
+        ask(Kin::new(&each).within(self.reach(slot)).torn(torn));
     }
 
     /// Group and place in it of a slot; `None`: no point.

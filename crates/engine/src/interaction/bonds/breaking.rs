@@ -1,34 +1,29 @@
-//! Which bonds break, what their points lose with them, and the next critical stretch.
+//! Which bonds break, and the next critical stretch.
 
 use super::family::{Family, Moved, Slots, put};
-use super::store::OwnRows;
-use super::sweeps::EnergyOf;
-use super::view::{BLOCK, Drift, View, grown, save};
+use super::law::PointLaw;
+use super::state::{BondState, Room};
+use super::view::{BLOCK, BondView, grown};
 use crate::body::{Body, FieldView};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE, elementary};
 use crate::execute::simd::Kernel;
 use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::criterion::{Criteria, Measure};
-use crate::interaction::{Tally, Toughness, history};
+use crate::interaction::{Toughness, history};
 use crate::law::material::fibres::{Fibres, of_kind};
-use crate::law::material::{Kin, Material, Numbers, Partner, part_of};
 
-/// Most numbers that a form has.
-const FORM: usize = 32;
+/// The column of laws that flow.
+pub(crate) const PLASTIC_STRAIN: &str = "plastic_strain";
 
 /// Which bonds are beyond their critical stretch or work, between points whose mean damage has reached 1, or worn out; they break later.
 /// Knows nothing of laws.
 pub struct Test<'a, const D: usize, F> {
-    pub family: &'a F,
-    pub moved: Moved<'a, D>,
+    pub view: BondView<'a, D, F>,
     pub body: &'a Body<D>,
-    pub alive: &'a [u8],
     pub critical: &'a [f64],
     /// Empty: stretches alone decide.
     pub damage: &'a [f64],
-    /// Strain by temperature or swelling per slot; empty: none.
-    pub expansion: &'a [f64],
     pub next: Shared,
     pub toughness: &'a [Toughness],
     pub criteria: &'a Criteria,
@@ -54,13 +49,12 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
-        let f = self.family;
-        for group in block * BLOCK..((block + 1) * BLOCK).min(f.groups()) {
+        let (v, f) = (&self.view, self.view.family);
+        for group in v.block(block) {
             // SAFETY: groups of the family; each is written by one block
             unsafe {
-                let rows = f.rows(group);
-                let place = f.place::<L>(rows);
-                let u = F::displacement::<L>(&self.moved, rows);
+                let at = v.points::<L>(group);
+                let rows = at.rows;
                 let own = rows.one::<L>(self.critical.as_ptr());
                 let fails = !self.damage.is_empty();
                 let damaged = match fails {
@@ -71,20 +65,10 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                 let mut torn = 0;
                 for k in 0..f.bonds(group) {
                     let byte = f.byte(group, k);
-                    let alive = *self.alive.get_unchecked(byte);
+                    let alive = *v.alive.at(byte);
                     let dead = L::dead(alive);
                     let ends = f.ends(group, k);
-                    let mut eta = F::displacement::<L>(&self.moved, ends);
-                    for a in 0..D {
-                        eta[a] = (eta[a] - u[a]).zero_if(dead);
-                    }
-                    let r = f.reference::<L>(group, k, &place, ends, dead);
-                    if !self.expansion.is_empty() {
-                        let [strain, per_length] = grown(self.expansion, rows, ends);
-                        for a in 0..D {
-                            eta[a] = ((eta[a] - strain * r.xi[a]) * per_length).zero_if(dead);
-                        }
-                    }
+                    let (r, eta) = v.stretched::<L>(&at, k, dead);
                     let e = relative_square_stretch(eta, r.xi, r.two_by_square).nan_if(dead);
                     lowest = e.min(lowest);
                     let other = ends.one::<L>(self.critical.as_ptr());
@@ -109,8 +93,8 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                         // ṡ = (ξ+η)·η̇/(|ξ+η| |ξ|)
                         let current = r.length * (L::splat(1.0) + e.zero_if(dead)).sqrt();
                         let mut speed = opening.div(current * r.length);
-                        if !self.expansion.is_empty() {
-                            let [_, per_length] = grown(self.expansion, rows, ends);
+                        if !v.expansion.is_empty() {
+                            let [_, per_length] = grown(v.expansion, rows, ends);
                             speed = speed * per_length;
                         }
                         let own = self.quicker(own, rows, speed);
@@ -258,180 +242,154 @@ impl<const D: usize, F: Family<D>> Kernel for Shortest<'_, D, F> {
     }
 }
 
-/// Break them. What points lose is the energy of their bonds before less that of those that they keep, the mean of here and a step
-/// away (see [`Tear::drift`]): so the balance of energy is of second order in the step.
-///
-/// A family whose form is that of its whole bonds (a deformation gradient, weights) may be strained more without a bond than with it, and store
-/// more: `W′ > W`. Breaking can only dissipate (Silling & Lehoucq 2010, the free energy at a fixed deformation falls with damage), so that
-/// of such a point is `W/W′` of what it would be from then on, and so are its force states: its integrity, 1 at first.
-pub struct Tear<'a, const D: usize, F, M> {
-    /// With the constants of the step.
-    pub view: View<'a, D, F, M>,
-    /// Constants of a step of no length.
-    pub still: &'a [f64],
-    pub body: &'a Body<D>,
-    /// Marks of groups with bonds that break.
-    pub torn: &'a [u8],
-    /// Bits of bonds that break; then of those that are left.
-    pub breaks: Shared<u8>,
-    /// Bits of whole bonds, forms of families and integrities, to be written.
-    pub alive: Shared<u8>,
-    pub form: OwnRows,
-    /// `None`: the form is that of the family as it was.
-    pub integrity: Option<Shared>,
-    pub v: FieldView<'a, D>,
-    /// Time to where a bond was last with its points (negative: it lets go at once and the kick of the half step that ends here misses
-    /// it), or will be (it pulls once more).
-    pub drift: f64,
-}
-
-impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> {
-    type Out = Tally;
-    const SELDOM: bool = true;
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Tally {
-        let v = &self.view;
-        let mut tally = Tally::default();
-        for group in v.block(block) {
-            if self.torn[group] == 0 {
-                continue;
-            }
-            // SAFETY: groups of the family; each is written by one block
-            unsafe {
-                let first = v.family.byte(group, 0);
-                let bonds = v.family.bonds(group);
-                let before = v.bits(group);
-                let after = std::slice::from_raw_parts_mut(self.breaks.at(first), bonds);
-                for (left, whole) in after.iter_mut().zip(before) {
-                    *left = whole & !*left;
-                }
-                let after = &*after;
-                let mut at = v.group::<L>(group, 0);
-                let old = at.rows.load::<L, M::Form<L>>(v.form);
-                let new = if M::FORM_OF_WHOLE {
-                    v.forms::<L>(group, after, self.body)
-                } else {
-                    old
-                };
-                let still = View {
-                    constants: self.still,
-                    ..*v
-                };
-                let away = Drift {
-                    v: self.v,
-                    time: self.drift,
-                };
-                let mut energies = [L::splat(0.0); 2];
-                for (view, drift) in [(v, None), (&still, Some(away))] {
-                    at.constants = view.constants_at::<L>(at.rows);
-                    for (n, (bits, form)) in [(before, &old), (after, &new)].into_iter().enumerate()
-                    {
-                        let energy = L::apart(EnergyOf::<L, D, F, M> {
-                            view,
-                            at: &at,
-                            bits,
-                            drift,
-                            form,
-                        });
-                        energies[n] = L::splat(0.5).fma(energy, energies[n]);
-                    }
-                }
-                let energies = energies.map(|e| e.to_array());
-                for l in 0..TILE {
-                    let of = before.iter().zip(after);
-                    let broken = of.filter(|(b, a)| (*b ^ *a) >> l & 1 == 1).count();
-                    if broken > 0 {
-                        let slot = at.rows.slot(l);
-                        let [before, mut after] = energies.map(|e| e[l]);
-                        if let Some(integrity) = &self.integrity {
-                            let left = kept(before, after);
-                            *integrity.at(slot) *= left;
-                            after = part_of(left, after);
-                        }
-                        tally.broken += broken as u64;
-                        tally
-                            .released
-                            .book((before - after) * self.body.volume.at(slot));
-                    }
-                }
-                for (k, bits) in after.iter().enumerate() {
-                    *self.alive.at(first + k) = *bits;
-                }
-                if M::FORM_OF_WHOLE {
-                    save(self.form, at.rows, &new);
-                }
-            }
-        }
-        tally
-    }
-}
-
-/// The part of the energy `after` that a point keeps which had `before`; where that was none, all or nothing, whichever is less. Nothing where what is
-/// left of the family is turned over, so that its law has no answer.
-fn kept(before: f64, after: f64) -> f64 {
-    if after <= before || before.is_nan() || (after <= 0.0 && before <= 0.0) {
-        1.0
-    } else if before > 0.0 && after.is_finite() {
-        before / after
-    } else {
-        0.0
-    }
-}
-
-impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
-    /// What the points of a group know of a family with these bonds.
-    #[inline(always)]
-    fn forms<L: Lane>(&self, group: usize, bits: &[u8], body: &Body<D>) -> M::Form<L> {
-        let count = <M::Form<L> as Numbers<L>>::COUNT;
-        let mut out = <M::Form<L> as Numbers<L>>::constant(0.0);
-        const { assert!(<M::Form<f64> as Numbers<f64>>::COUNT <= FORM) };
-        let mut all = [[0.0; TILE]; FORM];
-        for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
-            let form = self.form_of(group, bits, l, body);
-            for (n, all) in all.iter_mut().enumerate().take(count) {
-                all[l] = form.get(n);
-            }
-        }
-        for (n, all) in all.iter().enumerate().take(count) {
-            // SAFETY: a number per lane
-            out.set(n, unsafe { L::load(all.as_ptr()) });
-        }
-        out
-    }
-
-    /// Of one point.
-    pub fn form_of(&self, group: usize, bits: &[u8], l: usize, body: &Body<D>) -> M::Form<f64> {
-        let slot = self.family.rows(group).from(l).slot(0);
-        self.of_family(group, bits, l, |kin| {
-            self.law.form(body.material_of(slot), kin)
-        })
-    }
-
-    /// Something of the family of one point.
-    pub fn of_family<T>(
-        &self,
-        group: usize,
-        bits: &[u8],
-        l: usize,
-        what: impl FnOnce(Kin<D>) -> T,
-    ) -> T {
-        let each = |visit: &mut dyn FnMut(&Partner<D>)| {
-            for (k, bits) in bits.iter().enumerate() {
-                if bits >> l & 1 == 0 {
-                    continue;
-                }
-                let r = self.family.plain(group, k, l);
-                visit(&Partner {
-                    xi: r.xi,
-                    omega: r.omega,
-                    volume: r.weight,
-                });
-            }
+impl<const D: usize, F: Family<D>> BondState<D, F> {
+    /// Marks the bonds that break, and finds the next critical stretch. False: none does.
+    pub fn find_breaking(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        room: &Room,
+        v: FieldView<D>,
+    ) -> bool {
+        self.look_damage(body);
+        let next = Shared(self.next.as_mut_ptr());
+        let breaks = Shared(self.breaks.as_mut_ptr());
+        let torn = Shared(self.torn.as_mut_ptr());
+        let test = Test {
+            view: self.view(u, room),
+            body,
+            critical: &self.critical,
+            damage: &self.damage,
+            next,
+            toughness: &self.toughness,
+            criteria: &self.criteria,
+            fibres: &self.law.fibres,
+            plain: self.criteria.rate.is_empty() && self.law.fibres.is_empty(),
+            work: &self.work,
+            life: &self.life,
+            v,
+            keeps: self.law.passes > 0,
+            breaks,
+            torn,
         };
-        let slot = self.family.rows(group).from(l).slot(0);
-        let lost = |(k, bits): (usize, &u8)| self.family.is_bond(group, k, l) && bits >> l & 1 == 0;
-        let torn = bits.iter().enumerate().any(lost);
-        what(Kin::new(&each).within(self.family.reach(slot)).torn(torn))
+        self.blocks.run(&test);
+        self.torn.iter().any(|t| *t != 0)
+    }
+
+    /// Damage as the points remember it.
+    fn look_damage(&mut self, body: &Body<D>) {
+        if let Measure::PlasticStrain(limit) = &self.criteria.measure {
+            let Some(n) = self.past_of(PLASTIC_STRAIN) else {
+                return;
+            };
+            for &slot in &body.slots {
+                let of = limit[body.material_of(slot as usize)];
+                self.damage[slot as usize] = self.past.get(n, slot as usize) / of;
+            }
+        } else if let Some(n) = self.law.failure {
+            for &slot in &body.slots {
+                self.damage[slot as usize] = self.past.get(n, slot as usize);
+            }
+        } else {
+            return;
+        }
+        body.fill_images(&mut self.damage);
+    }
+
+    /// After integrities have changed.
+    pub fn look_integrity(&mut self, body: &Body<D>) {
+        if self.integrity.is_empty() {
+            return;
+        }
+        body.fill_images(&mut self.integrity);
+        self.degraded = self.integrity.iter().any(|x| *x < 1.0);
+    }
+
+    pub fn next_critical(&mut self, body: &Body<D>) {
+        std::mem::swap(&mut self.critical, &mut self.next);
+        body.fill_images(&mut self.critical);
+    }
+
+    /// How much shorter the shortest whole bond is than in the reference: the most `1 − r²/r0²`, or 0.
+    pub fn shortest(&mut self, u: FieldView<D>) -> f64 {
+        let mut room = std::mem::take(&mut self.room);
+        self.pack(u, &mut room.records);
+        let kernel = Shortest {
+            family: &self.family,
+            moved: Moved {
+                columns: u,
+                records: &room.records,
+            },
+            alive: &self.alive,
+        };
+        let most = self.blocks.most(&kernel);
+        self.room = room;
+        most
+    }
+
+    /// How stiff some points are now by their families, of torn ones or of `all`, and the most of all beside the body as it was prepared.
+    pub fn look_stiffness(&mut self, body: &Body<D>, all: bool, law: &dyn PointLaw<D>) {
+        let [whole, mut now] = std::mem::take(&mut self.stiffness);
+        if now.is_empty() {
+            return;
+        }
+        let family = &self.family;
+        for group in (0..family.groups()).filter(|g| all || self.torn[*g] != 0) {
+            for l in (0..TILE).filter(|l| family.is_point(group, *l)) {
+                let slot = family.rows(group).slot(l);
+                let material = body.material_of(slot);
+                let bits = family.bits(&self.alive, group);
+                let mut of = 0.0;
+                family.kin(group, bits, l, &mut |kin| of = law.stiffness(material, kin));
+                now[slot] = self.integrity_at(slot) * of;
+            }
+        }
+        let stiffened = |(whole, now): (&f64, &f64)| if *whole > 0.0 { now / whole } else { 1.0 };
+        self.stiffened = whole.iter().zip(&now).map(stiffened).fold(1.0, f64::max);
+        self.stiffness = [whole, now];
+    }
+
+    /// What [`BondState::look_stiffness`] compares with.
+    pub fn begin_stiffness(&mut self, body: &Body<D>, law: &dyn PointLaw<D>) {
+        if !self.law.stiffens_torn || self.critical.is_empty() {
+            return;
+        }
+        self.stiffness = [vec![0.0; body.len], vec![0.0; body.len]];
+        self.look_stiffness(body, true, law);
+        self.stiffness[0] = self.stiffness[1].clone();
+        self.stiffened = 1.0;
+    }
+
+    /// What points know of their families, from the bonds that are whole now.
+    pub fn look(&mut self, body: &Body<D>, law: &dyn PointLaw<D>) {
+        self.look_stiffness(body, true, law);
+        self.look_forms(body, law);
+    }
+
+    /// Forms of points by their families.
+    pub fn look_forms(&mut self, body: &Body<D>, law: &dyn PointLaw<D>) {
+        let count = self.law.form;
+        if count == 0 {
+            return;
+        }
+        let bits = match self.law.form_of_whole {
+            true => &self.alive,
+            false => &self.counted,
+        };
+        let family = &self.family;
+        let mut numbers = vec![0.0; count];
+        for group in 0..family.groups() {
+            let bits = family.bits(bits, group);
+            for l in (0..TILE).filter(|l| family.is_point(group, *l)) {
+                let slot = family.rows(group).slot(l);
+                let material = body.material_of(slot);
+                family.kin(group, bits, l, &mut |kin| {
+                    law.form(material, kin, &mut numbers)
+                });
+                for (n, x) in numbers.iter().enumerate() {
+                    self.form.set(n, slot, *x);
+                }
+            }
+        }
     }
 }

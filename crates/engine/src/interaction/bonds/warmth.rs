@@ -1,45 +1,40 @@
 //! Temperatures of laws that know one: those of the body, where that conducts heat.
 
-use super::MaterialInteraction;
 use super::family::{Family, Slots};
+use super::state::BondState;
 use crate::body::Body;
 use crate::execute::lane::TILE;
-use crate::law::material::{Material, Numbers};
 
-impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
-    /// Gives points, and their bonds where these remember one, a temperature per slot; false: the law knows none.
-    pub(super) fn set_warmth(&mut self, body: &Body<D>, above: &[f64]) -> bool {
-        let Some(n) = self.law.temperature() else {
+impl<const D: usize, F: Family<D>> BondState<D, F> {
+    /// Points have these temperatures above those of reference, and their bonds where these remember one; false: the law knows none.
+    pub fn warm(&mut self, body: &Body<D>, above: &[f64]) -> bool {
+        let Some(n) = self.law.temperature else {
             return false;
         };
         for &slot in &body.slots {
             self.past.set(n, slot as usize, above[slot as usize]);
         }
-        if !M::GATHERS {
+        if !self.law.gathers {
             return true;
         }
-        let count = <M::Memory<f64> as Numbers<f64>>::COUNT;
         for group in 0..self.family.groups() {
             for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
                 let of_point = above[self.family.rows(group).slot(l)];
                 for k in 0..self.family.bonds(group) {
-                    self.memory[self.family.own(group, k, n, count) + l] = of_point;
+                    self.memory[self.family.own(group, k, n, self.law.memory) + l] = of_point;
                 }
             }
         }
-        if !body.images.is_empty() {
-            self.family
-                .fill_images(&body.images, &mut self.memory, count);
-        }
+        self.fill_memory(body);
         true
     }
 
     /// Writes the temperatures of points: of bonds that remember one the mean over those that are whole, `Σ ω ν V T / Σ ω ν V`.
-    pub(super) fn warmth(&self, body: &Body<D>, above: &mut [f64]) {
-        let Some(n) = self.law.temperature() else {
+    pub fn read_warmth(&self, body: &Body<D>, above: &mut [f64]) {
+        let Some(n) = self.law.temperature else {
             return;
         };
-        if !M::GATHERS {
+        if !self.law.gathers {
             for slot in body.slots.iter().map(|s| *s as usize) {
                 let now = self.past.get(n, slot);
                 above[slot] = match self.integrity_at(slot) {
@@ -50,14 +45,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
             return;
         }
-        let count = <M::Memory<f64> as Numbers<f64>>::COUNT;
         for group in 0..self.family.groups() {
             for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
                 let slot = self.family.rows(group).slot(l);
                 // of what they grew: bonds that are as warm as they were leave the last bit alone
                 let (mut grown, mut whole) = (0.0, 0.0);
                 for (k, _, omega, volume) in self.bonds_of(group, l) {
-                    let now = self.memory[self.family.own(group, k, n, count) + l];
+                    let now = self.memory[self.family.own(group, k, n, self.law.memory) + l];
                     grown += omega * volume * (now - above[slot]);
                     whole += omega * volume;
                 }

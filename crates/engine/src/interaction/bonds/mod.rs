@@ -1,0 +1,20 @@
+//! Bonds between the points of a body, whatever their law: groups of eight points, whose bonds are walked together.
+
+pub mod breaking;
+pub mod cloud;
+mod columns;
+pub mod family;
+pub mod lattice;
+pub mod law;
+pub mod points;
+pub mod repulsion;
+pub mod state;
+pub mod store;
+pub mod view;
+mod walks;
+mod warmth;
+mod wear;
+
+pub use cloud::CloudFamily;
+pub use lattice::LatticeFamily;
+pub use state::BondState;

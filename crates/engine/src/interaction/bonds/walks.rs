@@ -1,0 +1,253 @@
+//! Bond by bond: who is bonded with whom, what is broken, and how much of every point's family.
+
+use super::breaking::fibre_limit;
+use super::family::{Family, Slots};
+use super::law::PointLaw;
+use super::state::{BondState, WholeBond};
+use crate::body::Body;
+use crate::execute::lane::TILE;
+use crate::interaction::history::Crosses;
+use crate::interaction::{BondStatus, PointEnergiesMut, history};
+use crate::spec::CrackKind;
+
+impl<const D: usize, F: Family<D>> BondState<D, F> {
+    /// Every directed bond of the family that damage counts: group, bond, place.
+    fn each_counted(&self, visit: &mut dyn FnMut(usize, usize, usize)) {
+        for group in 0..self.family.groups() {
+            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
+                for k in 0..self.family.bonds(group) {
+                    if self.is_counted(group, k, l) {
+                        visit(group, k, l);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Every directed bond that the family ever had, pre-cracks included: group, bond, place.
+    pub fn each_pair(&self, visit: &mut dyn FnMut(usize, usize, usize)) {
+        for group in 0..self.family.groups() {
+            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
+                for k in 0..self.family.bonds(group) {
+                    if self.family.is_bond(group, k, l) {
+                        visit(group, k, l);
+                    }
+                }
+            }
+        }
+    }
+
+    pub fn is_whole(&self, group: usize, k: usize, l: usize) -> bool {
+        self.alive[self.family.byte(group, k)] >> l & 1 == 1
+    }
+
+    fn is_counted(&self, group: usize, k: usize, l: usize) -> bool {
+        self.counted[self.family.byte(group, k)] >> l & 1 == 1
+    }
+
+    /// The whole bonds of a point.
+    pub fn bonds_of(&self, group: usize, l: usize) -> Vec<WholeBond<D>> {
+        let mut all = vec![];
+        for k in (0..self.family.bonds(group)).filter(|k| self.is_whole(group, *k, l)) {
+            let r = self.family.plain(group, k, l);
+            all.push((k, r.xi, r.omega, r.weight));
+        }
+        all
+    }
+
+    /// Directed bonds of the reference family, in order of slots: group, bond and lane.
+    pub fn directed(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let mut rows = vec![];
+        for group in 0..self.family.groups() {
+            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
+                rows.push((self.family.rows(group).slot(l), group, l));
+            }
+        }
+        rows.sort_unstable();
+        rows.into_iter().flat_map(move |(_, group, l)| {
+            (0..self.family.bonds(group))
+                .filter(move |k| self.is_counted(group, *k, l))
+                .map(move |k| (group, k, l))
+        })
+    }
+
+    /// [`each_directed`](crate::interaction::Interaction::each_directed)
+    pub fn each_directed(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        let original = body.originals();
+        for (group, k, l) in self.directed() {
+            let i = self.family.rows(group).slot(l);
+            let j = original(self.family.ends(group, k).slot(l));
+            visit(i, j, self.family.bond(group, k, l).0);
+        }
+    }
+
+    /// [`each_bond`](crate::interaction::Interaction::each_bond)
+    pub fn each_bond(
+        &self,
+        body: &Body<D>,
+        visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
+    ) {
+        let original = body.originals();
+        self.each_counted(&mut |group, k, l| {
+            let i = self.family.rows(group).slot(l);
+            let end = self.family.ends(group, k).slot(l);
+            let j = original(end);
+            // a bond between a point and its own image counts from one side only
+            if i < j || (i == j && end > i) {
+                let status = BondStatus::of(self.is_whole(group, k, l));
+                visit(i, j, self.family.bond(group, k, l).0, status);
+            }
+        });
+    }
+
+    /// [`each_broken`](crate::interaction::Interaction::each_broken)
+    pub fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        let original = body.originals();
+        for group in 0..self.family.groups() {
+            for k in 0..self.family.bonds(group) {
+                let alive = self.alive[self.family.byte(group, k)];
+                for l in (0..TILE).filter(|l| alive >> l & 1 == 0) {
+                    if !self.family.is_point(group, l) || !self.family.is_bond(group, k, l) {
+                        continue;
+                    }
+                    let i = self.family.rows(group).slot(l);
+                    let end = self.family.ends(group, k).slot(l);
+                    let j = original(end);
+                    if i < j || (i == j && end > i) {
+                        visit(i, j, self.family.bond(group, k, l).0);
+                    }
+                }
+            }
+        }
+    }
+
+    /// [`bond_limit`](crate::interaction::Interaction::bond_limit), where there are fibres.
+    pub fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
+        let of = |n: usize| match self.law.fibres.get(self.material_at(ends[n])) {
+            Some(f) => fibre_limit(&f.direction, f.critical, critical[n], xi),
+            None => critical[n],
+        };
+        history::limit(of(0), of(1))
+    }
+
+    /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot.
+    pub fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        let mut family = vec![0.0; body.len];
+        let mut whole = vec![0.0; body.len];
+        let original = body.originals();
+        self.each_counted(&mut |group, k, l| {
+            let i = self.family.rows(group).slot(l);
+            let volume = body.volume.at(original(self.family.ends(group, k).slot(l)));
+            family[i] += volume;
+            if self.is_whole(group, k, l) {
+                whole[i] += volume;
+            }
+        });
+        for (i, damage) in out.iter_mut().enumerate() {
+            *damage = match family[i] > 0.0 {
+                true => 1.0 - whole[i] / family[i],
+                false => 0.0,
+            };
+        }
+    }
+
+    /// [`cut`](crate::interaction::Interaction::cut)
+    pub fn cut(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &Crosses<D>,
+        law: &dyn PointLaw<D>,
+    ) -> u64 {
+        let original = body.originals();
+        let mut cut = vec![];
+        self.each_counted(&mut |group, k, l| {
+            if !self.is_whole(group, k, l) {
+                return;
+            }
+            let (xi, _) = self.family.bond(group, k, l);
+            let at = |slot: usize| -> [f64; D] {
+                let x = body.position(slot);
+                std::array::from_fn(|a| x[a])
+            };
+            let from = at(self.family.rows(group).slot(l));
+            // a bond through a periodic face is in two places; either end must see the same
+            let to = at(original(self.family.ends(group, k).slot(l)));
+            if history::crossed(crosses, from, xi, Some(to)) {
+                cut.push((self.family.byte(group, k), 1u8 << l));
+            }
+        });
+        for (byte, bit) in &cut {
+            self.alive[*byte] &= !bit;
+            if kind == CrackKind::Absent {
+                self.counted[*byte] &= !bit;
+            }
+        }
+        if kind == CrackKind::Absent {
+            self.directed -= cut.len() as u64;
+        }
+        if self.prepared {
+            self.look(body, law);
+        }
+        cut.len() as u64
+    }
+
+    pub fn family_size(&self, slot: usize) -> usize {
+        let Some((group, l)) = self.family.find(slot) else {
+            return 0;
+        };
+        (0..self.family.bonds(group))
+            .filter(|k| self.is_counted(group, *k, l))
+            .count()
+    }
+
+    pub fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
+        let Some((group, l)) = self.family.find(i) else {
+            return false;
+        };
+        let original = body.originals();
+        (0..self.family.bonds(group)).any(|k| {
+            self.family.is_bond(group, k, l) && original(self.family.ends(group, k).slot(l)) == j
+        })
+    }
+
+    /// Dilatations from `Σ ω ν V |ξ|² s` over the whole bonds: over the weighted volume of those that count, broken or not, where the law
+    /// takes it so, else over that of the whole ones; and what part of it is whole, or how much.
+    pub fn dilate(&self, out: &mut PointEnergiesMut) {
+        let of_family = self.law.passes > 0 && !self.law.form_of_whole;
+        let points = (0..self.family.groups()).flat_map(|g| (0..TILE).map(move |l| (g, l)));
+        for (group, l) in points.filter(|(g, l)| self.family.is_point(*g, *l)) {
+            let i = self.family.rows(group).slot(l);
+            let whole = out.whole[i];
+            let weight = if of_family {
+                let gone = |k: &usize| {
+                    let byte = self.family.byte(group, *k);
+                    (self.counted[byte] & !self.alive[byte]) >> l & 1 == 1
+                };
+                let of_bond = |k: usize| {
+                    let r = self.family.plain(group, k, l);
+                    r.omega * r.weight * (r.length * r.length)
+                };
+                let bonds = 0..self.family.bonds(group);
+                whole + bonds.filter(gone).map(of_bond).sum::<f64>()
+            } else {
+                whole
+            };
+            if weight > 0.0 {
+                out.dilatation[i] *= D as f64 / weight;
+            }
+            if of_family && weight > 0.0 {
+                out.whole[i] /= weight;
+            }
+        }
+    }
+
+    /// What bonds of originals remember, to those of their images.
+    pub fn fill_memory(&mut self, body: &Body<D>) {
+        let count = self.law.memory;
+        if count > 0 && !body.images.is_empty() {
+            self.family
+                .fill_images(&body.images, &mut self.memory, count);
+        }
+    }
+}

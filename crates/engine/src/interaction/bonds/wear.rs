@@ -1,0 +1,100 @@
+//! Bonds that wear in cycles of load.
+
+use super::family::{Family, Slots};
+use super::state::BondState;
+use crate::body::{Body, FieldView};
+use crate::interaction::bond::relative_square_stretch;
+use crate::interaction::criterion::{SPENT, Wearing};
+use crate::interaction::history;
+use crate::spec::Cycles;
+
+impl<const D: usize, F: Family<D>> BondState<D, F> {
+    /// Points in whose reference family is a crack, with the least damage that is one to each material.
+    fn near_cracks(&self, body: &Body<D>) -> Vec<bool> {
+        let mut of = vec![[0.0f64; 2]; body.len];
+        let original = body.originals();
+        self.each_pair(&mut |group, k, l| {
+            let i = self.family.rows(group).slot(l);
+            let volume = body.volume.at(original(self.family.ends(group, k).slot(l)));
+            of[i][0] += volume;
+            if !self.is_whole(group, k, l) {
+                of[i][1] += volume;
+            }
+        });
+        let cracked = |i: usize| {
+            let fatigue = self.criteria.fatigue[self.material_at(i)];
+            let [all, lost] = of[i];
+            fatigue.is_some_and(|f| all > 0.0 && lost >= f.crack * all)
+        };
+        let mut near: Vec<bool> = (0..body.len).map(cracked).collect();
+        let cracked = near.clone();
+        self.each_pair(&mut |group, k, l| {
+            let i = self.family.rows(group).slot(l);
+            let j = original(self.family.ends(group, k).slot(l));
+            near[i] = near[i] || cracked[j];
+        });
+        near
+    }
+
+    /// [`wearing`](crate::interaction::Interaction::wearing)
+    pub fn wearing(&self, body: &Body<D>, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
+        if self.life.is_empty() {
+            return None;
+        }
+        let mut all = vec![];
+        self.each_wearing(body, u, load, &mut |_, bond| all.push(bond));
+        Some(all)
+    }
+
+    /// So many cycles of load pass with the greatest strains of now.
+    pub fn wear(&mut self, body: &Body<D>, u: FieldView<D>, load: &Cycles, passed: f64) {
+        if self.life.is_empty() {
+            return;
+        }
+        let mut all = vec![];
+        self.each_wearing(body, u, load, &mut |place, bond| all.push((place, bond)));
+        for (place, bond) in all {
+            let left = bond.life - passed * bond.rate;
+            self.life[place] = if left < SPENT { 0.0 } else { left };
+        }
+    }
+
+    /// Every directed bond that is whole, with its place among those that live.
+    fn each_wearing(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        load: &Cycles,
+        visit: &mut dyn FnMut(usize, Wearing),
+    ) {
+        let near = self.near_cracks(body);
+        let original = body.originals();
+        self.each_pair(&mut |group, k, l| {
+            if !self.is_whole(group, k, l) {
+                return;
+            }
+            let [i, end] = [self.family.rows(group), self.family.ends(group, k)].map(|s| s.slot(l));
+            let j = original(end);
+            let r = self.family.plain(group, k, l);
+            let mut eta: [f64; D] = std::array::from_fn(|a| u[a][end] - u[a][i]);
+            if !self.expansion.is_empty() {
+                let strain = 0.5 * (self.expansion[i] + self.expansion[end]);
+                for a in 0..D {
+                    eta[a] = (eta[a] - strain * r.xi[a]) / (1.0 + strain);
+                }
+            }
+            let stretch = history::stretch(relative_square_stretch(eta, r.xi, r.two_by_square));
+            let range = (1.0 - load.load_ratio) * stretch.abs();
+            let of = |slot: usize| {
+                let fatigue = self.criteria.fatigue[self.material_at(slot)];
+                fatigue.map_or(0.0, |f| Wearing::rate(&f, range, near[i] || near[j]))
+            };
+            let place = self.family.own(group, k, 0, 1) + l;
+            let bond = Wearing {
+                life: self.life[place],
+                rate: 0.5 * (of(i) + of(j)),
+            };
+            visit(place, bond);
+        });
+    }
+}

@@ -1,0 +1,163 @@
+//! What a law says of the bonds of one group, for those that know no law.
+
+use super::sweeps::{answers, pull_of};
+use super::view::{Drift, GroupOf, View};
+use crate::execute::blocks::Shared;
+use crate::execute::lane::{Lane, TILE};
+use crate::execute::simd::Kernel;
+use crate::interaction::bonds::family::{Family, Slots};
+use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site, part_of};
+
+/// Most numbers that a form has.
+pub const FORM: usize = 32;
+
+/// Forms of the points of a group, eight of each number side by side.
+pub type Form = [[f64; TILE]; FORM];
+
+/// Bonds that points keep.
+#[derive(Clone, Copy)]
+pub struct Kept<'a, const D: usize> {
+    /// A byte per bond: these are whole.
+    pub bits: &'a [u8],
+    /// What points know of these families; `None`: what the bonds say.
+    pub form: Option<&'a Form>,
+    /// Of displacements that are away.
+    pub drift: Option<Drift<'a, D>>,
+}
+
+/// Strain energy densities of the points of a group, with all passes of their own.
+pub struct GroupEnergy<'a, const D: usize, F, M> {
+    pub view: View<'a, D, F, M>,
+    pub of: Kept<'a, D>,
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> GroupEnergy<'_, D, F, M> {
+    /// # Safety
+    /// A bond of the group.
+    #[inline(always)]
+    unsafe fn bond<L: Lane>(&self, at: &GroupOf<L, D, F, M>, k: usize) -> (Bond<L, D>, L) {
+        let (v, dead) = (&self.view, L::dead(self.of.bits[k]));
+        let ends = v.family.ends(at.number, k);
+        // SAFETY: the caller's promise
+        unsafe {
+            let mut eta = v.apart::<L>(at, ends, dead);
+            if let Some(drift) = &self.of.drift {
+                for a in 0..D {
+                    let column = drift.v[a].as_ptr();
+                    let rate = ends.one::<L>(column) - at.rows.one::<L>(column);
+                    eta[a] = rate.fma(L::splat(drift.time), eta[a]).zero_if(dead);
+                }
+            }
+            v.deformed(at, k, ends, dead, eta)
+        }
+    }
+
+    /// # Safety
+    /// Rows of the family.
+    #[inline(always)]
+    unsafe fn form<L: Lane>(&self, rows: F::Slots) -> M::Form<L> {
+        const { assert!(<M::Form<f64> as Numbers<f64>>::COUNT <= FORM) };
+        let Some(all) = self.of.form else {
+            // SAFETY: the caller's promise
+            return unsafe { rows.load::<L, M::Form<L>>(self.view.form) };
+        };
+        let mut out = <M::Form<L> as Numbers<L>>::constant(0.0);
+        for n in 0..<M::Form<L> as Numbers<L>>::COUNT {
+            // SAFETY: a number per lane
+            out.set(n, unsafe { L::load(all[n].as_ptr()) });
+        }
+        out
+    }
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for GroupEnergy<'_, D, F, M> {
+    type Out = [f64; TILE];
+    const SELDOM: bool = true;
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, group: usize) -> [f64; TILE] {
+        let v = &self.view;
+        // SAFETY: a group of the family
+        unsafe {
+            let at = v.group::<L>(group);
+            let form = self.form::<L>(at.rows);
+            let past = at.rows.load::<L, M::Past<L>>(v.past);
+            let site = Site {
+                constants: &at.constants,
+                form: &form,
+                past: &past,
+                around: v.around::<L>(at.rows),
+            };
+            let mut point = <M::Point<L> as Numbers<L>>::constant(0.0);
+            let mut sum = <M::Sum<L> as Numbers<L>>::constant(0.0);
+            let mut energy = L::splat(0.0);
+            // the last round is that of energies
+            for pass in 0..=M::PASSES {
+                let last = pass == M::PASSES;
+                if last {
+                    energy = v.law.point_energy(&site, sum, &point);
+                }
+                sum = <M::Sum<L> as Numbers<L>>::constant(0.0);
+                for k in 0..v.family.bonds(group) {
+                    let (bond, weight) = self.bond::<L>(&at, k);
+                    let memory = v.memory::<L>(group, k);
+                    let end = End {
+                        constants: &at.constants,
+                        point: &point,
+                        memory: &memory,
+                    };
+                    if last {
+                        energy = weight.fma(v.law.energy(&bond, &end), energy);
+                    } else {
+                        sum = sum.plus(weight, v.law.share(pass, &bond, &end));
+                    }
+                }
+                if !last {
+                    v.law.settle(pass, &site, sum, &mut point);
+                }
+            }
+            part_of(v.integrity::<L>(at.rows), energy).to_array()
+        }
+    }
+}
+
+/// Force states on the bonds of a group that has settled, eight of each bond side by side for each axis; and the stress across the section of its points,
+/// of laws that say it.
+pub struct GroupForces<'a, const D: usize, F, M> {
+    pub view: View<'a, D, F, M>,
+    /// `T_i⟨ξ⟩` alone, or `T_i⟨ξ⟩ − T_j⟨−ξ⟩` (force / volume²)?
+    pub alone: bool,
+    /// `[bonds][D][8]`
+    pub out: Shared,
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for GroupForces<'_, D, F, M> {
+    type Out = [f64; TILE];
+    const SELDOM: bool = true;
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, group: usize) -> [f64; TILE] {
+        let v = &self.view;
+        // SAFETY: a group of the family, and room for its bonds
+        unsafe {
+            let at = v.group::<L>(group);
+            let point = v.point::<L>(at.rows);
+            for k in 0..v.family.bonds(group) {
+                let force = if self.alone {
+                    let ends = v.family.ends(group, k);
+                    let (bond, _) = v.bond::<L>(&at, k, ends, v.dead::<L>(group, k));
+                    answers::<L, D, F, M>(v, &at, &point, k, &bond).alone(&bond)
+                } else {
+                    pull_of::<L, D, F, M>(v, &at, &point, k).0
+                };
+                for a in 0..D {
+                    force[a].store(self.out.at((k * D + a) * TILE));
+                }
+            }
+            match D == 2 && M::ACROSS && self.alone {
+                true => v.across::<L>(&at, &point).to_array(),
+                false => [0.0; TILE],
+            }
+        }
+    }
+}

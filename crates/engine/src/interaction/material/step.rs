@@ -1,0 +1,395 @@
+//! A step of bonds: they are settled, tear, pull and remember, in the order that their law asks for.
+
+use super::MaterialInteraction;
+use super::energies::Energies;
+use super::law::LawView;
+use super::measured::{Limits, VonMises, Work};
+use super::tear::{Tear, Torn};
+use super::view::Drift;
+use crate::body::{Body, Column, FieldView, FieldViewMut, view, view_mut};
+use crate::execute::blocks::Shared;
+use crate::interaction::bonds::family::Family;
+use crate::interaction::bonds::state::{Before, Room};
+use crate::interaction::bonds::store::Store;
+use crate::interaction::bonds::view::BondView;
+use crate::interaction::criterion::Measure;
+use crate::interaction::{EnergyFields, Motion, PointEnergiesMut, Tally};
+use crate::spec::Release;
+
+impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
+    /// Constants of materials for a step of this length.
+    fn fill_constants(&self, dt: f64, all: &mut Vec<f64>) {
+        self.law.constants(self.bonds.toughness.len(), dt, all);
+    }
+
+    /// Room with constants, and without displacements.
+    pub(super) fn constants(&self) -> Room {
+        let mut room = Room::default();
+        self.fill_constants(self.bonds.step, &mut room.constants);
+        room
+    }
+
+    /// The room, filled for these displacements and a step of this length; give it back.
+    pub(super) fn take_room(&mut self, u: FieldView<D>, dt: f64) -> Room {
+        let mut room = std::mem::take(&mut self.bonds.room);
+        self.bonds.pack(u, &mut room.records);
+        self.fill_constants(dt, &mut room.constants);
+        self.fill_constants(0.0, &mut room.still);
+        room
+    }
+
+    /// The same for those who only look.
+    pub(super) fn look_room(&self, u: FieldView<D>) -> Room {
+        let mut room = self.constants();
+        room.records.resize(self.bonds.room.records.len(), 0.0);
+        self.bonds.pack(u, &mut room.records);
+        room
+    }
+
+    /// [`forces`](crate::interaction::Interaction::forces)
+    pub(super) fn evolve(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
+        motion: Option<Motion<D>>,
+        seen: Option<&mut PointEnergiesMut>,
+    ) -> Tally {
+        let dt = match motion {
+            Some(m) if self.bonds.step == 0.0 => m.steps[0],
+            _ => self.bonds.step,
+        };
+        let mut room = self.take_room(u, dt);
+        let breaks = motion.filter(|_| !self.bonds.critical.is_empty());
+        if let Some(m) =
+            breaks.filter(|_| self.bonds.law.form_of_whole && !self.bonds.law.potential)
+        {
+            let total = self.step_of_rates(body, u, f, (m, &mut room), seen);
+            self.bonds.room = room;
+            return total;
+        }
+        // of a watched step: the bonds before any breaks
+        let mut whole = seen.as_ref().map(|_| {
+            (
+                self.bonds.alive.clone(),
+                self.bonds.form.clone(),
+                self.bonds.integrity.clone(),
+            )
+        });
+        let mut total = Tally::default();
+        if motion.is_some() {
+            self.work_before(body, u, &room);
+        }
+        if let Some(m) = breaks.filter(|m| m.release == Release::AtOnce) {
+            if self.measures() {
+                self.settle(body, u, &room);
+                self.measure(body, u, &room);
+            }
+            total += self.tear(body, u, &room, away(&m, -m.steps[0]));
+        }
+        self.settle(body, u, &room);
+        self.pull(body, u, &room, f);
+        if let Some(m) = breaks.filter(|m| m.release == Release::AfterForce) {
+            self.measure(body, u, &room);
+            total += self.tear(body, u, &room, away(&m, m.steps[1]));
+        }
+        if motion.is_some() {
+            total += self.remember(body, u, &room);
+            self.bonds.step = 0.0;
+        }
+        if motion.is_some() || self.bonds.before.is_none() {
+            self.keep(u, &room);
+        }
+        if let (Some(seen), Some(whole)) = (seen, &mut whole) {
+            // what the step remembers is part of this instant, what breaks in it is of the next
+            self.swap_bonds(whole);
+            self.seen(body, u, &self.look_room(u), seen);
+            self.swap_bonds(whole);
+        }
+        if breaks.is_some() {
+            self.bonds.next_critical(body);
+        }
+        self.bonds.room = room;
+        total
+    }
+
+    /// All passes: points as the bonds see them.
+    pub(super) fn settle(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
+        self.settle_only(body, u, room, &[]);
+    }
+
+    /// Of the groups that are marked; no marks: of all.
+    fn settle_only(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room, only: &[u8]) {
+        let none = Store::zeros(self.bonds.family.layout(0));
+        let mut point = std::mem::replace(&mut self.bonds.point, none);
+        for pass in 0..self.bonds.law.passes {
+            let out = point.shared();
+            let mut view = self.bonds.view(u, room);
+            view.point = out.seen();
+            self.law.sums(&self.bonds.blocks, view, pass, out, only);
+            point.fill_images(&body.images);
+        }
+        self.bonds.point = point;
+    }
+
+    /// Forces on points that have settled.
+    fn pull(&self, body: &Body<D>, u: FieldView<D>, room: &Room, f: FieldViewMut<D>) {
+        let view = self.bonds.view(u, room);
+        let f = f.map(|column| Shared(column.as_mut_ptr()));
+        self.law
+            .forces(&self.bonds.blocks, view, f, self.bonds.pushed(body));
+    }
+
+    /// A step of a law of rates whose bonds may break. What a break changes of the gradient of a family it changes at once: it is a step of no length
+    /// after that of the motion, and no viscosity or rate sees it.
+    fn step_of_rates(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        mut f: FieldViewMut<D>,
+        (motion, room): (Motion<D>, &mut Room),
+        seen: Option<&mut PointEnergiesMut>,
+    ) -> Tally {
+        let after = motion.release == Release::AfterForce;
+        self.work_before(body, u, room);
+        self.settle(body, u, room);
+        if after {
+            self.pull(body, u, room, view_mut(&mut f));
+        }
+        if after || self.measures() {
+            self.measure(body, u, room);
+        }
+        let mut total = self.remember(body, u, room);
+        self.bonds.step = 0.0;
+        room.constants.clone_from(&room.still);
+        if let Some(seen) = seen {
+            self.seen(body, u, room, seen);
+        }
+        let drift = match after {
+            true => motion.steps[1],
+            false => -motion.steps[0],
+        };
+        let tear = self.tear(body, u, room, away(&motion, drift));
+        if tear.broken > 0 {
+            let torn = std::mem::take(&mut self.bonds.torn);
+            self.settle_only(body, u, room, &torn);
+            total += self.remember_only(body, u, room, &torn);
+            self.bonds.torn = torn;
+        }
+        total += tear;
+        if !after {
+            self.pull(body, u, room, f);
+        }
+        self.keep(u, room);
+        self.bonds.next_critical(body);
+        total
+    }
+
+    pub(super) fn energies(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        room: &Room,
+        out: Option<&mut PointEnergiesMut>,
+    ) -> [f64; 2] {
+        let fields = out.map(|out| EnergyFields::of(out, body.len));
+        let held = self.bonds.held_energies();
+        self.bonds.blocks.sum(&Energies {
+            law: self.asked(self.bonds.view(u, room)),
+            stretches: self.bonds.law.stretches,
+            held: &held,
+            pushed: self.bonds.pushed(body),
+            volume: &body.volume,
+            fields,
+        })
+    }
+
+    /// Bonds with their law, for those that do not know it.
+    pub(super) fn asked<'a>(&'a self, bonds: BondView<'a, D, F>) -> LawView<'a, D, F> {
+        LawView {
+            law: &*self.law,
+            simd: self.bonds.blocks.simd,
+            bonds,
+        }
+    }
+
+    pub(super) fn seen(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        room: &Room,
+        out: &mut PointEnergiesMut,
+    ) {
+        self.energies(body, u, room, Some(&mut *out));
+        self.bonds.dilate(out);
+    }
+
+    /// Test and break, and what points lose.
+    fn tear(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room, drift: Drift<D>) -> Tally {
+        if !self.bonds.find_breaking(body, u, room, drift.v) {
+            return Tally::default();
+        }
+        let form = self.bonds.form.shared();
+        let breaks = Shared(self.bonds.breaks.as_mut_ptr());
+        let alive = Shared(self.bonds.alive.as_mut_ptr());
+        let integrity = Shared(self.bonds.integrity.as_mut_ptr());
+        let mut view = self.bonds.view(u, room);
+        (view.form, view.alive) = (form.seen(), alive.seen());
+        let torn = Torn {
+            // a step of equilibrium is at its end already, with its relaxed forces
+            still: if self.bonds.step > 0.0 {
+                &room.constants
+            } else {
+                &room.still
+            },
+            body,
+            groups: &self.bonds.torn,
+            breaks,
+            alive,
+            form,
+            integrity: (!self.bonds.integrity.is_empty()).then_some(integrity),
+            drift,
+        };
+        let of_whole = self.bonds.law.form_of_whole;
+        let tally = self.bonds.blocks.tally(&Tear {
+            law: self.asked(view),
+            forms: if of_whole { self.bonds.law.form } else { 0 },
+            torn,
+        });
+        self.bonds.look_integrity(body);
+        self.bonds.look_stiffness(body, false, &*self.law);
+        tally
+    }
+
+    /// Memory at the end of a step.
+    fn remember(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) -> Tally {
+        self.remember_only(body, u, room, &[])
+    }
+
+    /// Of the groups that are marked; no marks: of all.
+    fn remember_only(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        room: &Room,
+        only: &[u8],
+    ) -> Tally {
+        if self.bonds.memory.is_empty() && self.bonds.past.data.is_empty() {
+            return Tally::default();
+        }
+        let past = self.bonds.past.shared();
+        let memory = Shared(self.bonds.memory.as_mut_ptr());
+        let mut view = self.bonds.view(u, room);
+        (view.past, view.memory) = (past.seen(), memory.seen());
+        let written = (past, memory);
+        let blocks = &self.bonds.blocks;
+        let tally = self.law.remember(blocks, view, written, &body.volume, only);
+        self.bonds.fill_memory(body);
+        tally
+    }
+
+    fn swap_bonds(&mut self, (alive, form, integrity): &mut (Vec<u8>, Store, Column)) {
+        std::mem::swap(&mut self.bonds.alive, alive);
+        std::mem::swap(&mut self.bonds.form, form);
+        std::mem::swap(&mut self.bonds.integrity, integrity);
+    }
+
+    /// The first half of the work of the step that ends here, by the forces at its start.
+    fn work_before(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
+        if self.bonds.work.is_empty() {
+            return;
+        }
+        let Some(mut before) = self.bonds.before.take() else {
+            return;
+        };
+        let start = Room {
+            records: std::mem::take(&mut before.records),
+            constants: room.still.clone(),
+            still: vec![],
+        };
+        std::mem::swap(&mut self.bonds.expansion, &mut before.expansion);
+        self.settle(body, view(&before.u), &start);
+        std::mem::swap(&mut self.bonds.expansion, &mut before.expansion);
+        let work = Shared(self.bonds.work.as_mut_ptr());
+        let mut there = self.bonds.view(view(&before.u), &start);
+        there.expansion = &before.expansion;
+        let here = self.bonds.view(u, room);
+        self.bonds.blocks.run(&Work {
+            law: self.asked(there),
+            other: here,
+            part: 0.5,
+            work,
+        });
+        before.records = start.records;
+        self.bonds.before = Some(before);
+    }
+
+    /// What bonds are measured by, at the forces of now, which are settled.
+    fn measure(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
+        if let Some(before) = self.bonds.before.take() {
+            let start = Room {
+                records: before.records,
+                ..Room::default()
+            };
+            let work = Shared(self.bonds.work.as_mut_ptr());
+            let mut there = self.bonds.view(view(&before.u), &start);
+            there.expansion = &before.expansion;
+            there.constants = &room.constants;
+            let here = self.bonds.view(u, room);
+            self.bonds.blocks.run(&Work {
+                law: self.asked(here),
+                other: there,
+                part: -0.5,
+                work,
+            });
+            self.bonds.before = Some(Before {
+                records: start.records,
+                ..before
+            });
+        }
+        let out = Shared(self.bonds.damage.as_mut_ptr());
+        if let Measure::VonMises(limit) = &self.bonds.criteria.measure {
+            let materials = 0..self.bonds.held.len();
+            let across = materials.map(|m| self.bonds.elastic_across(m));
+            let limits = Limits {
+                body,
+                limit,
+                across: &across.collect::<Vec<_>>(),
+                out,
+            };
+            self.bonds.blocks.run(&VonMises {
+                law: self.asked(self.bonds.view(u, room)),
+                says_across: self.bonds.law.across,
+                limits,
+            });
+            body.fill_images(&mut self.bonds.damage);
+        }
+    }
+
+    /// Are bonds measured by the forces of now?
+    fn measures(&self) -> bool {
+        matches!(
+            self.bonds.criteria.measure,
+            Measure::Work(_) | Measure::VonMises(_)
+        )
+    }
+
+    /// The next step begins here.
+    fn keep(&mut self, u: FieldView<D>, room: &Room) {
+        if self.bonds.work.is_empty() {
+            return;
+        }
+        let zeros = || Before::zeros(u[0].len(), 0);
+        let before = self.bonds.before.get_or_insert_with(zeros);
+        for a in 0..D {
+            before.u[a].copy_from_slice(u[a]);
+        }
+        before.records.clone_from(&room.records);
+        before.expansion = self.bonds.expansion.clone();
+    }
+}
+
+/// The velocities of a motion, and a time.
+fn away<'a, const D: usize>(motion: &Motion<'a, D>, time: f64) -> Drift<'a, D> {
+    Drift { v: motion.v, time }
+}

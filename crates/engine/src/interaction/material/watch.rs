@@ -1,0 +1,149 @@
+//! Point after point and bond after bond, for those who watch: homogeneous strains, forces of bonds, stress across a body.
+
+use super::MaterialInteraction;
+use crate::body::{Body, FieldView};
+use crate::execute::lane::TILE;
+use crate::interaction::bonds::family::{Family, Slots};
+use crate::interaction::bonds::view::{BondView, grown};
+use crate::interaction::{BondForce, PointEnergiesMut};
+use crate::law::material::part_of;
+
+impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
+    /// Energies under a homogeneous displacement gradient.
+    pub(super) fn strained(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergiesMut,
+    ) {
+        out.zeros(body.len);
+        let constants = self.constants().constants;
+        let (bonds, family) = (&self.bonds, &self.bonds.family);
+        for group in 0..family.groups() {
+            for l in (0..TILE).filter(|l| family.is_point(group, *l)) {
+                let slot = family.rows(group).slot(l);
+                let at = bonds.plain_point(&constants, slot);
+                let whole = bonds.bonds_of(group, l).into_iter();
+                let whole: Vec<_> = whole.map(|b| (b, bonds.memory_at(group, b.0, l))).collect();
+                let found = self.law.strained(&at, &whole, gradient);
+                out.strain[slot] = part_of(bonds.integrity_at(slot), found[0]);
+                out.dilatation[slot] = found[1];
+                out.whole[slot] = found[2];
+            }
+        }
+        bonds.dilate(out);
+    }
+
+    /// Adds the stress across a body in plane strain to σ_xx + σ_yy of every slot, at displacements that are settled. False: it is not known.
+    pub(super) fn add_across(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        trace: &mut [f64],
+    ) -> bool {
+        if !self.bonds.law.across {
+            let known = self.bonds.held.iter().all(Option::is_some);
+            for &s in &body.slots {
+                let i = s as usize;
+                let [poisson, stiff] = self.bonds.elastic_across(self.bonds.material_at(i));
+                let strain = self.bonds.expansion.get(i).copied().unwrap_or(0.0);
+                trace[i] += poisson * trace[i] - self.bonds.integrity_at(i) * stiff * strain;
+            }
+            return known;
+        }
+        // bonds that remember tell their point at the end of a step, and these displacements are those of no end
+        if self.bonds.law.gathers {
+            return false;
+        }
+        let room = self.take_room(u, self.bonds.step);
+        self.settle(body, u, &room);
+        for slot in body.slots.iter().map(|s| *s as usize) {
+            if self.bonds.family.find(slot).is_some() {
+                let at = self.bonds.plain_point(&room.constants, slot);
+                let across = self.law.across(&at, &self.bonds.point.numbers(slot));
+                trace[slot] += part_of(self.bonds.integrity_at(slot), across);
+            }
+        }
+        self.bonds.room = room;
+        true
+    }
+
+    /// Forces bond by bond, in order of slots.
+    pub(super) fn each_pull(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) {
+        let room = self.take_room(u, self.bonds.step);
+        self.settle(body, u, &room);
+        let law = self.asked(self.bonds.view(u, &room));
+        let original = body.originals();
+        let family = &self.bonds.family;
+        // of the group that was last: the force states of both ends, and the own ones
+        let (mut last, mut pulls, mut owns) = (None, vec![], vec![]);
+        for &s in &body.slots {
+            let Some((group, l)) = family.find(s as usize) else {
+                continue;
+            };
+            if last != Some(group) {
+                law.bond_forces(group, false, &mut pulls);
+                law.bond_forces(group, true, &mut owns);
+                last = Some(group);
+            }
+            for k in (0..family.bonds(group)).filter(|k| family.is_bond(group, *k, l)) {
+                let states =
+                    [&pulls, &owns].map(|all| std::array::from_fn(|a| all[(k * D + a) * TILE + l]));
+                let bond = self.pull_of(&law.bonds, body, [group, k, l], states);
+                if bond.force != [0.0; D] {
+                    visit(BondForce {
+                        i: s as usize,
+                        j: original(bond.j),
+                        ..bond
+                    });
+                }
+            }
+        }
+        self.bonds.room = room;
+    }
+
+    /// A bond with what its force states do, repulsion among it; slots are those of the family.
+    fn pull_of(
+        &self,
+        seen: &BondView<D, F>,
+        body: &Body<D>,
+        [group, k, l]: [usize; 3],
+        [mut force, mut own]: [[f64; D]; 2],
+    ) -> BondForce<D> {
+        let family = &self.bonds.family;
+        let [rows, ends] = [family.rows(group), family.ends(group, k)].map(|s| s.from(l));
+        let r = family.plain(group, k, l);
+        let whole = self.bonds.is_whole(group, k, l);
+        let weight = if whole { r.weight } else { 0.0 };
+        let mut per_length = 1.0;
+        if !seen.expansion.is_empty() {
+            // SAFETY: slots of the family
+            [_, per_length] = unsafe { grown(seen.expansion, rows, ends) };
+        }
+        for a in 0..D {
+            force[a] = per_length * (weight * force[a]);
+            own[a] = weight * per_length * own[a];
+        }
+        let pushed = self.bonds.pushed(body);
+        if let Some(push) = { pushed }.and_then(|p| p.of(family, &seen.moved, group, k, l)) {
+            for a in 0..D {
+                force[a] += push.pull * push.y[a];
+                own[a] += 0.5 * push.pull * push.y[a];
+            }
+        }
+        // SAFETY: slots of the family
+        let [ui, uj] = [rows, ends].map(|s| unsafe { F::displacement::<f64>(&seen.moved, s) });
+        BondForce {
+            i: rows.slot(0),
+            j: ends.slot(0),
+            y: std::array::from_fn(|a| r.xi[a] + uj[a] - ui[a]),
+            force,
+            own: self.bonds.law.potential.then_some(own),
+        }
+    }
+}
