@@ -550,3 +550,85 @@ fn traction_takes_the_faces_of_the_body_it_acts_on() {
     // twelve points, a spacing of 1 each
     assert!((total - 7.0 * 12.0).abs() < 1e-9, "{total}");
 }
+
+/// Two bars under unlike strains, which do not touch: the cycles that pass are those of the bonds that end first, in whichever body, `1/(A (ε − ε∞)^m)`,
+/// and so many wear the other.
+#[test]
+fn cycles_pass_for_all_bodies_until_the_first_bond_is_worn_out() {
+    let (a, m, limit, ratio) = (1e6, 3.0, 1e-3, 0.25);
+    let lasts = |strain: f64| 1.0 / (a * ((1.0 - ratio) * strain - limit).powf(m));
+    for strains in [[4e-3, 2e-3], [2e-3, 4e-3]] {
+        let bar = |at: f64| {
+            block(
+                LatticeKind::Chain,
+                1.0,
+                [at, 0.0, 0.0],
+                [at + 19.0, 0.0, 0.0],
+            )
+        };
+        let pieces = vec![piece("one", bar(0.0), true), piece("two", bar(100.0), true)];
+        let mut spec = Spec::new(1, BodySpec::Several(pieces), 1.0, SPRINGS);
+        spec.bonds.horizon = Horizon::Length(2.2);
+        spec.sets = vec![within("one"), within("two")];
+        for ((name, at), strain) in [("one", 0.0), ("two", 100.0)].into_iter().zip(strains) {
+            let mut worn = material(name, 1.0, 1.0);
+            worn.fracture = Some(FractureSpec {
+                fatigue: Some(FatigueSpec {
+                    nucleation: Some([a, m]),
+                    limit,
+                    growth: None,
+                    crack: 0.35,
+                }),
+                ..FractureSpec::new(Criterion::Stretch(1.0))
+            });
+            spec.materials.retain(|m| m.name != "all");
+            spec.materials.push(worn);
+            let ends = format!("abs(x - {at} - 9.5) > 6.9 && abs(x - {at} - 9.5) < 10");
+            spec.sets.push(SetSpec {
+                name: format!("ends of {name}"),
+                members: Members::Where(text(&ends).unwrap()),
+            });
+            let u = text(&format!("{strain}*(x - {at})"));
+            spec.loading.conditions.push(ConditionSpec {
+                set: format!("ends of {name}"),
+                kind: ConditionKind::Displacement([u, None, None]),
+            });
+        }
+        spec.run.schedule.steps = 2;
+        spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+        let cycles = Cycles {
+            load_ratio: ratio,
+            bonds: 1,
+            most: f64::INFINITY,
+        };
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
+            method: Method::Newton,
+            cycles: Some(cycles),
+            ..Statics::default()
+        });
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        sim.step().unwrap();
+        sim.step().unwrap();
+        let (passed, other) = (lasts(4e-3), lasts(2e-3));
+        let found = sim.cycles().unwrap();
+        assert!((found / passed - 1.0).abs() < 1e-9, "{found} {passed}");
+        // two spacings far: 19 and 18 bonds in each bar, from both ends
+        assert_eq!(sim.broken(), 2 * 37);
+        let mut lives = sim.scalars("remaining_life");
+        lives.sort_by(f64::total_cmp);
+        assert_eq!(lives.len(), 4 * 37);
+        let (ended, left) = lives.split_at(2 * 37);
+        assert!(ended.iter().all(|life| *life == 0.0));
+        let exact = 1.0 - passed / other;
+        assert!(
+            left.iter().all(|life| (life - exact).abs() < 1e-8),
+            "{left:?} {exact}"
+        );
+        // where they touch, a part of the load is not that part of what it does
+        spec.interactions.contact = Some(CONTACT);
+        let error = build(&spec, Options::default()).err().unwrap();
+        assert_eq!(error.path, "statics.cycles");
+        assert!(error.message.contains("bodies that touch"), "{error}");
+    }
+}

@@ -68,6 +68,14 @@ impl Clock {
         self.dt
     }
 
+    /// How much time passes in an increment of statics (time); before a motion none, if t is the factor of the load.
+    pub fn passes(&self, timed: bool) -> f64 {
+        match self.before.is_some() && !timed {
+            true => 0.0,
+            false => self.dt,
+        }
+    }
+
     /// Length of a step of the motion, which may be still to come (time).
     pub fn dt_of_motion(&self) -> f64 {
         self.before.as_ref().map_or(self.dt, |before| before.dt)

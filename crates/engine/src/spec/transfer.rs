@@ -94,6 +94,26 @@ pub enum TransferKind {
     Exchange { law: Exchange, area: Area },
 }
 
+impl TransferKind {
+    pub fn depends_on_time(&self) -> bool {
+        match self {
+            TransferKind::Value(e)
+            | TransferKind::Flux { value: e, .. }
+            | TransferKind::Source(e) => e.depends_on_time(),
+            TransferKind::Exchange { law, .. } => match law {
+                Exchange::Convection {
+                    coefficient,
+                    ambient,
+                }
+                | Exchange::Radiation {
+                    coefficient,
+                    ambient,
+                } => coefficient.depends_on_time() || ambient.depends_on_time(),
+            },
+        }
+    }
+}
+
 #[derive(Debug, Clone)]
 pub enum Exchange {
     /// `h (T_∞ − T)` per area and time.

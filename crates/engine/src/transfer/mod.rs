@@ -146,7 +146,7 @@ impl Transfer {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// From time `t` on for a time `dt`.
+    /// From time `t` on for a time `dt`; in none nothing flows.
     ///
     /// # Errors
     /// Equations of implicit or steady values were not solved.
@@ -160,6 +160,7 @@ impl Transfer {
                 }
                 Ok(())
             }
+            TransferMethod::Implicit { .. } if dt == 0.0 => Ok(()),
             TransferMethod::Implicit { theta, tolerance } => {
                 self.implicit((t, dt), theta, tolerance)
             }

@@ -208,3 +208,55 @@ fn an_impact_of_copper_lies_on_its_hugoniot() {
         assert!(balance < 2e-3, "{speed}: {balance:e}");
     }
 }
+
+/// Sound between two walls goes back and forth in `2 L/c₀`, `ρ₀c₀² = K`, in implicit steps that are longer than explicit ones may be.
+#[test]
+fn sound_goes_through_a_fluid_in_implicit_steps() {
+    let numbers = [
+        ("bulk", 1.0),
+        ("hugoniot_slope", 1.5),
+        ("gruneisen", 1.9),
+        ("linear_viscosity", 0.0),
+        ("quadratic_viscosity", 0.0),
+    ];
+    let fluid = || LawSpec::named("fluid", Parameters::numbers(&numbers));
+    // points at ±27.5 and beyond are held
+    let long = 55.0;
+    let there = |stepper: Stepper, step: f64| {
+        let mut spec = strip(60, 1.0, (1.0, fluid()), (1.0, fluid()));
+        held(&mut spec);
+        let k = std::f64::consts::PI / long;
+        let mode = format!("abs(x) < 27 ? 1e-4*cos({k:e}*x) : 0");
+        spec.loading.initial = vec![InitialSpec {
+            set: "all".into(),
+            displacement: [None, None, None],
+            velocity: [Some(e(&mode)), None, None],
+        }];
+        spec.run.schedule.stepper = stepper;
+        spec.run.schedule.time_step = TimeStep::Fixed(step);
+        let mut sim = start(&spec);
+        let before = sim.velocities();
+        for _ in 0..(long / step) as u64 {
+            sim.step().unwrap();
+        }
+        let ledger = sim.ledger().unwrap();
+        assert!(
+            ledger.residual().abs() < 0.01 * ledger.initial,
+            "{step}: {ledger:?}"
+        );
+        let (mut both, mut own) = (0.0, 0.0);
+        for (v, w) in before.iter().zip(sim.velocities()) {
+            both += v[0] * w[0];
+            own += v[0] * v[0];
+        }
+        (both / own, sim.info().stable_step)
+    };
+    let (explicit, _) = there(Stepper::Verlet, 0.25);
+    let (implicit, stable) = there(Stepper::Newmark(Newmark::default()), 5.0);
+    println!("sound after {long}: {explicit:.5} and {implicit:.5} of its velocity");
+    assert!(stable < 5.0, "{stable}");
+    // walls that are a spacing nearer or further: cos(3π/55)
+    assert!((implicit + 1.0).abs() < 0.02, "{implicit}");
+    // (ωΔt)²/12 of a half turn
+    assert!((implicit - explicit).abs() < 0.01, "{implicit} {explicit}");
+}

@@ -8,3 +8,4 @@ mod flow;
 mod modes;
 mod repeat;
 mod sample;
+mod stages;

@@ -56,7 +56,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
     fn step(&mut self, system: &mut System<D>) -> Result<(), RunError> {
         let (t, dt) = (system.clock.time(), system.clock.dt());
         system.update_toughness(t + dt)?;
-        system.spread(t, dt)?;
+        system.spread(t, system.clock.passes(self.state.options.timed))?;
         system.pay(0.5, 0.0);
         let pressed = system.pressed();
         let options = self.state.options;

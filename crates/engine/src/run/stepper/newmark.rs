@@ -19,6 +19,7 @@ use crate::body::Field;
 use crate::condition::rigid::Wrench;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::interaction::friction::Pressed;
+use crate::law::descriptor::Memory;
 use crate::message;
 use crate::quantity::Dimension;
 use crate::run::equilibrium::problem::Problem;
@@ -150,6 +151,17 @@ impl<const D: usize> NewmarkStepper<D> {
                 "bonds break at the end of a step: a crack grows by no more than a horizon in each, and a wave goes further than that in ",
                 Dimension::TIME.of(dt),
                 "; where cracks run, steps of ",
+                Dimension::TIME.of(reach * limits.bond),
+                " follow them",
+            ]);
+        }
+        let named = system.constitutive.all().filter_map(|m| m.named.as_ref());
+        let mut memories = named.map(|law| law.memory().0);
+        if dt > reach * limits.bond && memories.any(|m| m == Memory::Shock) {
+            system.info.warnings.push(message![
+                "viscosity spreads a shock over a horizon, and it goes further than that in ",
+                Dimension::TIME.of(dt),
+                "; where shocks run, steps of ",
                 Dimension::TIME.of(reach * limits.bond),
                 " follow them",
             ]);

@@ -72,8 +72,11 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
             let says = format!("the points of `{}` are loose", loose.name);
             all.push(Lack::new(Property::Faces, says, "leave bonded = false out"));
         }
-        let says = "bodies that touch answer to half a load by more or less than half";
-        all.push(Lack::new(Property::InProportion, says, ""));
+        if spec.interactions.contact.is_some() {
+            let says = "bodies that touch answer to half a load by more or less than half";
+            let instead = "write contact = false and bond them";
+            all.push(Lack::new(Property::InProportion, says, instead));
+        }
     }
     if !spec.loading.indenters.is_empty() {
         let says = "what touches an indenter answers to half a load by more or less than half";
@@ -245,8 +248,15 @@ fn of_transfers(spec: &Spec) -> Vec<Lack> {
     if !spec.interactions.transfers.is_empty() {
         let says = "heat or a species spreads in time";
         let instead = "leave out what spreads";
-        all.push(Lack::new(Property::TwoStages, says, instead));
         all.push(Lack::new(Property::Proportional, says, instead));
+    }
+    for t in &spec.interactions.transfers {
+        if t.conditions.iter().any(|c| c.kind.depends_on_time()) {
+            let name = t.quantity.name();
+            let says = format!("a condition of {name} depends on t");
+            let lack = Lack::new(Property::TwoStages, says, "leave t out of it");
+            all.push(lack.at(name));
+        }
     }
     let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
     if spec.interactions.transfers.iter().any(expands) {

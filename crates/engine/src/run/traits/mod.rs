@@ -26,8 +26,6 @@ pub(super) enum Property {
     Balance,
     /// Answers alike however fast it is deformed.
     Timeless,
-    /// What happens takes longer than a step.
-    Slow,
     /// Remembers nothing.
     Memoryless,
     /// Loads are what they are wherever points go.

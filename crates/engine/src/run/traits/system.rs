@@ -85,20 +85,12 @@ pub(in crate::run) fn of_implicit_steps<const D: usize>(
     system: &System<D>,
     solver: Solver,
 ) -> Result<(), BuildError> {
-    let mut needs = vec![
-        Need::new(
-            Property::Slow,
-            "schedule.integrator",
-            ": a shock passes a point in less time than an implicit step takes",
-            "write [run] with a duration, without integrator",
-        ),
-        Need::new(
-            Property::Tangent,
-            "conditions",
-            ", which an implicit step needs",
-            "integrator = \"verlet\" knows it; or leave it out",
-        ),
-    ];
+    let mut needs = vec![Need::new(
+        Property::Tangent,
+        "conditions",
+        ", which an implicit step needs",
+        "integrator = \"verlet\" knows it; or leave it out",
+    )];
     needs.extend(of_solver(solver, "schedule.solver"));
     met(needs, &lacks(system))
 }
@@ -204,11 +196,7 @@ fn of_law((memory, name): (Memory, &str)) -> Vec<Lack> {
         Memory::Shock => {
             let says = format!("{answers} and bears no shear at rest");
             let instead = "write [run] with a duration, without integrator";
-            vec![
-                Lack::new(Property::Motionless, says.as_str(), instead),
-                Lack::new(Property::Slow, says, ""),
-                remembers(),
-            ]
+            vec![Lack::new(Property::Motionless, says, instead), remembers()]
         }
     }
 }

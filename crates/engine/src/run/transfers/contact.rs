@@ -68,8 +68,11 @@ impl<const D: usize> System<D> {
             .all
             .iter_mut()
             .find_map(|t| t.touching.as_mut());
-        let (Some(touching), Some(contact)) = (touching, &mut self.contact) else {
-            return;
+        let Some(touching) = touching else { return };
+        touching.clear();
+        let Some(contact) = &mut self.contact else {
+            // statics before motion that knows no contact
+            return touching.share();
         };
         if self.regime.implicit || self.regime.equilibrium {
             // trials went anywhere
@@ -78,7 +81,6 @@ impl<const D: usize> System<D> {
         let body = &self.body;
         contact.find(body, &self.u, self.interaction.as_ref());
         let place = &self.transfers.place;
-        touching.clear();
         contact.central.each_near(&self.u, |ends, weight| {
             let bodies = ends.map(|s| body.piece_of(s) as u32);
             touching.add(ends.map(|s| place[s]), bodies, weight);

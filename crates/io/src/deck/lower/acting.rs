@@ -37,7 +37,15 @@ pub(super) fn conditions(
     for (index, at) in document.condition.iter().enumerate() {
         let stage = stages.named(context, &at.value.stage)?;
         context.set_time(stages.time(stage));
+        let already = exchanged.len();
         let made = motion::condition(context, index, at, sets, &mut exchanged)?;
+        if let (Some(_), Some(spreads)) = (stage, exchanged.get(already)) {
+            return Err(context.error_with(
+                &spreads.span,
+                "this entry names a stage, and what spreads goes on through both",
+                "leave stage out of it; what moves or loads points in one stage is an entry of its own",
+            ));
+        }
         if stages.both && stage.is_none() && made.iter().any(of_time) {
             return Err(stages.whose(context, &at.span));
         }
