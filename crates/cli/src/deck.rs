@@ -171,10 +171,12 @@ pub fn remarks(notes: &[String], warnings: &[String]) -> String {
 
 /// Decks of two stages, and points with horizons of their own, which `verb` does not know.
 pub fn is_plain(deck: &Deck, verb: &str) -> Result<(), Failure> {
-    let what = match (&deck.spec.run.preload, &deck.spec.bonds.own_horizon) {
+    let (spec, mut pieces) = (&deck.spec, deck.spec.body.pieces().iter());
+    let own = spec.bonds.own_horizon.is_some() || pieces.any(|p| p.own_horizon.is_some());
+    let what = match (&spec.run.preload, own) {
         (Some(_), _) => "a deck of [run] or of [statics], and this one has both",
-        (_, Some(_)) => "one horizon, and the points of this deck have their own (own_horizon)",
-        (None, None) => return Ok(()),
+        (_, true) => "one horizon, and the points of this deck have their own (own_horizon)",
+        (None, false) => return Ok(()),
     };
     Err(Failure::input(format!(
         "{}: {verb} takes {what}",

@@ -136,6 +136,43 @@ fn a_factor_of_two_is_a_law_twice_as_stiff() {
     }
 }
 
+/// Bonds of a list have the factors that they have in a stencil, through periodic faces, too; so have they where points have horizons of their own.
+#[test]
+fn a_list_scales_its_bonds_as_a_stencil_does() {
+    let law = LawSpec::Pmb(PmbStiffness::Young(1.0));
+    let mut spec = block(LatticeKind::Square, [9.0; 3], law);
+    spec.bonds.horizon = Horizon::Length(2.3);
+    spec.bonds.volume_scaling = true;
+    spec.bonds.calibration = Calibration::Continuum;
+    spec.space.periodic = [Some(10.0), None, None];
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.004)));
+    let across = |x: f64| BondFactorSpec::Crossing {
+        shape: CrackShape::Segment {
+            from: [x, -1.03, 0.0],
+            to: [x + 0.31, 12.0, 0.0],
+        },
+        factor: 0.4,
+    };
+    spec.bonds.factors = vec![
+        BondFactorSpec::Field(text("1 + 0.5*sin(pi/5*x) + 0.1*y")),
+        across(9.37),
+        across(4.4),
+    ];
+    let mut list = spec.clone();
+    list.bonds.family = FamilyChoice::List;
+    let mut own = list.clone();
+    own.bonds.own_horizon = Some(text("2.3"));
+    let (u, strain, kinetic) = moved(&spec);
+    let largest = u.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+    for spec in [list, own] {
+        let (v, s, k) = moved(&spec);
+        for (u, v) in u.iter().flatten().zip(v.iter().flatten()) {
+            assert!((u - v).abs() < 1e-11 * largest, "{u:e} {v:e}");
+        }
+        assert!((s / strain - 1.0).abs() < 1e-10 && (k / kinetic - 1.0).abs() < 1e-10);
+    }
+}
+
 #[test]
 fn a_periodic_field_moves_with_the_body() {
     let shifted = |cells: i32| {

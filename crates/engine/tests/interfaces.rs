@@ -96,13 +96,36 @@ fn largest(f: &[[f64; 3]]) -> f64 {
     f.iter().flatten().fold(0.0, |m, x| m.max(x.abs()))
 }
 
+/// A factor that grows along a bar, and one of bonds that cross a plane through both halves.
+fn factors(d: usize) -> Vec<BondFactorSpec> {
+    let shape = match d {
+        1 => CrackShape::Point { x: 2.6 },
+        _ => CrackShape::Segment {
+            from: [1.1, -1.05, 0.0],
+            to: [4.2, 3.03, 0.0],
+        },
+    };
+    vec![
+        BondFactorSpec::Field(Expression::parse("0.4 + 0.2*x + 0.1*y", &[]).unwrap()),
+        BondFactorSpec::Crossing { shape, factor: 0.3 },
+    ]
+}
+
 #[test]
 fn two_halves_glued_are_the_whole_bar() {
     for d in 1..=3 {
-        for law in [PMB, LawSpec::Pmb(PmbStiffness::Micromodulus(7.0))] {
-            let [whole, glued] = bars(d, &law);
-            let [mut whole, mut glued] =
-                [whole, glued].map(|s| build(&s, Options::default()).unwrap());
+        let laws = [PMB, LawSpec::Pmb(PmbStiffness::Micromodulus(7.0))];
+        let each = laws
+            .iter()
+            .flat_map(|law| [(law, vec![]), (law, factors(d))]);
+        for (law, factors) in each {
+            let [mut whole, mut glued] = bars(d, law).map(|mut spec| {
+                spec.bonds.factors.clone_from(&factors);
+                let sim = build(&spec, Options::default()).unwrap();
+                let told = |w: &peridyne::quantity::Message| w.contains("no bond crosses");
+                assert!(!sim.info().warnings.iter().any(told));
+                sim
+            });
             assert_eq!(whole.info().directed_bonds, glued.info().directed_bonds);
             assert_eq!(glued.fragments(), 1);
             let place = places(glued.as_mut(), whole.as_mut());

@@ -275,6 +275,69 @@ fn statics_spares_sets() {
     assert!(torn[0].1 > 0 && torn[1].1 > 0, "{torn:?}");
 }
 
+/// Factors of bodies that break by their stretch and by the work on their bonds are those of each alone.
+#[test]
+fn bodies_of_unlike_criteria_have_factors_of_their_own() {
+    let law = LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 1.0)]));
+    let alone = |y: f64, criterion: Criterion| {
+        let mut spec = plate(law.clone(), FamilyChoice::Auto);
+        let BodySpec::Lattice { region, .. } = &mut spec.body else {
+            panic!("a plate lies on a lattice");
+        };
+        *region = Region::Block {
+            low: [0.0, y, 0.0],
+            high: [12.0, y + 5.0, 0.0],
+        };
+        spec.materials[0].fracture = Some(FractureSpec::new(criterion));
+        spec.damage.toughness = vec![
+            toughness("middle", ToughnessFactor::Stretch(text("0.8"))),
+            toughness("left", ToughnessFactor::Energy(text("1.5"))),
+            toughness("right", ToughnessFactor::NoFailure),
+        ];
+        spec.run.schedule.time_step = TimeStep::Fixed(0.2);
+        spec
+    };
+    let parts = [
+        ("low", alone(0.0, Criterion::Stretch(0.02))),
+        ("high", alone(100.0, Criterion::BondEnergy(1e-3))),
+    ];
+    let mut both = parts[0].1.clone();
+    both.materials.clear();
+    let mut pieces = vec![];
+    for (name, part) in &parts {
+        pieces.push(PieceSpec::new(*name, part.body.clone()));
+        both.sets.push(SetSpec {
+            name: (*name).into(),
+            members: Members::Within {
+                body: (*name).into(),
+                members: Box::new(Members::All),
+            },
+        });
+        both.materials.push(MaterialSpec {
+            name: (*name).into(),
+            set: (*name).into(),
+            ..part.materials[0].clone()
+        });
+    }
+    both.body = BodySpec::Several(pieces);
+    let run = |spec: &Spec| {
+        let mut sim = started(spec);
+        for _ in 0..200 {
+            sim.step().unwrap();
+        }
+        (sim.broken(), sim.displacements())
+    };
+    let [low, high] = [0, 1].map(|n: usize| run(&parts[n].1));
+    assert!(low.0 > 0 && high.0 > 0, "{} {}", low.0, high.0);
+    let (broken, u) = run(&both);
+    assert_eq!(broken, low.0 + high.0);
+    for (a, b) in low.1.iter().chain(&high.1).zip(&u) {
+        for k in 0..2 {
+            assert!((a[k] - b[k]).abs() < 1e-9, "{a:?} {b:?}");
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
     let refused = |change: &dyn Fn(&mut Spec)| -> BuildError {

@@ -238,3 +238,47 @@ fn plain_fluxes_make_constant_gradients() {
         }
     }
 }
+
+/// Plates of unlike spacing, each exact at its own surface, beside one that is not: a unit flux through one end of each of the first two, the other held at 0.
+#[test]
+fn each_of_several_bodies_is_exact_at_its_surface() {
+    for law in [PMB, LPS] {
+        let plate = |name: &str, h: f64, low: f64| {
+            let high = low + 1.6;
+            format!(
+                "[[body]]\nname = \"{name}\"\nlattice = \"square\"\nspacing = {h}\n\
+                 region = {{ block = {{ low = [{low}, 0], high = [{high}, 1.2] }} }}\n"
+            )
+        };
+        let mut text = format!(
+            "units = \"none\"\nplane = \"stress\"\nthickness = 0.25\nhorizon = {{ m_ratio = 3 }}\ninfluence = \"constant\"\n\
+             surface = \"exact\"\ncontact = false\nheat = {{ method = \"steady\", tolerance = 1e-14 }}\n\
+             material = {{ density = 1, {law}, heat = {{ conductivity = 1, capacity = 1 }} }}\n"
+        );
+        text += &plate("coarse", 0.1, 0.0);
+        text += &plate("fine", 0.05, 10.0);
+        text += &(plate("plain", 0.2, 20.0) + "surface = \"none\"\n");
+        for (name, h, low) in [("coarse", 0.1, 0.0), ("fine", 0.05, 10.0)] {
+            for (end, at) in [("low", low), ("high", low + 1.6)] {
+                let near = 0.3 * h;
+                text += &format!("[sets.{name}_{end}]\nwhere = \"abs(x - {at}) < {near}\"\n");
+            }
+            text += &format!(
+                "[[condition]]\nset = \"{name}_low\"\ntemperature = 0\n[[condition]]\nset = \"{name}_high\"\nheat_flux = 1\n"
+            );
+        }
+        text += "[[condition]]\nset = \"plain\"\ntemperature = 0\n\
+                 [run]\nintegrator = \"still\"\nsteps = 1\ntime_step = 1\n";
+        let mut sim = model(&text);
+        sim.step().unwrap();
+        // the first two end at their outermost points, the third half a spacing outside
+        let volume = 2.0 * 1.6 * 1.2 * 0.25 + 8.0 * 6.0 * 0.04 * 0.25;
+        assert!((sim.info().volume / volume - 1.0).abs() < 1e-12);
+        let x = sim.vectors("reference");
+        let t = sim.scalars("temperature");
+        for (x, t) in x.iter().zip(&t).filter(|(x, _)| x[0] < 15.0) {
+            let from = if x[0] < 5.0 { x[0] } else { x[0] - 10.0 };
+            assert!((t - from).abs() < 1e-11, "{law} at {x:?}: {t}");
+        }
+    }
+}

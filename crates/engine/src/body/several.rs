@@ -101,6 +101,27 @@ impl<const D: usize> Body<D> {
         self.volume.at(slot) / self.spacing_at(slot)
     }
 
+    /// Volumes of points become those that the pieces have now.
+    pub fn join_volumes(&mut self) {
+        self.volume = join(self.pieces(), &self.slots, self.len, 0.0, |b| &b.volume);
+    }
+
+    /// Horizons of points as the pieces have them (length, a number per slot), of others that of their piece; empty: no piece has any.
+    pub fn own_horizons(&self, of_pieces: &[f64]) -> Vec<f64> {
+        let pieces = self.pieces();
+        if pieces.iter().all(|p| p.body.horizon.is_empty()) {
+            return vec![];
+        }
+        let mut all = vec![0.0; self.len];
+        for (p, horizon) in pieces.iter().zip(of_pieces) {
+            match p.body.horizon.is_empty() {
+                true => all[p.range()].fill(*horizon),
+                false => all[p.range()].copy_from_slice(&p.body.horizon),
+            }
+        }
+        all
+    }
+
     /// Ids of the points of each of the bodies.
     pub fn ids(&self) -> Vec<std::ops::Range<usize>> {
         let mut first = 0;

@@ -5,10 +5,12 @@ use crate::expression::Expression;
 use crate::interaction::history;
 use crate::spec::ToughnessFactor;
 use crate::state::{Archive, Owner};
+use std::borrow::Cow;
 
-/// Critical stretches of points.
+/// Critical values of points.
 pub struct ToughnessField {
-    bears: Bears,
+    /// `[slots]`: what bonds of a point break by, those of one body alike.
+    bears: Vec<Bears>,
     /// `[slots]`: s00 of the material, or the root of its critical work; ∞ never breaks.
     base: Vec<f64>,
     /// Slots, and what they have.
@@ -46,9 +48,20 @@ fn expression(factor: &ToughnessFactor) -> Option<&Expression> {
     }
 }
 
+impl Bears {
+    /// The column that has critical values of it, and whether these count in the first evaluation of a run: critical stretches are known after it.
+    pub fn column(self) -> (&'static str, bool) {
+        match self {
+            Bears::Stretch => (history::ELONGATION, false),
+            Bears::Work => (history::WORK, true),
+        }
+    }
+}
+
 impl ToughnessField {
     /// Of critical stretches of slots, or roots of their critical works, and factors of sets of them; [`set`](Self::set) gives values.
-    pub fn new(bears: Bears, base: Vec<f64>, factors: Vec<(Vec<u32>, ToughnessFactor)>) -> Self {
+    pub fn new(base: Vec<(Bears, f64)>, factors: Vec<(Vec<u32>, ToughnessFactor)>) -> Self {
+        let (bears, base): (Vec<_>, Vec<_>) = base.into_iter().unzip();
         ToughnessField {
             bears,
             values: vec![f64::INFINITY; base.len()],
@@ -69,22 +82,19 @@ impl ToughnessField {
         self.factors.iter().any(|(_, f)| heat(f))
     }
 
-    /// Does it count in the first evaluation of a run? Critical stretches are known after it.
-    pub fn at_once(&self) -> bool {
-        self.bears == Bears::Work
-    }
-
-    /// The column that the values are of.
-    pub fn column(&self) -> &'static str {
-        match self.bears {
-            Bears::Stretch => history::ELONGATION,
-            Bears::Work => history::WORK,
+    /// Critical values of `e` or critical works, by slot; `None`: no point has such. Of points that have the others they are infinite.
+    pub fn values(&self, of: Bears) -> Option<Cow<'_, [f64]>> {
+        let count = self.bears.iter().filter(|b| **b == of).count();
+        let each = || self.bears.iter().zip(&self.values);
+        let own = |(b, value): (&Bears, &f64)| match *b == of {
+            true => *value,
+            false => history::NEVER,
+        };
+        match count {
+            0 => None,
+            all if all == self.values.len() => Some(Cow::Borrowed(&self.values)),
+            _ => Some(Cow::Owned(each().map(own).collect())),
         }
-    }
-
-    /// Critical values of `e` or critical works, by slot.
-    pub fn values(&self) -> &[f64] {
-        &self.values
     }
 
     /// Values of a time, and of a temperature for each slot where anybody feels it.
@@ -128,7 +138,7 @@ impl ToughnessField {
         }
         for &s in &body.slots {
             let s0 = stretch[s as usize];
-            self.values[s as usize] = match self.bears {
+            self.values[s as usize] = match self.bears[s as usize] {
                 Bears::Stretch => s0 * (2.0 + s0),
                 Bears::Work => s0 * s0,
             };

@@ -211,6 +211,12 @@ pub trait Interaction<const D: usize>: Send + Sync {
         history::limit(critical[0], critical[1])
     }
 
+    /// Von Mises stress of points over what their materials bear, by slot, where bonds break when its mean of both ends reaches 1; `None`: they break
+    /// by something else. NaN of points whose body has none.
+    fn stress_borne(&mut self, _body: &Body<D>, _u: FieldView<D>) -> Option<Vec<f64>> {
+        None
+    }
+
     /// What enumerates the bonds: `"stencil"`, `"list"`, `"neighbours"` or `"reference"`.
     fn family(&self) -> &'static str;
 
@@ -262,7 +268,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ) -> Result<(), BuildError> {
         Err(BuildError::unsupported(
             "bonds",
-            "factors of bonds multiply what pmb, lps and springs pull on a lattice, where a bond is known by its cell, and the bonds of this body are others",
+            "factors of bonds multiply what pmb, lps and springs pull on a lattice, and pmb in a cloud or an interface: the bonds of this body are others",
         )
         .help("take pmb or lps on a lattice, or leave the factors out"))
     }
@@ -323,8 +329,8 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// [`Sweep::Evolve`], after which time stands still again; 0: it does.
     fn last(&mut self, _step: f64) {}
 
-    /// What is left of the lives of all directed bonds that are whole, and what a cycle of a load takes, under which the displacements are `u`,
-    /// images of which are fresh, and whose least is a part of it. `None`: none of them wears.
+    /// What is left of the lives of all directed bonds that are whole, in order of slots, and what a cycle of a load takes, under which the
+    /// displacements are `u`, images of which are fresh, and whose least is a part of it. `None`: none of them wears.
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
@@ -332,11 +338,9 @@ pub trait Interaction<const D: usize>: Send + Sync {
         None
     }
 
-    /// So many cycles of that load pass: bonds that are worn out break in the next sweep.
-    ///
-    /// # Panics
-    /// As for [`forces`](Interaction::forces).
-    fn wear(&mut self, _body: &Body<D>, _u: FieldView<D>, _load: &Cycles, _passed: f64) {}
+    /// So many cycles pass: takes from these, which begin with those of [`wearing`](Interaction::wearing), one for each of its bonds. Those that are worn
+    /// out break in the next sweep.
+    fn wear(&mut self, _bonds: &mut dyn Iterator<Item = Wearing>, _cycles: f64) {}
 
     /// Directed bonds of the reference family.
     fn directed_bonds(&self) -> u64;

@@ -6,6 +6,8 @@ use super::{
 };
 use crate::body::{Body, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 use crate::columns::On;
+use crate::error::BuildError;
+use crate::law::BondFactors;
 use crate::spec::CrackKind;
 use crate::state::Archive;
 
@@ -260,6 +262,16 @@ impl<const D: usize> Interface<D> {
         crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
     ) -> u64 {
         self.bonds.cut(&self.points.cloud, kind, crosses)
+    }
+
+    /// [`scale_bonds`](Interaction::scale_bonds), by slots of the body of all.
+    pub fn scale_bonds(
+        &mut self,
+        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
+    ) -> Result<(), BuildError> {
+        let points = &self.points;
+        let of = |i: usize, j: usize, c| factors(points.whole(i), points.whole(j), c);
+        self.bonds.scale_bonds(&points.cloud, &of)
     }
 
     pub fn prepare(&mut self) {

@@ -18,10 +18,11 @@ use super::{
 };
 use crate::body::{Body, FieldView, FieldViewMut, Identity};
 use crate::columns::Declaration;
+use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
-use crate::law::Law;
+use crate::law::{BondFactors, Law};
 use crate::spec::CrackKind;
 use crate::state::Archive;
 pub use assemble::ListParts;
@@ -40,6 +41,8 @@ pub struct ListInteraction<const D: usize, W: Law> {
     list: HorizonList,
     /// `[lines]`: bits of whole bonds.
     alive: Vec<u8>,
+    /// `[lines][8]`: factors of bonds; empty: all are 1.
+    scale: Vec<f64>,
     /// `[slots][4]`: x, y, z, volume.
     reference: Vec<f64>,
     /// `[slots][4]`: displacement and critical `e`, written before every sweep.
@@ -80,6 +83,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             weight: self.weight,
             list: &self.list,
             alive,
+            scale: &self.scale,
             reference: &self.reference,
             moved,
             fields,
@@ -312,6 +316,25 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.cut_where(body, kind, crosses)
     }
 
+    fn scale_bonds(
+        &mut self,
+        body: &Body<D>,
+        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
+    ) -> Result<(), BuildError> {
+        self.check(body, &[]);
+        match W::SHARES {
+            true => Err(BuildError::unsupported(
+                "bonds",
+                "in a state-based law a bond also acts through the pressure of its ends, and factors of bonds of a list are those of its own pull",
+            )
+            .help("take pmb, or leave the factors out")),
+            false => {
+                self.multiply_factors(factors);
+                Ok(())
+            }
+        }
+    }
+
     fn prepare(&mut self, body: &Body<D>) {
         self.check(body, &[]);
         self.weigh(body);
@@ -371,6 +394,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
             + self.moved.len()
             + self.fields.len()
             + self.pressure.len()
+            + self.scale.len()
             + self.critical.len()
             + self.next.len();
         self.list.bytes() + self.alive.len() + self.materials.len() + self.pairs.bytes() + 8 * words

@@ -119,6 +119,14 @@ impl BondTable {
         }
     }
 
+    /// δ of pairs of this table (length).
+    #[inline(always)]
+    pub(super) fn horizon<L: Lane>(&self, numbers: &[u32; crate::execute::lane::TILE]) -> L {
+        let all = numbers.map(|n| self.pairs[n as usize].horizon);
+        // SAFETY: a number per lane
+        unsafe { L::load(all.as_ptr()) }
+    }
+
     /// s00 and α.
     ///
     /// # Safety

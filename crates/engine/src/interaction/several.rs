@@ -184,12 +184,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         })
     }
 
-    fn wear(&mut self, body: &Body<D>, u: FieldView<D>, load: &Cycles, passed: f64) {
-        self.check(body, &[u]);
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                bonds.wear(&p.body, p.part(u), load, passed);
-            }
+    fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
+        for own in self.own.iter_mut().filter_map(|own| own.bonds.as_mut()) {
+            own.wear(bonds, cycles);
         }
     }
 
@@ -428,6 +425,21 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
+    fn stress_borne(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<Vec<f64>> {
+        self.check(body, &[u]);
+        let mut all = None;
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            let Some(bonds) = &mut own.bonds else {
+                continue;
+            };
+            if let Some(of) = bonds.stress_borne(&p.body, p.part(u)) {
+                let all = all.get_or_insert_with(|| vec![f64::NAN; body.len]);
+                all[p.range()].copy_from_slice(&of);
+            }
+        }
+        all
+    }
+
     fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
         let of = |slot: usize| self.own.iter().rfind(|own| own.first <= slot);
         let own = of(ends[0]).filter(|own| of(ends[1]).is_some_and(|o| o.first == own.first));
@@ -492,7 +504,8 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 bonds.scale_bonds(&p.body, &of)?;
             }
         }
-        Ok(())
+        let mut between = self.interfaces.iter_mut();
+        between.try_for_each(|i| i.scale_bonds(factors))
     }
 
     fn reached(&self, body: &Body<D>, i: usize, xi: [f64; D]) -> Option<(f64, BondFactors<f64>)> {

@@ -1,8 +1,11 @@
 //! What a bond of a cloud weighs: influence function times volume fraction.
 
+use crate::body::Body;
 use crate::execute::lane::Lane;
 use crate::law::influence::InfluenceFunction;
+use crate::law::micromodulus::first_moments;
 use crate::spec::Influence;
+use std::collections::HashMap;
 
 /// `ω(ξ) ν(r0)` with `ν = min(1, cut − rate r0)`, evaluated in lanes wherever a bond is met, so that nothing needs to be
 /// stored.
@@ -44,13 +47,39 @@ impl BondWeight {
     /// `ω ν` of bonds ξ of these lengths.
     #[inline(always)]
     pub fn at<L: Lane, const D: usize>(&self, xi: &[L; D], r0: L, inv_r0: L) -> L {
-        self.within(xi, r0, inv_r0, L::splat(self.cut))
+        self.influence.at(xi, r0, inv_r0) * self.fraction(r0, L::splat(self.cut))
     }
 
-    /// The same where the partner's volume begins to fade elsewhere: `cut` is `½ + δ/h` of the bond's own horizon.
+    /// The same of bonds with a horizon of their own (length), at which the partner's volume fades: `cut` is `½ + δ/h` of that.
     #[inline(always)]
-    pub fn within<L: Lane, const D: usize>(&self, xi: &[L; D], r0: L, inv_r0: L, cut: L) -> L {
-        self.influence.at(xi, r0, inv_r0) * self.fraction(r0, cut)
+    pub fn within<L: Lane, const D: usize>(
+        &self,
+        xi: &[L; D],
+        r0: L,
+        inv_r0: L,
+        [horizon, cut]: [L; 2],
+    ) -> L {
+        self.influence.within(xi, r0, inv_r0, horizon) * self.fraction(r0, cut)
+    }
+
+    /// What micromoduli of points with horizons of their own are of that at the longest, by slot: they go as the inverse of `∫ ω r dV`. Empty: points
+    /// have none.
+    pub fn stiffnesses<const D: usize>(&self, body: &Body<D>) -> Vec<f64> {
+        let (kind, longest) = self.influence.kind();
+        let mut known: HashMap<u64, f64> = HashMap::new();
+        let mut of = |own: f64| {
+            let known = known.entry(own.to_bits());
+            *known.or_insert_with(|| first_moments(D, longest, own, kind))
+        };
+        let each = body.horizon.iter();
+        each.map(|own| if *own > 0.0 { of(*own) } else { 1.0 })
+            .collect()
+    }
+
+    /// Is ω another one at another horizon?
+    #[inline(always)]
+    pub fn knows_horizon(&self) -> bool {
+        self.influence.knows_horizon()
     }
 
     /// ω alone, of this end and of the other.
@@ -60,11 +89,29 @@ impl BondWeight {
         if !self.influence.is_directed() {
             return [own; 2];
         }
-        let mut back = *xi;
-        for a in 0..D {
-            back[a] = L::splat(0.0) - xi[a];
+        [own, self.influence.at(&turned(xi), r0, inv_r0)]
+    }
+
+    /// The same of two ends with horizons of their own (length).
+    #[inline(always)]
+    pub fn influence_within<L: Lane, const D: usize>(
+        &self,
+        xi: &[L; D],
+        r0: L,
+        inv_r0: L,
+        [own, other]: [L; 2],
+    ) -> [L; 2] {
+        if !self.knows_horizon() {
+            return self.influence(xi, r0, inv_r0);
         }
-        [own, self.influence.at(&back, r0, inv_r0)]
+        let back = match self.influence.is_directed() {
+            true => turned(xi),
+            false => *xi,
+        };
+        [
+            self.influence.within(xi, r0, inv_r0, own),
+            self.influence.within(&back, r0, inv_r0, other),
+        ]
     }
 
     /// ν alone.
@@ -77,6 +124,16 @@ impl BondWeight {
     fn fraction<L: Lane>(&self, r0: L, cut: L) -> L {
         r0.fma(L::splat(-self.rate), cut).min(L::splat(1.0))
     }
+}
+
+/// −ξ
+#[inline(always)]
+fn turned<L: Lane, const D: usize>(xi: &[L; D]) -> [L; D] {
+    let mut back = *xi;
+    for a in 0..D {
+        back[a] = L::splat(0.0) - xi[a];
+    }
+    back
 }
 
 #[cfg(test)]

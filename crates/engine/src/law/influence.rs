@@ -40,10 +40,49 @@ impl InfluenceFunction {
         !self.mean && self.kind.is_directed()
     }
 
+    /// What it is, and for which horizon (length).
+    pub fn kind(&self) -> (Influence, f64) {
+        (self.kind, self.horizon)
+    }
+
+    /// Is it 1?
+    #[inline(always)]
+    pub fn is_constant(&self) -> bool {
+        self.kind == Influence::Constant
+    }
+
+    /// Is it another one at another horizon?
+    #[inline(always)]
+    pub fn knows_horizon(&self) -> bool {
+        self.kind.knows_horizon()
+    }
+
     /// ω(ξ); `r` is |ξ| and `inv_r` is 1/r.
     #[inline(always)]
     pub fn at<L: Lane, const D: usize>(&self, xi: &[L; D], r: L, inv_r: L) -> L {
         let q = r * L::splat(self.inv_horizon);
+        self.of(xi, r, inv_r, q, L::splat(self.horizon))
+    }
+
+    /// The same of points with another `horizon` (length): a bond that is longer, of which they hold a part of a cell, has ω at that.
+    #[inline(always)]
+    pub fn within<L: Lane, const D: usize>(&self, xi: &[L; D], r: L, inv_r: L, horizon: L) -> L {
+        if !self.knows_horizon() {
+            return self.at(xi, r, inv_r);
+        }
+        let one = L::splat(1.0);
+        let part = (horizon * inv_r).min(one);
+        let mut inside = *xi;
+        for a in 0..D {
+            inside[a] = xi[a] * part;
+        }
+        let q = r.div(horizon).min(one);
+        self.of(&inside, r * part, inv_r, q, horizon)
+    }
+
+    /// `q` is r over the horizon.
+    #[inline(always)]
+    fn of<L: Lane, const D: usize>(&self, xi: &[L; D], r: L, inv_r: L, q: L, horizon: L) -> L {
         match self.kind {
             Influence::Constant => L::splat(1.0),
             Influence::Inverse => inv_r,
@@ -52,7 +91,7 @@ impl InfluenceFunction {
             Influence::CubicSpline => L::apart(CubicSpline(q)),
             Influence::Formula(formula) => L::apart(Written {
                 formula,
-                horizon: self.horizon,
+                horizon,
                 mean: self.mean,
                 xi: *xi,
                 r,
@@ -74,7 +113,7 @@ pub fn mean_influence<const D: usize>(kind: Influence, xi: &[f64; D], r: f64, ho
 
 struct Written<L, const D: usize> {
     formula: Formula,
-    horizon: f64,
+    horizon: L,
     mean: bool,
     xi: [L; D],
     r: L,
@@ -84,7 +123,7 @@ impl<L: Lane, const D: usize> Piece for Written<L, D> {
     type Out = L;
     #[inline(always)]
     fn run(self) -> L {
-        let r = self.r.to_array();
+        let (r, horizon) = (self.r.to_array(), self.horizon.to_array());
         let mut xi = [[0.0; TILE]; 3];
         for a in 0..D {
             xi[a] = self.xi[a].to_array();
@@ -93,10 +132,10 @@ impl<L: Lane, const D: usize> Piece for Written<L, D> {
         let mut all = [0.0; TILE];
         for l in 0..L::N {
             let of = [xi[0][l], xi[1][l], xi[2][l]];
-            all[l] = self.formula.at(of, r[l], self.horizon);
+            all[l] = self.formula.at(of, r[l], horizon[l]);
             if both {
                 let back = [-of[0], -of[1], -of[2]];
-                all[l] = 0.5 * (all[l] + self.formula.at(back, r[l], self.horizon));
+                all[l] = 0.5 * (all[l] + self.formula.at(back, r[l], horizon[l]));
             }
         }
         // SAFETY: a number per lane
@@ -218,6 +257,36 @@ mod tests {
         assert_eq!(influence(upwind, &[3.0, 4.0], 5.0, d), 1.6);
         assert_eq!(influence(upwind, &[-3.0, -4.0], 5.0, d), 0.4);
         assert_eq!(mean_influence(upwind, &[3.0, 4.0], 5.0, d), 1.0);
+    }
+
+    /// Of points with another horizon it is the function of that, and beyond it what that is at its end.
+    #[test]
+    fn points_of_another_horizon_have_its_function() {
+        let (longest, own) = (0.0031, 0.0017);
+        let written = |text| Influence::Formula(Formula::parse(text, &[]).unwrap());
+        let all = [
+            written("exp(-r/delta)"),
+            written("(1 + 0.5*xi_x/r)*(1 - r/delta)"),
+            written("1/r"),
+        ];
+        for kind in Influence::ALL.into_iter().chain(all) {
+            let function = InfluenceFunction::new(kind, longest);
+            for n in 1..=100 {
+                let r = longest * f64::from(n) / 100.0;
+                let xi = [0.6 * r, -0.8 * r];
+                let found = function.within(&xi, r, 1.0 / r, own);
+                let part = match kind.knows_horizon() && r > own {
+                    true => own / r,
+                    false => 1.0,
+                };
+                let inside = xi.map(|x| part * x);
+                let exact = influence(kind, &inside, part * r, own);
+                assert!(
+                    (found - exact).abs() <= 4e-15 * (1.0 + exact.abs()),
+                    "{kind:?} at {r}: {found:e} {exact:e}"
+                );
+            }
+        }
     }
 
     /// One text is one formula, and another text or another constant another.

@@ -30,6 +30,21 @@ impl Moments {
     }
 }
 
+/// The integral of `ω r0` over the ball of a horizon over that of another, `of` (lengths).
+pub fn first_moments(dimension: usize, of: f64, horizon: f64, kind: Influence) -> f64 {
+    let power = match kind {
+        Influence::Constant | Influence::Conical | Influence::Gaussian | Influence::CubicSpline => {
+            dimension + 1
+        }
+        Influence::Inverse => dimension,
+        Influence::Formula(_) => {
+            let first = |horizon| radial(dimension, horizon, 1.0, 1, kind);
+            return first(of) / first(horizon);
+        }
+    };
+    (of / horizon).powi(power as i32)
+}
+
 /// `Σ ω ν V r0³ / Σ ω ν V r0²` of the full family (length).
 pub fn mean_length(dimension: usize, horizon: f64, kind: Influence) -> f64 {
     radial(dimension, horizon, 1.0, 3, kind) / radial(dimension, horizon, 1.0, 2, kind)

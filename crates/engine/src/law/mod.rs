@@ -81,9 +81,16 @@ pub trait Law: Copy + Send + Sync + 'static {
     /// The bond constant `k` from reference length and `ω ν V_j`.
     fn constant<L: Lane>(self, r0: L, inv_r0: L, weight: L) -> L;
 
-    /// `k` times what lists multiply it with for both ends, from the length of the bond: 1 but for horizons of points.
+    /// `k` times what lists multiply it with for both ends of the bond ξ, whose length is r0: 1 but for horizons of points.
     #[inline(always)]
-    fn between_ends<L: Lane>(self, k: L, _r0: L, _i: [L; 2], _j: [L; 2]) -> L {
+    fn between_ends<L: Lane, const D: usize>(
+        self,
+        k: L,
+        _xi: &[L; D],
+        _r0: L,
+        _i: [L; 2],
+        _j: [L; 2],
+    ) -> L {
         k
     }
 

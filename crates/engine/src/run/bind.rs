@@ -1,9 +1,9 @@
 //! Laws and bonds of all bodies of a spec.
 
-use super::constitutive::{ConstitutiveModels, Shelf};
-use super::contact::own_stiffness;
+use super::constitutive::{ConstitutiveModel, ConstitutiveModels, Shelf};
 use super::interfaces::interfaces;
 use super::parts::Part;
+use super::surface;
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
@@ -12,6 +12,25 @@ use crate::interaction::several::SeveralInteraction;
 use crate::message;
 use crate::quantity::{Dimension, Warnings};
 use crate::spec::{BodySpec, Spec};
+
+type Bound<const D: usize> = (ConstitutiveModel, Option<Box<dyn Interaction<D>>>);
+
+/// The law of one body, and its bonds, those near its surface scaled; `None`: loose points.
+fn bonds<const D: usize>(
+    part: &mut Part,
+    body: &mut Body<D>,
+    shelf: &Shelf,
+    simd: Simd,
+    warnings: &mut Warnings,
+) -> Result<Bound<D>, BuildError> {
+    let model = part.constitutive(body, shelf, simd, warnings)?;
+    let mut bonds = part.bonds(&model, body)?;
+    if let (Some(factors), Some(bonds)) = (&part.spec.bonds.surface, &mut bonds) {
+        surface::scale(factors, body, bonds.as_mut())?;
+        warnings.extend(factors.warning.clone());
+    }
+    Ok((model, bonds))
+}
 
 /// Laws and bonds of all bodies.
 #[allow(clippy::type_complexity)] // what a model is made of, twice
@@ -32,38 +51,28 @@ pub(super) fn bind<const D: usize>(
             return Err(BuildError::conflict("interface[0].bodies", message)
                 .help("write [[body]] for each of the two"));
         }
-        let mut model = parts[0].constitutive(body, shelf, simd, warnings)?;
-        if let Some(repulsion) = &mut model.repulsion {
-            repulsion.own = own_stiffness(spec, body, &model.contact, model.horizon);
-        }
-        let interaction = model.interaction(body, None)?;
+        let (model, interaction) = bonds(&mut parts[0], body, shelf, simd, warnings)?;
+        let interaction = interaction.expect("a single body is bonded");
         let interaction = super::bonded::around(spec, body, shelf, interaction, simd)?;
         return Ok((ConstitutiveModels::one(model), interaction));
     };
-    let (mut constitutive, mut bonds) = (vec![], vec![]);
+    let (mut constitutive, mut all) = (vec![], vec![]);
     for (n, part) in parts.iter_mut().enumerate() {
-        let mut own = body.pieces()[n].body.clone();
-        part.choose(body, n, &mut own);
+        let Layout::Several(pieces) = &mut body.layout else {
+            unreachable!("made of several bodies")
+        };
         let mut told = Warnings::default();
-        let made = part
-            .constitutive(&own, shelf, simd, &mut told)
-            .and_then(|model| {
-                let bonds = part.bonds(&model, &own)?;
-                Ok((model, bonds))
-            });
-        let (model, bond) = made.map_err(|e| BuildError {
-            message: message![format!("body `{}`: ", named[n].name), e.message],
-            ..e
-        })?;
+        let made = bonds(part, &mut pieces[n].body, shelf, simd, &mut told);
+        let (model, bonds) = made.map_err(|e| part.named(&named[n], e))?;
         warnings.extend(
             told.iter()
                 .map(|w| message![format!("body `{}`: ", named[n].name), w]),
         );
-        constitutive.push((body.pieces()[n].first, part.materials.clone(), model));
-        bonds.push(bond);
-        if let Layout::Several(pieces) = &mut body.layout {
-            pieces[n].body = own;
-        }
+        constitutive.push((pieces[n].first, part.materials.clone(), model));
+        all.push(bonds);
+    }
+    if named.iter().any(|p| p.surface.is_some()) {
+        body.join_volumes();
     }
     let mut joined = vec![];
     for made in interfaces(spec, named, body, shelf, simd)? {
@@ -79,7 +88,7 @@ pub(super) fn bind<const D: usize>(
         }
         joined.push(made.interface);
     }
-    let interaction = SeveralInteraction::new(body, bonds, joined);
+    let interaction = SeveralInteraction::new(body, all, joined);
     let constitutive = ConstitutiveModels::several(constitutive);
     Ok((constitutive, Box::new(interaction)))
 }

@@ -1,7 +1,8 @@
 //! Factors of bonds: heterogeneous bodies and weak planes.
 
-use crate::body::Body;
+use crate::body::{Body, Layout};
 use crate::error::BuildError;
+use crate::family::neighbours::periods;
 use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
 use crate::law::BondFactors;
@@ -51,10 +52,17 @@ pub(super) fn scale<const D: usize>(
                 }
                 let found = Cell::new(false);
                 let scaled = |i: usize, j: usize, _| {
-                    let [x, y] = [i, j].map(|s| {
+                    let [x, y]: [[f64; D]; 2] = [i, j].map(|s| {
                         let x = body.position(s);
                         std::array::from_fn(|a| x[a])
                     });
+                    let y = match listed(body, [i, j]) {
+                        true => {
+                            let back = periods(body, &std::array::from_fn(|a| y[a] - x[a]));
+                            std::array::from_fn(|a| y[a] - back[a])
+                        }
+                        false => y,
+                    };
                     let crosses = crack.crosses(&x, &y);
                     found.set(found.get() || crosses);
                     pair(if crosses { *factor } else { 1.0 })
@@ -70,6 +78,13 @@ pub(super) fn scale<const D: usize>(
         }
     }
     Ok(warnings)
+}
+
+/// Is a bond one of a list, which knows no images, or of an interface?
+fn listed<const D: usize>(body: &Body<D>, ends: [usize; 2]) -> bool {
+    let [a, b] = ends.map(|s| body.piece_of(s));
+    let own = body.pieces().get(a).map_or(body, |p| &p.body);
+    a != b || matches!(own.layout, Layout::Cloud(_))
 }
 
 fn pair(factor: f64) -> BondFactors<f64> {

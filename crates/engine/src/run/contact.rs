@@ -1,6 +1,6 @@
 //! Contact of a model: how points of every body and material repel, and what step that allows.
 
-use super::constitutive::{ConstitutiveModels, contact_stiffness};
+use super::constitutive::{ConstitutiveModel, ConstitutiveModels, contact_stiffness};
 use super::parts::Part;
 use super::reference::cell;
 use crate::body::Body;
@@ -79,9 +79,7 @@ pub(super) fn repulsion<const D: usize>(
     let range = PairTable::new(kinds.len(), |a, b| {
         contact.free * 0.5 * (kinds[a].spacing + kinds[b].spacing)
     });
-    // points with horizons of their own are those of one body
-    let own = constitutive.first().repulsion.as_ref();
-    let own = own.map_or(vec![], |r| r.own.clone());
+    let own = own_of_all(constitutive, body);
     let conducts = contact.conductance.is_some();
     let longest = match conducts {
         true => nearness(&kinds, 0.0).longest(&range).max(range.highest()),
@@ -148,23 +146,22 @@ pub(super) fn repulsion<const D: usize>(
     }))
 }
 
-/// `15 c/δ` of the bonds of each slot, `c ∝ δ^−(D+1)` at equal moduli, from that of the materials at the horizon of the body; empty: points have no
-/// horizons of their own, or the stiffness was given.
-pub(super) fn own_stiffness<const D: usize>(
-    spec: &Spec,
-    body: &Body<D>,
-    of_materials: &[f64],
-    horizon: f64,
-) -> Vec<f64> {
-    match spec.interactions.contact.as_ref().map(|c| &c.stiffness) {
-        Some(ContactStiffness::Laws) => {}
-        Some(ContactStiffness::Same(_) | ContactStiffness::Pairs(_)) | None => return vec![],
+/// [`own_stiffness`](super::own_horizons::own_stiffness) of all bodies, where any has one: in the others all points have that of their material.
+fn own_of_all<const D: usize>(constitutive: &ConstitutiveModels, body: &Body<D>) -> Vec<f64> {
+    let of = |m: &ConstitutiveModel| m.repulsion.as_ref().map_or(vec![], |r| r.own.clone());
+    let all: Vec<Vec<f64>> = constitutive.all().map(of).collect();
+    if body.pieces().is_empty() || all.iter().all(Vec::is_empty) {
+        return all.into_iter().next().unwrap_or_default();
     }
-    let of = |(slot, own): (usize, &f64)| match *own > 0.0 {
-        true => of_materials[body.material_of(slot)] * (horizon / own).powi(D as i32 + 2),
-        false => 0.0,
-    };
-    body.horizon.iter().enumerate().map(of).collect()
+    let mut own = vec![0.0; body.len];
+    for ((p, model), given) in body.pieces().iter().zip(constitutive.all()).zip(all) {
+        for &s in &p.body.slots {
+            let s = s as usize;
+            let of_material = || model.contact[p.body.material_of(s)];
+            own[p.first + s] = given.get(s).copied().unwrap_or_else(of_material);
+        }
+    }
+    own
 }
 
 /// Rows of two kinds that touch.

@@ -96,6 +96,8 @@ fn join<const D: usize>(
     };
     own.bonds.horizon = written.horizon;
     own.bonds.influence = written.influence;
+    own.bonds.own_horizon = None;
+    own.interactions.pairs = vec![];
     own.interactions.contact = None;
     own.interactions.interfaces = vec![];
     own.damage.precracks = vec![];

@@ -53,7 +53,7 @@ mod virial;
 pub use build::{Options, build, build_in, build_with};
 pub use constitutive::Shelf;
 pub use model::Model;
-pub use sets::materials_of;
+pub use sets::{materials_of, materials_of_bodies};
 pub use transfers::TransferInfo;
 
 use crate::columns::Declaration;

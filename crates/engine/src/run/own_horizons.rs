@@ -2,10 +2,13 @@
 
 use crate::body::Body;
 use crate::error::BuildError;
+use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::run::constitutive::{generalised, is_solid};
-use crate::spec::{Criterion, FractureSpec, Spec};
+use crate::run::constitutive::{Shelf, generalised, is_solid, toughness};
+use crate::spec::{ContactStiffness, Criterion, FractureSpec, Influence, MaterialSpec, Spec};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// What is longer by this part is so by round-off.
 const ROUND_OFF: f64 = 1.0 + 1e-9;
@@ -18,26 +21,47 @@ pub(super) fn resolve(spec: &mut Spec) -> bool {
 }
 
 /// Is the critical stretch that of a fracture energy?
-pub(super) fn of_energy(fracture: FractureSpec) -> bool {
+fn of_energy(fracture: FractureSpec) -> bool {
     matches!(fracture.criterion, Criterion::Energy(_))
 }
 
-/// Does what bonds bear follow the horizon of each point?
-pub(super) fn strengthen(spec: &Spec) -> bool {
-    spec.bonds.own_horizon.is_some()
-        && spec
-            .materials
-            .iter()
-            .any(|m| m.fracture.is_some_and(of_energy))
-}
-
-/// By what the critical stretch of a material at this horizon differs where points have their own: `G ∝ E s² δ` of a body without another length.
-pub(super) fn strength(spec: &Spec, material: usize, horizon: f64, own: Option<f64>) -> f64 {
-    let fracture = spec.materials.get(material).and_then(|m| m.fracture);
-    match own {
-        Some(own) if fracture.is_some_and(of_energy) => (horizon / own).sqrt(),
-        Some(_) | None => 1.0,
+/// By what the critical stretch of each slot differs from that of its material, where that follows from a fracture energy: `G ∝ E s² δ` of a body
+/// without another length. Empty: it does not.
+pub(super) fn strengths<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+    horizon: f64,
+    shelf: &Shelf,
+) -> Result<Vec<f64>, BuildError> {
+    let energies = |m: &MaterialSpec| m.fracture.is_some_and(of_energy);
+    if body.horizon.is_empty() || !spec.materials.iter().any(energies) {
+        return Ok(vec![]);
     }
+    let bears = |n: usize, horizon: f64| {
+        let path = format!("materials[{n}].fracture");
+        let moments = Moments::continuum(D, horizon, spec.space.section, spec.bonds.influence);
+        let m = &spec.materials[n];
+        toughness::<D>(spec, m, horizon, moments, shelf, &path).map(|t| t.s00)
+    };
+    // an expression may have lengths of its own
+    let written = matches!(spec.bonds.influence, Influence::Formula(_));
+    let mut known: HashMap<(usize, u64), f64> = HashMap::new();
+    let mut all = vec![1.0; body.len];
+    for s in body.slots.iter().map(|s| *s as usize) {
+        let (n, own) = (body.material_of(s), body.horizon[s]);
+        if !energies(&spec.materials[n]) {
+            continue;
+        }
+        if !written {
+            all[s] = (horizon / own).sqrt();
+            continue;
+        }
+        all[s] = match known.entry((n, own.to_bits())) {
+            Entry::Occupied(by) => *by.get(),
+            Entry::Vacant(by) => *by.insert(bears(n, own)? / bears(n, horizon)?),
+        };
+    }
+    Ok(all)
 }
 
 /// Gives the points of a cloud the horizons that the spec asks for, none longer than `longest`.
@@ -78,4 +102,23 @@ pub(super) fn give<const D: usize>(
     }
     body.horizon = own;
     Ok(())
+}
+
+/// `15 c/δ` of the bonds of each slot, `c ∝ δ^−(D+1)` at equal moduli, from that of the materials at the horizon of the body; empty: points have no
+/// horizons of their own, or the stiffness was given.
+pub(super) fn own_stiffness<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+    of_materials: &[f64],
+    horizon: f64,
+) -> Vec<f64> {
+    match spec.interactions.contact.as_ref().map(|c| &c.stiffness) {
+        Some(ContactStiffness::Laws) => {}
+        Some(ContactStiffness::Same(_) | ContactStiffness::Pairs(_)) | None => return vec![],
+    }
+    let of = |(slot, own): (usize, &f64)| match *own > 0.0 {
+        true => of_materials[body.material_of(slot)] * (horizon / own).powi(D as i32 + 2),
+        false => 0.0,
+    };
+    body.horizon.iter().enumerate().map(of).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::calibration::cloud_moments;
 use super::constitutive::{Bulk, ConstitutiveModel, Shelf};
+use super::own_horizons::{own_stiffness, strengths};
 use super::reference::{Reference, cell, reference};
 use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
@@ -71,14 +72,7 @@ pub(super) fn parts<'a, const D: usize>(
     };
     let (mut all, mut bodies) = (vec![], vec![]);
     for (n, piece) in pieces.iter().enumerate() {
-        let mut own = Spec {
-            body: piece.body.clone(),
-            ..without.clone()
-        };
-        let bonds = &mut own.bonds;
-        bonds.horizon = piece.horizon.unwrap_or(bonds.horizon);
-        bonds.influence = piece.influence.unwrap_or(bonds.influence);
-        bonds.family = piece.family.unwrap_or(bonds.family);
+        let own = without.alone(piece);
         let (part, body) = part(Cow::Owned(own), piece.bonded).map_err(|e| BuildError {
             path: e.path.replacen("body", &format!("body[{n}]"), 1),
             message: message![format!("body `{}`: ", piece.name), e.message],
@@ -107,6 +101,18 @@ fn several_can(pieces: &[PieceSpec]) -> Result<(), BuildError> {
 }
 
 impl Part<'_> {
+    /// An error of one of several bodies, which knows its own materials.
+    pub fn named(&self, piece: &PieceSpec, e: BuildError) -> BuildError {
+        let of = |n: &usize| format!("materials[{n}]");
+        let mut of_all = self.materials.iter().enumerate();
+        let path = of_all.find_map(|(n, all)| Some(of(all) + e.path.strip_prefix(&of(&n))?));
+        BuildError {
+            path: path.unwrap_or(e.path),
+            message: message![format!("body `{}`: ", piece.name), e.message],
+            ..e
+        }
+    }
+
     /// Choose the materials of all that this body, made of several, has; its points know them by their place among
     /// these.
     pub fn choose<const D: usize>(&mut self, all: &Body<D>, n: usize, body: &mut Body<D>) {
@@ -128,6 +134,12 @@ impl Part<'_> {
             body.give_materials(of.iter().map(place));
         }
         let spec = self.spec.to_mut();
+        let (materials, pairs) = (spec.materials.len(), &mut spec.interactions.pairs);
+        if pairs.len() == materials * materials {
+            let rows = used.iter().map(|a| a * materials);
+            let own = rows.flat_map(|row| used.iter().map(move |b| row + b));
+            *pairs = own.map(|n| pairs[n].clone()).collect();
+        }
         spec.materials = used.iter().map(|m| spec.materials[*m].clone()).collect();
         if let Some(contact) = &mut spec.interactions.contact
             && let ContactStiffness::Pairs(rows) = &mut contact.stiffness
@@ -173,15 +185,14 @@ impl Part<'_> {
             moments: bulk.unwrap_or_else(continuum),
             family: std::mem::take(&mut self.family),
         };
-        ConstitutiveModel::new::<D>(
-            spec,
-            self.stencil.take(),
-            self.horizon,
-            cell,
-            bulk,
-            shelf,
-            simd,
-        )
+        let (stencil, horizon) = (self.stencil.take(), self.horizon);
+        let mut model =
+            ConstitutiveModel::new::<D>(spec, stencil, horizon, cell, bulk, shelf, simd)?;
+        if let Some(repulsion) = &mut model.repulsion {
+            repulsion.own = own_stiffness(spec, body, &model.contact, model.horizon);
+        }
+        model.strength = strengths(spec, body, model.horizon, shelf)?;
+        Ok(model)
     }
 
     /// Its bonds; `None`: loose points.

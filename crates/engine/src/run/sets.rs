@@ -307,6 +307,33 @@ pub fn materials_of(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildError> {
     }
 }
 
+/// Materials of each of several bodies, by their place in the spec; of a single one none.
+///
+/// # Errors
+/// As of [`materials_of`].
+pub fn materials_of_bodies(spec: &Spec) -> Result<Vec<Vec<usize>>, BuildError> {
+    let all = materials_of(spec)?;
+    match spec.space.dimension {
+        1 => of_bodies::<1>(spec, &all),
+        2 => of_bodies::<2>(spec, &all),
+        _ => of_bodies::<3>(spec, &all),
+    }
+}
+
+fn of_bodies<const D: usize>(
+    spec: &Spec,
+    all: &[(Point, usize)],
+) -> Result<Vec<Vec<usize>>, BuildError> {
+    let ids = parts::<D>(spec)?.1.ids();
+    let each = ids.into_iter().map(|ids| {
+        let mut of: Vec<usize> = all[ids].iter().map(|(_, m)| *m).collect();
+        of.sort_unstable();
+        of.dedup();
+        of
+    });
+    Ok(each.collect())
+}
+
 fn of_points<const D: usize>(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildError> {
     let (_, mut body) = parts::<D>(spec)?;
     let sets = sets(spec, &body, None)?.0;

@@ -1,32 +1,18 @@
 //! Toughness of places and times: before every test each point is told what it bears.
 
-use super::own_horizons;
 use super::system::System;
 use crate::condition::toughness::{Bears, ToughnessField};
 use crate::error::{BuildError, RunError};
 use crate::message;
 use crate::quantity::place;
-use crate::spec::{Criterion, MaterialSpec, Quantity, Spec, ToughnessFactor};
+use crate::spec::{Quantity, Spec, ToughnessFactor};
 
 /// What has no toughness of places.
 fn refused(spec: &Spec) -> Result<(), BuildError> {
-    let unsupported = |path: &str, message: &str| Err(BuildError::unsupported(path, message));
     if spec.materials.iter().all(|m| m.fracture.is_none()) {
         let message = "no material of this body breaks";
         return Err(BuildError::unsupported("toughness[0]", message)
             .help("give a material a fracture, or leave toughness out"));
-    }
-    let works = |m: &MaterialSpec| {
-        m.fracture
-            .map(|f| matches!(f.criterion, Criterion::BondEnergy(_)))
-    };
-    let mut kinds = spec.materials.iter().filter_map(works);
-    let first = kinds.next();
-    if kinds.any(|k| Some(k) != first) {
-        return unsupported(
-            "toughness[0]",
-            "one body breaks by the work on its bonds, another by their stretch: factors are of one of both",
-        );
     }
     for (n, t) in spec.damage.toughness.iter().enumerate() {
         if let ToughnessFactor::Temperature(rows) = &t.factor {
@@ -65,21 +51,19 @@ impl<const D: usize> System<D> {
         sets: &[(String, Vec<u32>)],
     ) -> Result<Option<ToughnessField>, BuildError> {
         match spec.damage.toughness.is_empty() {
-            true if !own_horizons::strengthen(spec) => return Ok(None),
+            true if self.constitutive.all().all(|m| m.strength.is_empty()) => return Ok(None),
             true => {}
             false => refused(spec)?,
         }
-        let mut base = vec![f64::INFINITY; self.body.len];
-        let works = self.constitutive.critical_works(spec.materials.len());
-        let (bears, of) = match works.is_empty() {
-            true => (Bears::Stretch, self.info.critical_stretch.clone()),
-            false => (Bears::Work, works.iter().map(|w| w.sqrt()).collect()),
-        };
+        let mut base = vec![(Bears::Stretch, f64::INFINITY); self.body.len];
         for &s in &self.body.slots {
-            let material = self.body.material_of(s as usize);
-            let own = self.body.horizon.get(s as usize).copied();
-            let by = own_horizons::strength(spec, material, self.info.horizon, own);
-            base[s as usize] = of.get(material).map_or(f64::INFINITY, |of| by * of);
+            let s = s as usize;
+            base[s] = self.constitutive.bears(s, self.body.material_of(s));
+        }
+        let works = |s: &u32| base[*s as usize].0 == Bears::Work;
+        if self.body.slots.iter().all(works) {
+            // slots without a point are as all others: no column of stretches
+            base.iter_mut().for_each(|b| b.0 = Bears::Work);
         }
         let mut factors = vec![];
         for (n, t) in spec.damage.toughness.iter().enumerate() {
@@ -87,7 +71,7 @@ impl<const D: usize> System<D> {
                 .map_err(|e| e.at(format!("toughness[{n}].set")))?;
             factors.push((slots, t.factor.clone()));
         }
-        let mut field = ToughnessField::new(bears, base, factors);
+        let mut field = ToughnessField::new(base, factors);
         let heat = self.temperatures(field.feels_heat());
         let at = |s: usize| heat.get(s).copied().unwrap_or(0.0);
         field.set(&self.body, 0.0, at).map_err(|unfit| {
@@ -136,11 +120,16 @@ impl<const D: usize> System<D> {
     /// Tell points what they bear, before bonds are tested: laws answer every test with what their materials bear. At the start of a run nothing
     /// breaks yet.
     pub(super) fn tell_toughness(&mut self) {
-        if let Some(field) = &self.toughness
-            && (field.at_once() || self.accounts.initial.is_some())
-        {
-            self.interaction
-                .write_column(&self.body, field.column(), field.values());
+        let Some(field) = &self.toughness else {
+            return;
+        };
+        for bears in [Bears::Stretch, Bears::Work] {
+            let (column, at_once) = bears.column();
+            if let Some(values) = field.values(bears)
+                && (at_once || self.accounts.initial.is_some())
+            {
+                self.interaction.write_column(&self.body, column, &values);
+            }
         }
     }
 }

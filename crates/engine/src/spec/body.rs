@@ -1,6 +1,6 @@
 //! Where points come from, and named sets of them.
 
-use super::{FamilyChoice, Horizon, Influence};
+use super::{FamilyChoice, Horizon, Influence, SurfaceFactors};
 use crate::expression::Expression;
 use crate::space::lattice::LatticeKind;
 use crate::space::region::Region;
@@ -61,6 +61,10 @@ pub struct PieceSpec {
     pub horizon: Option<Horizon>,
     pub influence: Option<Influence>,
     pub family: Option<FamilyChoice>,
+    /// [`BondsSpec::own_horizon`](super::BondsSpec::own_horizon) of its points.
+    pub own_horizon: Option<Expression>,
+    /// [`BondsSpec::surface`](super::BondsSpec::surface) of this body.
+    pub surface: Option<SurfaceFactors>,
 }
 
 impl PieceSpec {
@@ -73,11 +77,21 @@ impl PieceSpec {
             horizon: None,
             influence: None,
             family: None,
+            own_horizon: None,
+            surface: None,
         }
     }
 }
 
 impl BodySpec {
+    /// The bodies that it is made of; none: it is one.
+    pub fn pieces(&self) -> &[PieceSpec] {
+        match self {
+            BodySpec::Several(pieces) => pieces,
+            BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => &[],
+        }
+    }
+
     /// Cell edge or typical distance of points, where the spec says it.
     pub fn spacing(&self) -> Option<f64> {
         match self {

@@ -115,18 +115,18 @@ impl PartialEq for Formula {
 impl Eq for Formula {}
 
 impl Influence {
-    /// Does it depend on the direction of the bond?
-    pub fn is_directed(self) -> bool {
-        matches!(self, Influence::Formula(f) if f.is_directed())
-    }
-
-    /// Does it depend on the horizon?
+    /// Is it another one at another horizon?
     pub fn knows_horizon(self) -> bool {
         match self {
             Influence::Constant | Influence::Inverse => false,
             Influence::Conical | Influence::Gaussian | Influence::CubicSpline => true,
-            Influence::Formula(f) => f.knows_horizon(),
+            Influence::Formula(formula) => formula.knows_horizon(),
         }
+    }
+
+    /// Does it depend on the direction of the bond?
+    pub fn is_directed(self) -> bool {
+        matches!(self, Influence::Formula(f) if f.is_directed())
     }
 
     /// Those with a name.

@@ -39,6 +39,15 @@ pub enum AnyLinearBody {
 }
 
 impl AnyLinearBody {
+    /// Does it say where loads act, or which masses couple points?
+    pub fn is_coupled(&self) -> bool {
+        match self {
+            Self::One(b) => b.carriers.is_some() || b.mass.is_some(),
+            Self::Two(b) => b.carriers.is_some() || b.mass.is_some(),
+            Self::Three(b) => b.carriers.is_some() || b.mass.is_some(),
+        }
+    }
+
     /// `None`: a dimension that there is not.
     pub fn new<const D: usize>(body: LinearBody<D>) -> Option<Self> {
         let mut body: Box<dyn Any> = Box::new(body);

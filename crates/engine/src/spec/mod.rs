@@ -141,6 +141,23 @@ impl Spec {
         spec
     }
 
+    /// What it says of one of its bodies alone, whose materials are among all of them.
+    pub fn alone(&self, piece: &PieceSpec) -> Spec {
+        let mut own = Spec {
+            body: piece.body.clone(),
+            ..self.clone()
+        };
+        let bonds = &mut own.bonds;
+        bonds.horizon = piece.horizon.unwrap_or(bonds.horizon);
+        bonds.influence = piece.influence.unwrap_or(bonds.influence);
+        bonds.family = piece.family.unwrap_or(bonds.family);
+        bonds.surface.clone_from(&piece.surface);
+        if let Some(own) = &piece.own_horizon {
+            bonds.own_horizon = Some(own.clone());
+        }
+        own
+    }
+
     /// The interatomic potential, where the materials are atoms; of several kinds that of the first.
     pub fn potential(&self) -> Option<&PotentialSpec> {
         self.materials.iter().find_map(|m| m.law.potential())

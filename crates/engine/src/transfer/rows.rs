@@ -37,8 +37,8 @@ pub struct Conduction<'a, const D: usize> {
 pub struct Surface<'a, const D: usize> {
     /// Factor of the conductance of the bond from a slot to another, that way.
     pub factor: &'a dyn Fn(usize, usize, &[f64; D]) -> f64,
-    /// `Σ ω ν |ξ|² V` of a full family, by the slot of a point.
-    pub moment: &'a dyn Fn(usize) -> f64,
+    /// `Σ ω ν |ξ|² V` of a full family, by the slot of a point; `None`: of one in a body that ends otherwise.
+    pub moment: &'a dyn Fn(usize) -> Option<f64>,
 }
 
 impl Rows {
@@ -108,8 +108,10 @@ impl Rows {
             for slot in &body.slots {
                 let row = place(*slot as usize);
                 let part = &mut rows.part[rows.start[row]..rows.start[row + 1]];
-                let full = (surface.moment)(*slot as usize) / part.iter().sum::<f64>();
-                part.iter_mut().for_each(|p| *p *= full);
+                if let Some(moment) = (surface.moment)(*slot as usize) {
+                    let full = moment / part.iter().sum::<f64>();
+                    part.iter_mut().for_each(|p| *p *= full);
+                }
             }
         }
         rows.conduct(body, interaction, of.place);

@@ -364,6 +364,77 @@ fn molecules_of_several_kinds_and_potentials() {
     consistent("molecules", &spec);
 }
 
+/// The work on a bond is that of all potentials between its ends: parts of one break what the whole of it breaks, also where each part knows some
+/// pairs of kinds alone.
+#[test]
+fn bonds_of_several_potentials_break_by_the_work_of_all() {
+    let whole = |part: f64| smooth(lj(part, 1.0, 1.7), 1.7);
+    let nothing = PotentialSpec::of(NoPotential);
+    let halves = ["x + y < 4", "x + y >= 4"];
+    let spec = |own: &[PotentialSpec], more: Vec<ActingSpec>, energy: f64| {
+        let mut spec = mixed(own, more, None);
+        spec.space.periodic = [None; 3];
+        let high = [5.9, 4.8, 3.7];
+        let block = Region::Block {
+            low: [-0.1; 3],
+            high,
+        };
+        spec.body = BodySpec::lattice(LatticeKind::Cubic, 1.1, block);
+        for (set, text) in spec.sets.iter_mut().zip(halves) {
+            set.members = match own.len() {
+                1 => Members::Where(Expression::parse("x > -1", &[]).unwrap()),
+                _ => Members::Where(Expression::parse(text, &[]).unwrap()),
+            };
+        }
+        for m in &mut spec.materials {
+            m.density = 1.0;
+            m.fracture = Some(FractureSpec::new(Criterion::BondEnergy(energy)));
+        }
+        spec.bonds.horizon = Horizon::Length(1.7);
+        spec.bonds.family = FamilyChoice::Reference;
+        spec.loading.initial = vec![InitialSpec {
+            set: "all".into(),
+            displacement: [None, None, None],
+            velocity: ["1.5*(x - 2.7)", "0.3*sin(y)", "0.2*cos(3*x)"]
+                .map(|v| Some(Expression::parse(v, &[]).unwrap())),
+        }];
+        spec
+    };
+    let run = |spec: &Spec| {
+        let mut sim = started(spec);
+        for _ in 0..300 {
+            sim.step().unwrap();
+        }
+        (sim.broken(), sim.displacements(), sim.info().directed_bonds)
+    };
+    let energy = 0.7;
+    let (broken, u, bonds) = run(&spec(&[whole(1.0)], vec![], energy));
+    assert!(broken > 0);
+    let parts = [
+        spec(&[whole(0.6)], vec![between(0, 0, whole(0.4))], energy),
+        spec(
+            &[whole(0.7), nothing],
+            vec![
+                between(0, 0, whole(0.3)),
+                between(0, 1, whole(1.0)),
+                between(1, 1, whole(0.25)),
+                between(1, 1, whole(0.75)),
+            ],
+            energy,
+        ),
+    ];
+    for spec in &parts {
+        let (found, v, directed) = run(spec);
+        assert_eq!((found, directed), (broken, bonds));
+        for (a, b) in u.iter().flatten().zip(v.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+    }
+    // a part that breaks by its own work alone would break later
+    let (fewer, ..) = run(&spec(&[whole(1.0)], vec![], 1e3 * energy));
+    assert_eq!(fewer, 0);
+}
+
 /// Two elements whose densities depend on both ends, as eam/fs has them.
 fn tables() -> [TableSpec; 2] {
     let (n, cutoff) = (600, 2.1);

@@ -172,6 +172,7 @@ fn solids_as_typed_know_directions_and_horizons_of_points() {
                 match own {
                     true => {
                         spec.bonds.family = FamilyChoice::List;
+                        spec.bonds.volume_scaling = true;
                         spec.bonds.own_horizon = Some(e("2 + 0.1*x"));
                     }
                     false => spec.bonds.influence = formula,

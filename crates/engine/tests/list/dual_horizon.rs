@@ -92,17 +92,82 @@ fn alike_horizons_are_those_of_the_body() {
         let laws = pmb.iter().cloned().chain(of_families(case.0.len()));
         laws.map(move |law| (case, law)).collect::<Vec<_>>()
     });
-    for ((size, horizon, own), law) in each {
-        let mut one = started(&with_law(solid(size, horizon, None), &law));
-        let mut own = started(&with_law(solid(size, horizon, Some(own)), &law));
+    let each = each.flat_map(|case| influences().map(move |influence| (case.clone(), influence)));
+    for (((size, horizon, own), law), influence) in each {
+        let of = |own: Option<&str>| {
+            let mut spec = with_law(solid(size, horizon, own), &law);
+            spec.bonds.influence = influence;
+            started(&spec)
+        };
+        let (mut one, mut own) = (of(None), of(Some(own)));
         assert_eq!(one.info().directed_bonds, own.info().directed_bonds);
         let u = bent(one.as_mut());
         let (f, g) = (one.forces_under(&u), own.forces_under(&u));
         let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
         for (f, g) in f.iter().zip(&g) {
             for a in 0..3 {
-                assert!((f[a] - g[a]).abs() < 1e-12 * most, "{law:?}: {f:?} {g:?}");
+                assert!(
+                    (f[a] - g[a]).abs() < 1e-12 * most,
+                    "{law:?} {influence:?}: {f:?} {g:?}"
+                );
             }
+        }
+    }
+}
+
+/// Words, and expressions of the length, of the horizon and of the direction.
+fn influences() -> impl Iterator<Item = Influence> + Clone {
+    let written = |e: &str| Influence::Formula(Formula::parse(e, &[]).unwrap());
+    let all = [
+        written("exp(-r/delta)"),
+        written("(1 + 0.4*xi_x/r)*(1.2 - r/delta)"),
+        written("exp(-r/3)"),
+    ];
+    Influence::ALL.into_iter().chain(all)
+}
+
+/// The force on every point of a line by `Σ_j ½ (c_i ω_i ν_i + c_j ω_j ν_j) s sign ξ`, with `c = 2E/∫ω|ξ|dξ` at the horizon of each end.
+#[test]
+fn both_ends_of_a_bond_weigh_it_by_their_own_horizon() {
+    // ∫ω|ξ|dξ over the segment, and ω within the horizon
+    type Closed = (&'static str, fn(f64) -> f64, fn(f64, f64) -> f64);
+    let cases: [Closed; 4] = [
+        ("1", |d| d * d, |_, _| 1.0),
+        ("1 - r/delta", |d| d * d / 3.0, |r, d| 1.0 - r.min(d) / d),
+        ("1/r", |d| 2.0 * d, |r, _| 1.0 / r),
+        (
+            "exp(-r/delta)",
+            |d| 2.0 * d * d * (1.0 - 2.0 * (-1.0f64).exp()),
+            |r, d| (-r.min(d) / d).exp(),
+        ),
+    ];
+    for (influence, first, omega) in cases {
+        let mut spec = solid(&[20.0], 3.6, Some(GRADED));
+        spec.bonds.influence = Influence::Formula(Formula::parse(influence, &[]).unwrap());
+        let mut sim = started(&spec);
+        let x: Vec<f64> = sim.vectors("reference").iter().map(|x| x[0]).collect();
+        let u = bent(sim.as_mut());
+        let f = sim.forces_under(&u);
+        let most = f.iter().fold(0.0f64, |m, f| m.max(f[0].abs()));
+        let horizon = |x: f64| 2.05 + 1.5 * ((x - 3.0) / 6.0).clamp(0.0, 1.0);
+        for (i, found) in f.iter().map(|f| f[0]).enumerate() {
+            let mut exact = 0.0;
+            for j in (0..x.len()).filter(|j| *j != i) {
+                let (xi, eta) = (x[j] - x[i], u[j][0] - u[i][0]);
+                let r = xi.abs();
+                let half = |at: f64| {
+                    let d = horizon(at);
+                    let nu = (0.5 + d - r).clamp(0.0, 1.0);
+                    2.0 / first(d) * omega(r, d) * nu
+                };
+                let stretch = ((xi + eta).abs() - r) / r;
+                exact += 0.5 * (half(x[i]) + half(x[j])) * stretch * (xi + eta).signum();
+            }
+            assert!(
+                (found - exact).abs() < 1e-12 * most,
+                "{influence} at {}: {found:e} {exact:e}",
+                x[i]
+            );
         }
     }
 }
@@ -203,9 +268,12 @@ fn has_an_equilibrium(law: &LawSpec) {
 /// A point sees a uniform strain as it is, whatever its own horizon and those around it: its own family measures it.
 #[test]
 fn every_point_knows_the_dilatation_of_a_uniform_strain() {
-    for size in [&[20.0][..], &[12.0, 8.0], &[12.0, 5.0, 5.0]] {
+    let sizes = [&[20.0][..], &[12.0, 8.0], &[12.0, 5.0, 5.0]].into_iter();
+    for (size, influence) in sizes.flat_map(|size| influences().map(move |i| (size, i))) {
         let law = &of_families(size.len())[0];
-        let mut sim = started(&with_law(solid(size, 3.6, Some(GRADED)), law));
+        let mut spec = with_law(solid(size, 3.6, Some(GRADED)), law);
+        spec.bonds.influence = influence;
+        let mut sim = started(&spec);
         let x = sim.vectors("reference");
         let d = size.len();
         let uniform: Vec<[f64; 3]> = x
@@ -288,10 +356,6 @@ fn what_knows_one_horizon_is_refused() {
     assert_eq!(
         said(&|s| s.bonds.calibration = Calibration::Discrete),
         "calibration"
-    );
-    assert_eq!(
-        said(&|s| s.bonds.influence = Influence::Conical),
-        "influence"
     );
     let moduli = Parameters::numbers(&[("young", 1.0), ("poisson", 0.3)]);
     assert_eq!(
@@ -582,15 +646,19 @@ fn a_fracture_energy_is_one_of_every_horizon() {
         poisson: 0.3,
     });
     let energy = |energy: f64| Some(FractureSpec::new(Criterion::Energy(energy)));
-    for (size, law) in [
-        (&[24.0][..], &pmb),
-        (&[24.0, 6.0], &pmb),
-        (&[24.0, 6.0], &lps),
+    let falls = Influence::Formula(Formula::parse("exp(-r/2)", &[]).unwrap());
+    for (size, law, influence) in [
+        (&[24.0][..], &pmb, Influence::Constant),
+        (&[24.0, 6.0], &pmb, Influence::Constant),
+        (&[24.0, 6.0], &lps, Influence::Constant),
+        (&[24.0], &pmb, Influence::Conical),
+        (&[24.0], &pmb, falls),
     ] {
         let of = |horizon: f64, own: Option<&str>, g: f64| {
             let mut spec = solid(size, horizon, own);
             spec.materials[0].law = law.clone();
             spec.materials[0].fracture = energy(g);
+            spec.bonds.influence = influence;
             spec
         };
         let critical = |horizon: f64, g: f64| {
@@ -601,7 +669,9 @@ fn a_fracture_energy_is_one_of_every_horizon() {
         let g = (0.02 / critical(4.6, 1.0)).powi(2);
         let [first, second] = [4.6, 2.3].map(|horizon| critical(horizon, g));
         assert!((first - 0.02).abs() < 1e-9, "{first}");
-        assert!((second / first - 2f64.sqrt()).abs() < 1e-6, "{second}");
+        // a function with a length of its own has another law
+        let root = (second / first - 2f64.sqrt()).abs() < 1e-6;
+        assert_eq!(root, influence != falls, "{second}");
         let mut spec = of(4.6, Some("x < 12 ? 2.3 : 4.6"), g);
         let rate = 1e-3;
         let across = text("0").filter(|_| size.len() > 1);
@@ -756,6 +826,25 @@ fn bonds_live_as_long_at_every_horizon() {
                     "{longest}: {a} {b}"
                 );
             }
+        }
+    }
+}
+
+/// Bonds of laws that remember weigh as those of pmb do, by the influence function at the horizon of each end.
+#[test]
+fn laws_of_bonds_weigh_as_pmb_does() {
+    for influence in influences() {
+        let mut pmb = solid(&[12.0, 8.0], 3.6, Some(GRADED));
+        pmb.bonds.influence = influence;
+        let mut general = pmb.clone();
+        general.materials[0].law =
+            LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 1.0)]));
+        let (mut one, mut other) = (started(&pmb), started(&general));
+        let u = bent(one.as_mut());
+        let (f, g) = (one.forces_under(&u), other.forces_under(&u));
+        let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        for (f, g) in f.iter().flatten().zip(g.iter().flatten()) {
+            assert!((f - g).abs() < 1e-12 * most, "{influence:?}: {f:e} {g:e}");
         }
     }
 }

@@ -39,6 +39,56 @@ fn a_chain_bears_the_critical_stretch_of_all_its_springs() {
     assert_eq!(sim.ledger().unwrap().released, 0.0);
 }
 
+/// A chain of springs of the length 1 and the section 1: `E = c`, the stress of its points `E s`, of those at its ends half of that, and a bond has the
+/// mean of both ends. So the load is what the inner springs bear, all of which let go together, and then nothing holds any more.
+#[test]
+fn a_chain_bears_the_stress_of_its_inner_springs() {
+    let mut spec = block(
+        [20.0, 0.0, 0.0],
+        1,
+        LawSpec::Pmb(PmbStiffness::Micromodulus(2.0)),
+    );
+    hold(&mut spec, "low", [number(0.0), None, None]);
+    hold(&mut spec, "high", [text("3*t"), None, None]);
+    breaking(&mut spec, 0.01, 1);
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::VonMises(0.01)));
+    let mut sim = solved(&spec);
+    // 20 springs, 3 at t = 1
+    assert!((sim.time() - 0.1 / 3.0).abs() < 1e-13, "{}", sim.time());
+    let l = sim.ledger().unwrap();
+    assert!((l.strain - 20.0 * 0.25e-4).abs() < 1e-14, "{l:?}");
+    assert!(l.residual().abs() < 1e-15, "{l:?}");
+    assert_eq!(sim.broken(), 0);
+    let error = sim.step().unwrap_err().to_string();
+    assert!(error.contains("nothing is left to break"), "{error}");
+}
+
+/// The energy closes to round-off where bonds break by stress, and the first equilibrium has twice the load where they bear twice as much.
+#[test]
+fn a_bar_of_bonds_that_break_by_stress_closes_its_ledger() {
+    let run = |limit: f64| {
+        let mut spec = slender();
+        spec.space.plane = Plane::Strain;
+        spec.materials[0].fracture = Some(FractureSpec::new(Criterion::VonMises(limit)));
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        let mut times = vec![];
+        for n in 1..=8 {
+            sim.step().unwrap();
+            let l = sim.ledger().unwrap();
+            let off = l.residual().abs() / l.work_conditions.abs().max(l.strain);
+            assert!(off < 1e-9, "{n}: {off:e} {l:?}");
+            assert_eq!(sim.broken() > 0, n > 1);
+            times.push(sim.time());
+        }
+        times
+    };
+    let (one, two) = (run(0.01), run(0.02));
+    for (a, b) in one.iter().zip(&two) {
+        assert!((b / a - 2.0).abs() < 1e-9, "{one:?} {two:?}");
+    }
+}
+
 /// A bar five times as long as it is wide, with a notch, pulled by t.
 pub(super) fn slender() -> Spec {
     let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));

@@ -44,6 +44,19 @@ pub trait Held<const D: usize>: Interaction<D> {
     /// `T_i − T_j` (force) of each bond, towards its partner where it pulls, by place: `8 (first[tile] + line) + lane`; 0 where nobody is. Of the
     /// displacements of the last [`forces`](Interaction::forces).
     fn pulls(&self, first: &[u32], out: &mut [[f64; D]]);
+
+    /// The bond at a place of its list was taken out, or put back.
+    fn follow(&mut self, _place: usize, _whole: bool) {}
+}
+
+/// First line of each tile of a list, and its lines.
+pub(super) fn lines_of<const D: usize>(list: &NearList<D>) -> (Vec<u32>, Vec<[u32; TILE]>) {
+    let (mut first, mut family) = (vec![], vec![]);
+    for (_, lines) in (0..list.blocks()).flat_map(|b| list.tiles(b)) {
+        first.push(family.len() as u32);
+        family.extend_from_slice(lines);
+    }
+    (first, family)
 }
 
 /// Such a potential with bonds that break.
@@ -102,11 +115,7 @@ impl<const D: usize> Breaking<D> {
     /// `inner` holds the families of the reference of this body, which is at rest.
     pub fn new(body: &Body<D>, mut inner: Box<dyn Held<D>>, breaks: Breaks, simd: Simd) -> Self {
         let list = inner.list();
-        let (mut first, mut family) = (vec![], vec![]);
-        for (_, lines) in (0..list.blocks()).flat_map(|b| list.tiles(b)) {
-            first.push(family.len() as u32);
-            family.extend_from_slice(lines);
-        }
+        let (first, family) = lines_of(list);
         let mut own = vec![u32::MAX; body.len];
         for t in 0..first.len() {
             for (l, slot) in list.slots(t).iter().enumerate() {
@@ -257,6 +266,7 @@ impl<const D: usize> Breaking<D> {
                 let entry = self.entry(end);
                 torn += u64::from(*entry != nowhere);
                 *entry = nowhere;
+                self.inner.follow(end, false);
             }
         }
         torn
@@ -453,6 +463,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
                 whole += u64::from(!self.is_whole(end));
                 let named = self.family[end / TILE][end % TILE];
                 *self.entry(end) = named;
+                self.inner.follow(end, true);
             }
         }
         Some(whole)
@@ -562,6 +573,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
                     let named = self.family[place / TILE][place % TILE];
                     let nowhere = self.inner.list().nowhere();
                     *self.entry(place) = if *whole != 0.0 { named } else { nowhere };
+                    self.inner.follow(place, *whole != 0.0);
                 }
             }
             (history::DONE, Some(work)) => {

@@ -11,6 +11,7 @@ pub mod fixed;
 mod line;
 pub mod smoothed;
 pub mod together;
+mod union;
 
 use super::tangent::curvature;
 use super::{Fault, Tally};

@@ -1,6 +1,10 @@
 //! A sum of potentials on one body of atoms, each with the atoms that it acts on.
 
+use super::breaking::Held;
+use super::union::Union;
 use crate::body::{Body, Field, FieldView, FieldViewMut, Identity, view_mut, zeros};
+use crate::execute::simd::Simd;
+use crate::family::neighbours::near::NearList;
 use crate::interaction::history::damage;
 use crate::interaction::{
     BondForce, BondStatus, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
@@ -9,9 +13,11 @@ use crate::spec::CrackKind;
 use crate::state::Archive;
 
 /// Potentials whose energies are added.
-pub struct Together<const D: usize> {
+pub struct Together<const D: usize, P: Interaction<D> + ?Sized = dyn Interaction<D>> {
     body: Identity,
-    parts: Vec<Box<dyn Interaction<D>>>,
+    parts: Vec<Box<P>>,
+    /// The bonds of all, where they are held and break together.
+    union: Option<Union<D>>,
     /// Forces of one of them.
     own: Field<D>,
     /// Partners of every slot in the reference.
@@ -20,12 +26,53 @@ pub struct Together<const D: usize> {
     broken: u64,
 }
 
-impl<const D: usize> Together<D> {
+impl<const D: usize> Together<D, dyn Held<D>> {
+    /// Of potentials that hold families of this `horizon` (length), whose bonds break by the work of all.
+    pub fn of_reference(
+        body: &Body<D>,
+        parts: Vec<Box<dyn Held<D>>>,
+        horizon: f64,
+        simd: Simd,
+    ) -> Self {
+        let union = Some(Union::new(body, &parts, horizon, simd));
+        Together {
+            union,
+            ..Together::new(body, parts)
+        }
+    }
+
+    fn union(&self) -> &Union<D> {
+        self.union.as_ref().expect("made of held families")
+    }
+}
+
+impl<const D: usize> Held<D> for Together<D, dyn Held<D>> {
+    fn list(&self) -> &NearList<D> {
+        &self.union().list
+    }
+
+    fn list_mut(&mut self) -> &mut NearList<D> {
+        &mut self.union.as_mut().expect("made of held families").list
+    }
+
+    fn pulls(&self, _: &[u32], out: &mut [[f64; D]]) {
+        self.union().pulls(&self.parts, out);
+    }
+
+    fn follow(&mut self, place: usize, whole: bool) {
+        if let Some(union) = &self.union {
+            union.follow(&mut self.parts, place, whole);
+        }
+    }
+}
+
+impl<const D: usize, P: Interaction<D> + ?Sized> Together<D, P> {
     /// All are made for the body.
-    pub fn new(body: &Body<D>, parts: Vec<Box<dyn Interaction<D>>>) -> Self {
+    pub fn new(body: &Body<D>, parts: Vec<Box<P>>) -> Self {
         let mut made = Together {
             body: body.identity,
             parts,
+            union: None,
             own: zeros(body.len),
             family: vec![],
             broken: 0,
@@ -55,7 +102,7 @@ fn add(to: &mut [f64], of: &[f64]) {
     to.iter_mut().zip(of).for_each(|(a, b)| *a += b);
 }
 
-impl<const D: usize> Interaction<D> for Together<D> {
+impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, P> {
     fn made_for(&self) -> Identity {
         self.body
     }
@@ -73,6 +120,9 @@ impl<const D: usize> Interaction<D> for Together<D> {
         mut seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         let mut tally = Tally::default();
+        if let Some(union) = &mut self.union {
+            union.list.update(body, u, union.simd);
+        }
         if let Some(seen) = seen.as_deref_mut() {
             seen.zeros(body.len);
         }
@@ -247,10 +297,14 @@ impl<const D: usize> Interaction<D> for Together<D> {
             archive.within("part", |archive| part.archive(body, archive));
         }
         archive.one("broken", &mut self.broken);
+        if let Some(union) = &mut self.union {
+            archive.within("union", |archive| union.list.archive(body.len, archive));
+        }
     }
 
     fn bytes(&self) -> usize {
         let own: usize = self.own.iter().map(|c| 8 * c.len()).sum();
-        own + 2 * self.family.len() + self.parts.iter().map(|p| p.bytes()).sum::<usize>()
+        let union = self.union.as_ref().map_or(0, Union::bytes);
+        own + union + 2 * self.family.len() + self.parts.iter().map(|p| p.bytes()).sum::<usize>()
     }
 }

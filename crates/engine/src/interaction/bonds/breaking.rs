@@ -334,15 +334,12 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             return;
         }
         let family = &self.family;
-        for group in (0..family.groups()).filter(|g| all || self.torn[*g] != 0) {
-            for l in (0..TILE).filter(|l| family.is_point(group, *l)) {
-                let slot = family.rows(group).slot(l);
-                let material = body.material_of(slot);
-                let bits = family.bits(&self.alive, group);
-                let mut of = 0.0;
-                family.kin(group, bits, l, &mut |kin| of = law.stiffness(material, kin));
-                now[slot] = self.integrity_at(slot) * of;
-            }
+        for (group, l, slot) in family.points().filter(|p| all || self.torn[p.0] != 0) {
+            let material = body.material_of(slot);
+            let bits = family.bits(&self.alive, group);
+            let mut of = 0.0;
+            family.kin(group, bits, l, &mut |kin| of = law.stiffness(material, kin));
+            now[slot] = self.integrity_at(slot) * of;
         }
         let stiffened = |(whole, now): (&f64, &f64)| if *whole > 0.0 { now / whole } else { 1.0 };
         self.stiffened = whole.iter().zip(&now).map(stiffened).fold(1.0, f64::max);
@@ -378,17 +375,13 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         };
         let family = &self.family;
         let mut numbers = vec![0.0; count];
-        for group in 0..family.groups() {
-            let bits = family.bits(bits, group);
-            for l in (0..TILE).filter(|l| family.is_point(group, *l)) {
-                let slot = family.rows(group).slot(l);
-                let material = body.material_of(slot);
-                family.kin(group, bits, l, &mut |kin| {
-                    law.form(material, kin, &mut numbers)
-                });
-                for (n, x) in numbers.iter().enumerate() {
-                    self.form.set(n, slot, *x);
-                }
+        for (group, l, slot) in family.points() {
+            let (material, bits) = (body.material_of(slot), family.bits(bits, group));
+            family.kin(group, bits, l, &mut |kin| {
+                law.form(material, kin, &mut numbers)
+            });
+            for (n, x) in numbers.iter().enumerate() {
+                self.form.set(n, slot, *x);
             }
         }
     }

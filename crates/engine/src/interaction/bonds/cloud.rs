@@ -58,13 +58,14 @@ impl Slots for Listed {
 pub struct CloudFamily<const D: usize> {
     list: HorizonList,
     weight: BondWeight,
-    /// `[slots]` `½ + δ/h` of points with horizons of their own, and 1/h; empty: they have one.
+    /// `[slots]` δ of points with horizons of their own; empty: they have one.
     own: Vec<f64>,
     /// The same horizons over that of the body; empty: they have one.
     reach: Vec<f64>,
+    /// 1/h
     rate: f64,
-    /// δ/h of the longest horizon, where points have their own and bonds the stiffness.
-    stiff: Option<f64>,
+    /// `[slots]`: micromodulus over that at the longest horizon, where points have their own and bonds the stiffness; else empty.
+    stiff: Vec<f64>,
     /// `[slots][4]`: x, y, z, volume.
     reference: Vec<f64>,
     /// `[lines][8]`: place of the bond that leads back; empty: nobody asks.
@@ -90,7 +91,9 @@ impl<const D: usize> CloudFamily<D> {
             record[3] = body.volume.at(slot);
         }
         let rate = body.spacing.recip();
-        let own = body.horizon.iter().map(|d| 0.5 + d * rate).collect();
+        // slots without a point have one, too
+        let of = |d: &f64| if *d > 0.0 { *d } else { horizon };
+        let own = body.horizon.iter().map(of).collect();
         let back = if remembers { ways_back(&list) } else { vec![] };
         CloudFamily {
             list,
@@ -98,7 +101,7 @@ impl<const D: usize> CloudFamily<D> {
             own,
             reach: body.horizon.iter().map(|d| d / horizon).collect(),
             rate,
-            stiff: None,
+            stiff: vec![],
             reference,
             back,
             period: body.period.map(|p| p.unwrap_or(0.0)),
@@ -107,38 +110,16 @@ impl<const D: usize> CloudFamily<D> {
         }
     }
 
-    /// Of bonds that make the stiffness, whose micromodulus at the longest horizon is that of the law: of points with horizons of their own it
-    /// goes as `δ^−(D+1)`, and a bond has the mean of its ends.
-    pub fn of_bonds(self, longest: f64) -> Self {
-        CloudFamily {
-            stiff: (!self.own.is_empty()).then_some(longest * self.rate),
-            ..self
-        }
+    /// Of bonds that make the stiffness, which have the mean of their ends: micromoduli over that of the law, by slot.
+    pub fn of_bonds(self, stiff: Vec<f64>) -> Self {
+        CloudFamily { stiff, ..self }
     }
 
     /// What part of a cell at this distance is within a horizon.
     #[inline(always)]
-    fn part<L: Lane>(&self, reach: L, length: L) -> L {
+    fn part<L: Lane>(&self, horizon: L, length: L) -> L {
+        let reach = L::splat(0.5) + horizon * L::splat(self.rate);
         part_within(length, reach, self.rate)
-    }
-
-    /// The same of both ends of a bond.
-    #[inline(always)]
-    fn parts<L: Lane>(&self, reach: [L; 2], length: L) -> [L; 2] {
-        let [mut here, mut there] = reach.map(|reach| self.part(reach, length));
-        if let Some(longest) = self.stiff {
-            let stiffer = |reach: L| {
-                // padding has no horizon
-                let own = (reach - L::splat(0.5)).max(L::splat(1e-3));
-                let ratio = L::splat(longest).div(own);
-                (0..D).fold(ratio, |all, _| all * ratio)
-            };
-            here = here * stiffer(reach[0]);
-            there = there * stiffer(reach[1]);
-            here = L::splat(0.5) * (here + there);
-            there = here;
-        }
-        [here, there]
     }
 
     fn line(&self, group: usize, k: usize) -> usize {
@@ -166,8 +147,8 @@ fn ways_back(list: &HorizonList) -> Vec<u32> {
 
 impl<const D: usize> Family<D> for CloudFamily<D> {
     type Slots = Listed;
-    /// x, y, z, volume, `½ + δ/h` of horizons of points
-    type Place<L: Lane> = [L; 5];
+    /// x, y, z, volume, δ of points with horizons of their own, and their stiffness
+    type Place<L: Lane> = [L; 6];
 
     fn groups(&self) -> usize {
         self.list.slices()
@@ -199,15 +180,19 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
     }
 
     #[inline(always)]
-    unsafe fn place<L: Lane>(&self, rows: Listed) -> [L; 5] {
+    unsafe fn place<L: Lane>(&self, rows: Listed) -> [L; 6] {
         // SAFETY: a record per slot, and a number where there are any
         unsafe {
             let [x, y, z, volume] = L::gather4(self.reference.as_ptr(), rows.0);
-            let reach = match self.own.is_empty() {
+            let own = match self.own.is_empty() {
                 true => L::splat(0.0),
                 false => rows.one::<L>(self.own.as_ptr()),
             };
-            [x, y, z, volume, reach]
+            let stiff = match self.stiff.is_empty() {
+                true => L::splat(1.0),
+                false => rows.one::<L>(self.stiff.as_ptr()),
+            };
+            [x, y, z, volume, own, stiff]
         }
     }
     #[inline(always)]
@@ -215,7 +200,7 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         &self,
         _: usize,
         _: usize,
-        at: &[L; 5],
+        at: &[L; 6],
         ends: Listed,
         dead: L::Mask,
     ) -> Reference<L, D> {
@@ -234,14 +219,25 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         square = L::select(L::splat(0.0).lt(square), square, L::splat(1.0));
         let inv_length = lane::inv_sqrt(square);
         let length = square * inv_length;
-        let [mut omega, mut omega_back] = self.weight.influence(&xi, length, inv_length);
-        if !self.own.is_empty() {
-            // SAFETY: a number per slot
-            let there = unsafe { ends.one::<L>(self.own.as_ptr()) };
-            let [here, there] = self.parts([at[4], there], length);
-            omega = omega * here;
-            omega_back = omega_back * there;
-        }
+        let [omega, omega_back] = match self.own.is_empty() {
+            true => self.weight.influence(&xi, length, inv_length),
+            false => {
+                // SAFETY: a number per slot
+                let there = unsafe { ends.one::<L>(self.own.as_ptr()) };
+                let both = [at[4], there];
+                let [own, back] = (self.weight).influence_within(&xi, length, inv_length, both);
+                let own = own * self.part(at[4], length);
+                let back = back * self.part(there, length);
+                match self.stiff.is_empty() {
+                    true => [own, back],
+                    false => {
+                        // SAFETY: a number per slot
+                        let stiff = unsafe { ends.one::<L>(self.stiff.as_ptr()) };
+                        [L::splat(0.5) * (own * at[5] + back * stiff); 2]
+                    }
+                }
+            }
+        };
         Reference {
             xi,
             length,
@@ -309,7 +305,9 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
     }
 
     fn bytes(&self) -> usize {
-        self.list.bytes() + 8 * (self.reference.len() + 2 * self.own.len()) + 4 * self.back.len()
+        self.list.bytes()
+            + 8 * (self.reference.len() + 2 * self.own.len() + self.stiff.len())
+            + 4 * self.back.len()
     }
 }
 

@@ -152,6 +152,14 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
         ask(Kin::new(&each).within(self.reach(slot)).torn(torn));
     }
 
+    /// Points of the body, group by group: group, place in it, slot.
+    fn points(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        (0..self.groups()).flat_map(move |group| {
+            let places = (0..TILE).filter(move |l| self.is_point(group, *l));
+            places.map(move |l| (group, l, self.rows(group).slot(l)))
+        })
+    }
+
     /// Group and place in it of a slot; `None`: no point.
     fn find(&self, slot: usize) -> Option<(usize, usize)>;
     fn bytes(&self) -> usize;

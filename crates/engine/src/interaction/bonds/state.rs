@@ -7,7 +7,6 @@ use super::store::Store;
 use super::view::{BLOCK, BondView};
 use crate::body::{Body, Column, Field, FieldView, Identity, field};
 use crate::execute::blocks::{PerBlock, Seen, run_blocks};
-use crate::execute::lane::TILE;
 use crate::execute::simd::{Kernel, Simd};
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::{Repulsion, Tally, Toughness};
@@ -154,14 +153,10 @@ pub struct BondParts<'a, const D: usize, F> {
 fn all_whole<const D: usize, F: Family<D>>(family: &F) -> (Vec<u8>, u64) {
     let mut alive = vec![0u8; family.bytes_of_bits()];
     let mut directed = 0;
-    for group in 0..family.groups() {
-        for l in (0..TILE).filter(|l| family.is_point(group, *l)) {
-            for k in 0..family.bonds(group) {
-                if family.is_bond(group, k, l) {
-                    alive[family.byte(group, k)] |= 1 << l;
-                    directed += 1;
-                }
-            }
+    for (group, l, _) in family.points() {
+        for k in (0..family.bonds(group)).filter(|k| family.is_bond(group, *k, l)) {
+            alive[family.byte(group, k)] |= 1 << l;
+            directed += 1;
         }
     }
     (alive, directed)

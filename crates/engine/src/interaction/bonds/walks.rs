@@ -12,29 +12,19 @@ use crate::spec::CrackKind;
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {
     /// Every directed bond of the family that damage counts: group, bond, place.
-    fn each_counted(&self, visit: &mut dyn FnMut(usize, usize, usize)) {
-        for group in 0..self.family.groups() {
-            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
-                for k in 0..self.family.bonds(group) {
-                    if self.is_counted(group, k, l) {
-                        visit(group, k, l);
-                    }
-                }
-            }
-        }
+    fn counted(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        self.family.points().flat_map(move |(group, l, _)| {
+            let bonds = (0..self.family.bonds(group)).map(move |k| (group, k, l));
+            bonds.filter(|(group, k, l)| self.is_counted(*group, *k, *l))
+        })
     }
 
     /// Every directed bond that the family ever had, pre-cracks included: group, bond, place.
-    pub fn each_pair(&self, visit: &mut dyn FnMut(usize, usize, usize)) {
-        for group in 0..self.family.groups() {
-            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
-                for k in 0..self.family.bonds(group) {
-                    if self.family.is_bond(group, k, l) {
-                        visit(group, k, l);
-                    }
-                }
-            }
-        }
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        self.family.points().flat_map(move |(group, l, _)| {
+            let bonds = (0..self.family.bonds(group)).map(move |k| (group, k, l));
+            bonds.filter(|(group, k, l)| self.family.is_bond(*group, *k, *l))
+        })
     }
 
     pub fn is_whole(&self, group: usize, k: usize, l: usize) -> bool {
@@ -57,17 +47,11 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// Directed bonds of the reference family, in order of slots: group, bond and lane.
     pub fn directed(&self) -> impl Iterator<Item = (usize, usize, usize)> {
-        let mut rows = vec![];
-        for group in 0..self.family.groups() {
-            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
-                rows.push((self.family.rows(group).slot(l), group, l));
-            }
-        }
-        rows.sort_unstable();
-        rows.into_iter().flat_map(move |(_, group, l)| {
-            (0..self.family.bonds(group))
-                .filter(move |k| self.is_counted(group, *k, l))
-                .map(move |k| (group, k, l))
+        let mut points: Vec<_> = self.family.points().collect();
+        points.sort_unstable_by_key(|(_, _, slot)| *slot);
+        points.into_iter().flat_map(move |(group, l, _)| {
+            let bonds = (0..self.family.bonds(group)).map(move |k| (group, k, l));
+            bonds.filter(|(group, k, l)| self.is_counted(*group, *k, *l))
         })
     }
 
@@ -88,7 +72,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
     ) {
         let original = body.originals();
-        self.each_counted(&mut |group, k, l| {
+        for (group, k, l) in self.counted() {
             let i = self.family.rows(group).slot(l);
             let end = self.family.ends(group, k).slot(l);
             let j = original(end);
@@ -97,7 +81,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
                 let status = BondStatus::of(self.is_whole(group, k, l));
                 visit(i, j, self.family.bond(group, k, l).0, status);
             }
-        });
+        }
     }
 
     /// [`each_broken`](crate::interaction::Interaction::each_broken)
@@ -135,14 +119,14 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         let mut family = vec![0.0; body.len];
         let mut whole = vec![0.0; body.len];
         let original = body.originals();
-        self.each_counted(&mut |group, k, l| {
+        for (group, k, l) in self.counted() {
             let i = self.family.rows(group).slot(l);
             let volume = body.volume.at(original(self.family.ends(group, k).slot(l)));
             family[i] += volume;
             if self.is_whole(group, k, l) {
                 whole[i] += volume;
             }
-        });
+        }
         for (i, damage) in out.iter_mut().enumerate() {
             *damage = match family[i] > 0.0 {
                 true => 1.0 - whole[i] / family[i],
@@ -161,10 +145,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     ) -> u64 {
         let original = body.originals();
         let mut cut = vec![];
-        self.each_counted(&mut |group, k, l| {
-            if !self.is_whole(group, k, l) {
-                return;
-            }
+        for (group, k, l) in self.counted().filter(|b| self.is_whole(b.0, b.1, b.2)) {
             let (xi, _) = self.family.bond(group, k, l);
             let at = |slot: usize| -> [f64; D] {
                 let x = body.position(slot);
@@ -176,7 +157,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             if history::crossed(crosses, from, xi, Some(to)) {
                 cut.push((self.family.byte(group, k), 1u8 << l));
             }
-        });
+        }
         for (byte, bit) in &cut {
             self.alive[*byte] &= !bit;
             if kind == CrackKind::Absent {
@@ -215,9 +196,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     /// takes it so, else over that of the whole ones; and what part of it is whole, or how much.
     pub fn dilate(&self, out: &mut PointEnergiesMut) {
         let of_family = self.law.passes > 0 && !self.law.form_of_whole;
-        let points = (0..self.family.groups()).flat_map(|g| (0..TILE).map(move |l| (g, l)));
-        for (group, l) in points.filter(|(g, l)| self.family.is_point(*g, *l)) {
-            let i = self.family.rows(group).slot(l);
+        for (group, l, i) in self.family.points() {
             let whole = out.whole[i];
             let weight = if of_family {
                 let gone = |k: &usize| {

@@ -1,9 +1,8 @@
 //! Temperatures of laws that know one: those of the body, where that conducts heat.
 
-use super::family::{Family, Slots};
+use super::family::Family;
 use super::state::BondState;
 use crate::body::Body;
-use crate::execute::lane::TILE;
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {
     /// Points have these temperatures above those of reference, and their bonds where these remember one; false: the law knows none.
@@ -17,12 +16,9 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         if !self.law.gathers {
             return true;
         }
-        for group in 0..self.family.groups() {
-            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
-                let of_point = above[self.family.rows(group).slot(l)];
-                for k in 0..self.family.bonds(group) {
-                    self.memory[self.family.own(group, k, n, self.law.memory) + l] = of_point;
-                }
+        for (group, l, slot) in self.family.points() {
+            for k in 0..self.family.bonds(group) {
+                self.memory[self.family.own(group, k, n, self.law.memory) + l] = above[slot];
             }
         }
         self.fill_memory(body);
@@ -45,19 +41,16 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             }
             return;
         }
-        for group in 0..self.family.groups() {
-            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
-                let slot = self.family.rows(group).slot(l);
-                // of what they grew: bonds that are as warm as they were leave the last bit alone
-                let (mut grown, mut whole) = (0.0, 0.0);
-                for (k, _, omega, volume) in self.bonds_of(group, l) {
-                    let now = self.memory[self.family.own(group, k, n, self.law.memory) + l];
-                    grown += omega * volume * (now - above[slot]);
-                    whole += omega * volume;
-                }
-                if whole > 0.0 {
-                    above[slot] += self.integrity_at(slot) * grown / whole;
-                }
+        for (group, l, slot) in self.family.points() {
+            // of what they grew: bonds that are as warm as they were leave the last bit alone
+            let (mut grown, mut whole) = (0.0, 0.0);
+            for (k, _, omega, volume) in self.bonds_of(group, l) {
+                let now = self.memory[self.family.own(group, k, n, self.law.memory) + l];
+                grown += omega * volume * (now - above[slot]);
+                whole += omega * volume;
+            }
+            if whole > 0.0 {
+                above[slot] += self.integrity_at(slot) * grown / whole;
             }
         }
     }

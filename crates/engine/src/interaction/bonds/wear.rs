@@ -13,14 +13,14 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     fn near_cracks(&self, body: &Body<D>) -> Vec<bool> {
         let mut of = vec![[0.0f64; 2]; body.len];
         let original = body.originals();
-        self.each_pair(&mut |group, k, l| {
+        for (group, k, l) in self.pairs() {
             let i = self.family.rows(group).slot(l);
             let volume = body.volume.at(original(self.family.ends(group, k).slot(l)));
             of[i][0] += volume;
             if !self.is_whole(group, k, l) {
                 of[i][1] += volume;
             }
-        });
+        }
         let cracked = |i: usize| {
             let fatigue = self.criteria.fatigue[self.material_at(i)];
             let [all, lost] = of[i];
@@ -28,11 +28,11 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         };
         let mut near: Vec<bool> = (0..body.len).map(cracked).collect();
         let cracked = near.clone();
-        self.each_pair(&mut |group, k, l| {
+        for (group, k, l) in self.pairs() {
             let i = self.family.rows(group).slot(l);
             let j = original(self.family.ends(group, k).slot(l));
             near[i] = near[i] || cracked[j];
-        });
+        }
         near
     }
 
@@ -42,37 +42,9 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             return None;
         }
         let mut all = vec![];
-        self.each_wearing(body, u, load, &mut |_, bond| all.push(bond));
-        Some(all)
-    }
-
-    /// So many cycles of load pass with the greatest strains of now.
-    pub fn wear(&mut self, body: &Body<D>, u: FieldView<D>, load: &Cycles, passed: f64) {
-        if self.life.is_empty() {
-            return;
-        }
-        let mut all = vec![];
-        self.each_wearing(body, u, load, &mut |place, bond| all.push((place, bond)));
-        for (place, bond) in all {
-            let left = bond.life - passed * bond.rate;
-            self.life[place] = if left < SPENT { 0.0 } else { left };
-        }
-    }
-
-    /// Every directed bond that is whole, with its place among those that live.
-    fn each_wearing(
-        &self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        load: &Cycles,
-        visit: &mut dyn FnMut(usize, Wearing),
-    ) {
         let near = self.near_cracks(body);
         let original = body.originals();
-        self.each_pair(&mut |group, k, l| {
-            if !self.is_whole(group, k, l) {
-                return;
-            }
+        for (group, k, l) in self.pairs().filter(|b| self.is_whole(b.0, b.1, b.2)) {
             let [i, end] = [self.family.rows(group), self.family.ends(group, k)].map(|s| s.slot(l));
             let j = original(end);
             let r = self.family.plain(group, k, l);
@@ -89,12 +61,25 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
                 let fatigue = self.criteria.fatigue[self.material_at(slot)];
                 fatigue.map_or(0.0, |f| Wearing::rate(&f, range, near[i] || near[j]))
             };
-            let place = self.family.own(group, k, 0, 1) + l;
-            let bond = Wearing {
-                life: self.life[place],
+            all.push(Wearing {
+                life: self.life[self.family.own(group, k, 0, 1) + l],
                 rate: 0.5 * (of(i) + of(j)),
-            };
-            visit(place, bond);
-        });
+            });
+        }
+        Some(all)
+    }
+
+    /// So many cycles wear whole bonds, of which these are the first.
+    pub fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
+        if self.life.is_empty() {
+            return;
+        }
+        let whole = self.pairs().filter(|b| self.is_whole(b.0, b.1, b.2));
+        let places = whole.map(|(group, k, l)| self.family.own(group, k, 0, 1) + l);
+        let places: Vec<usize> = places.collect();
+        for (place, bond) in places.into_iter().zip(bonds) {
+            let left = bond.life - cycles * bond.rate;
+            self.life[place] = if left < SPENT { 0.0 } else { left };
+        }
     }
 }

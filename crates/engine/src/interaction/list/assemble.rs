@@ -78,6 +78,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             simd,
             weight,
             alive: list.present.clone(),
+            scale: vec![],
             list,
             reference,
             moved: vec![0.0; 4 * body.len],

@@ -43,7 +43,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             let mut k = share / xi.iter().map(|x| x * x).sum::<f64>();
             let mut fields = [i, j].map(|s| self.field(s));
             let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
-            k = self.law.between_ends(k, length, fields[0], fields[1]);
+            k = self.law.between_ends(k, &xi, length, fields[0], fields[1]);
+            k *= self.factor(row, line);
             if view.paired {
                 let pair = self.pairs.get(body.material_of(i), body.material_of(j));
                 k *= pair.stiffness;
@@ -75,7 +76,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         }
         let view = self.view(&self.moved);
         self.each_line(|row, line, [i, j]| {
-            let (pull, y) = view.pull_of(i, j, self.is_whole(row, line));
+            let whole = self.is_whole(row, line);
+            let (pull, y) = view.pull_of(i, j, whole.then(|| self.factor(row, line)));
             if pull[0] != 0.0 {
                 visit(BondForce::central([i, j], y, pull));
             }

@@ -29,6 +29,8 @@ pub struct View<'a, const D: usize, W> {
     pub list: &'a HorizonList,
     /// `[lines]`: bits of whole bonds.
     pub alive: Seen<u8>,
+    /// `[lines][8]`: factors of bonds; empty: all are 1.
+    pub scale: &'a [f64],
     /// `[slots][4]`: x, y, z, volume.
     pub reference: &'a [f64],
     /// `[slots][4]`: displacement and critical `e`.
@@ -61,6 +63,7 @@ pub struct End<L, const D: usize> {
 
 /// A bond from its two ends.
 struct Bond<L, const D: usize> {
+    xi: [L; D],
     /// `ξ+η`
     y: [L; D],
     /// `|ξ+η|²/|ξ|² − 1`
@@ -154,11 +157,15 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         let mut pair = [0; TILE];
         let weight = if self.paired {
             // SAFETY: rows and partners are slots
-            let cut = unsafe {
+            let ends = unsafe {
                 pair = self.pairs.numbers::<L>(self.materials, rows, partners);
-                self.pairs.law::<L>(&pair).cut
+                let horizon = match self.weight.knows_horizon() {
+                    true => self.pairs.horizon::<L>(&pair),
+                    false => r0,
+                };
+                [horizon, self.pairs.law::<L>(&pair).cut]
             };
-            self.weight.within(&xi, r0, inv_r0, cut) * j.volume
+            self.weight.within(&xi, r0, inv_r0, ends) * j.volume
         } else {
             self.weight.at(&xi, r0, inv_r0) * j.volume
         };
@@ -172,6 +179,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             y[a] = eta[a] + xi[a];
         }
         Bond {
+            xi,
             y,
             e,
             r0_squared,
@@ -186,13 +194,23 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     #[inline(always)]
     unsafe fn acting<L: Lane>(&self, b: &Bond<L, D>, i: [L; 2], j: [L; 2]) -> (L, [L; 2], [L; 2]) {
         if !self.paired {
-            return (self.law.between_ends(b.k, b.r0, i, j), i, j);
+            return (self.law.between_ends(b.k, &b.xi, b.r0, i, j), i, j);
         }
         // SAFETY: of this table
         let BondLanes {
             stiffness, ratio, ..
         } = unsafe { self.pairs.law::<L>(&b.pair) };
         (b.k * stiffness, [i[0] * ratio, i[1]], [j[0] * ratio, j[1]])
+    }
+
+    /// A bond's constant times the factors of a line.
+    #[inline(always)]
+    unsafe fn scaled<L: Lane>(&self, k: L, line: usize) -> L {
+        match self.scale.is_empty() {
+            true => k,
+            // SAFETY: eight factors per line
+            false => k * unsafe { L::load(self.scale.as_ptr().add(line * TILE)) },
+        }
     }
 
     /// κ by which the scalar of eight rows stores energy, where the law is that of unit constants.
@@ -234,8 +252,8 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     }
 
     /// Coefficient of `ξ+η` at row i that its directed bond to slot j has as a whole one, with repulsion where there is
-    /// any, and the two vectors; `alive`: is it whole? Plain numbers.
-    pub fn pull_of(&self, i: usize, j: usize, alive: bool) -> ([f64; 2], [f64; D]) {
+    /// any, and the two vectors; `alive`: its factor, if it is whole. Plain numbers.
+    pub fn pull_of(&self, i: usize, j: usize, alive: Option<f64>) -> ([f64; 2], [f64; D]) {
         let (row, partner) = (i as u32, j as u32);
         // SAFETY: both are slots
         unsafe {
@@ -244,8 +262,9 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             let (rows, partners) = ([row; TILE], [partner; TILE]);
             let repulsion = self.repel(&b, j.volume, rows.as_ptr(), partners.as_ptr());
             let mut pull = [repulsion.0, 0.5 * repulsion.0];
-            if alive {
+            if let Some(factor) = alive {
                 let (k, own, other) = self.acting(&b, i.field, j.field);
+                let k = k * factor;
                 let g = Extension::exact(b.e);
                 pull[0] += self.law.pull(k, g, own, other);
                 pull[1] += self.law.own_pull(k, g, own, other, BondFactors::ONE);

@@ -5,7 +5,7 @@ use crate::body::Body;
 use crate::execute::lane::TILE;
 use crate::interaction::PointConstants;
 use crate::interaction::point_constants::unlike;
-use crate::law::Law;
+use crate::law::{BondFactors, Law};
 
 impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// Σ over the bonds of a row whose bit is set in `bits`, in the row's order.
@@ -15,6 +15,28 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             .filter(|(line, _)| bits[*line] >> (row % TILE) & 1 == 1)
             .map(|(_, j)| of(j))
             .sum()
+    }
+
+    /// Multiply the factors of bonds.
+    pub(super) fn multiply_factors(
+        &mut self,
+        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
+    ) {
+        let mut scale = std::mem::take(&mut self.scale);
+        scale.resize(self.list.partner.len(), 1.0);
+        // points of a list know no cells
+        self.each_line(|row, line, [i, j]| {
+            scale[line * TILE + row % TILE] *= factors(i, j, [0; D]).pair;
+        });
+        if scale.iter().any(|x| *x != 1.0) {
+            self.scale = scale;
+        }
+    }
+
+    /// Of one directed bond.
+    pub(super) fn factor(&self, row: usize, line: usize) -> f64 {
+        let place = line * TILE + row % TILE;
+        self.scale.get(place).copied().unwrap_or(1.0)
     }
 
     /// Weighted volumes, and what follows.

@@ -102,6 +102,11 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         self.bonds.each_broken(body, visit);
     }
 
+    fn stress_borne(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<Vec<f64>> {
+        self.check(body, &[u]);
+        self.stress(body, u)
+    }
+
     fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
         self.bonds.bond_limit(ends, xi, critical)
     }
@@ -196,9 +201,8 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         self.bonds.wearing(body, u, load)
     }
 
-    fn wear(&mut self, body: &Body<D>, u: FieldView<D>, load: &Cycles, passed: f64) {
-        self.check(body, &[u]);
-        self.bonds.wear(body, u, load, passed);
+    fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
+        self.bonds.wear(bonds, cycles);
     }
 
     fn columns(&self) -> Vec<Declaration> {

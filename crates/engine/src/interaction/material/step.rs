@@ -348,22 +348,43 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             });
         }
         let out = Shared(self.bonds.damage.as_mut_ptr());
-        if let Measure::VonMises(limit) = &self.bonds.criteria.measure {
-            let materials = 0..self.bonds.held.len();
-            let across = materials.map(|m| self.bonds.elastic_across(m));
-            let limits = Limits {
-                body,
-                limit,
-                across: &across.collect::<Vec<_>>(),
-                out,
-            };
-            self.bonds.blocks.run(&VonMises {
-                law: self.asked(self.bonds.view(u, room)),
-                says_across: self.bonds.law.across,
-                limits,
-            });
+        if self.mises(body, u, room, out) {
             body.fill_images(&mut self.bonds.damage);
         }
+    }
+
+    /// Von Mises stress of points over their limits, where bonds break by that; do they?
+    fn mises(&self, body: &Body<D>, u: FieldView<D>, room: &Room, out: Shared) -> bool {
+        let Measure::VonMises(limit) = &self.bonds.criteria.measure else {
+            return false;
+        };
+        let materials = 0..self.bonds.held.len();
+        let across = materials.map(|m| self.bonds.elastic_across(m));
+        let limits = Limits {
+            body,
+            limit,
+            across: &across.collect::<Vec<_>>(),
+            out,
+        };
+        self.bonds.blocks.run(&VonMises {
+            law: self.asked(self.bonds.view(u, room)),
+            says_across: self.bonds.law.across,
+            limits,
+        });
+        true
+    }
+
+    /// The same at any displacements.
+    pub(super) fn stress(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<Vec<f64>> {
+        if !matches!(self.bonds.criteria.measure, Measure::VonMises(_)) {
+            return None;
+        }
+        let mut out = self.bonds.damage.clone();
+        let room = self.take_room(u, self.bonds.step);
+        self.settle(body, u, &room);
+        self.mises(body, u, &room, Shared(out.as_mut_ptr()));
+        self.bonds.room = room;
+        Some(out.to_vec())
     }
 
     /// Are bonds measured by the forces of now?

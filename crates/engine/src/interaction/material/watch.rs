@@ -18,18 +18,15 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     ) {
         out.zeros(body.len);
         let constants = self.constants().constants;
-        let (bonds, family) = (&self.bonds, &self.bonds.family);
-        for group in 0..family.groups() {
-            for l in (0..TILE).filter(|l| family.is_point(group, *l)) {
-                let slot = family.rows(group).slot(l);
-                let at = bonds.plain_point(&constants, slot);
-                let whole = bonds.bonds_of(group, l).into_iter();
-                let whole: Vec<_> = whole.map(|b| (b, bonds.memory_at(group, b.0, l))).collect();
-                let found = self.law.strained(&at, &whole, gradient);
-                out.strain[slot] = part_of(bonds.integrity_at(slot), found[0]);
-                out.dilatation[slot] = found[1];
-                out.whole[slot] = found[2];
-            }
+        let bonds = &self.bonds;
+        for (group, l, slot) in bonds.family.points() {
+            let at = bonds.plain_point(&constants, slot);
+            let whole = bonds.bonds_of(group, l).into_iter();
+            let whole = whole.map(|b| (b, bonds.memory_at(group, b.0, l)));
+            let found = (self.law).strained(&at, &whole.collect::<Vec<_>>(), gradient);
+            out.strain[slot] = part_of(bonds.integrity_at(slot), found[0]);
+            out.dilatation[slot] = found[1];
+            out.whole[slot] = found[2];
         }
         bonds.dilate(out);
     }

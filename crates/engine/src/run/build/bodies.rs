@@ -1,18 +1,18 @@
 //! Bodies of a spec, before they have bonds.
 
-use crate::body::{Body, Values};
+use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
 use crate::family::nodes::Nodes;
 use crate::quantity::Warnings;
-use crate::run::constitutive::{AnyPotentials, Shelf};
+use crate::run::constitutive::{AnyPotentials, Shelf, criteria, directed};
 use crate::run::faces::Faces;
 use crate::run::feasible::enough_memory;
 use crate::run::names::Names;
 use crate::run::parts::{Part, parts};
 use crate::run::reference::current_neighbours;
 use crate::run::sets::{assign_materials, sets};
-use crate::run::{atoms, clouds, own_horizons};
-use crate::spec::{BodySpec, FamilyChoice, Horizon, Spec};
+use crate::run::{atoms, clouds, own_horizons, traits};
+use crate::spec::{BodySpec, FamilyChoice, Horizon, PieceSpec, Spec};
 
 /// Points with materials and masses, and what they are called.
 pub(super) struct Bodies<'a, const D: usize> {
@@ -75,7 +75,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             None => clouds::own_densities(spec, &mut body),
             Some((atoms, carried)) => carried.give_masses(atoms, &mut body),
         }
-        own_horizons::give(spec, &mut body, horizon)?;
+        complete(&mut parts, &mut body, spec.body.pieces(), shelf)?;
         if !body.horizon.is_empty() {
             let own = body.slots.iter().map(|s| body.horizon[*s as usize]);
             least_horizon = own.fold(least_horizon, f64::min);
@@ -106,6 +106,49 @@ impl<'a, const D: usize> Bodies<'a, D> {
             atoms: potentials.is_some(),
         })
     }
+}
+
+/// Laws with kernels of their own become those of `law/material` where their body asks for what these kernels do not know.
+pub(super) fn lower(spec: &mut Spec, shelf: &Shelf) -> Result<(), BuildError> {
+    let own = own_horizons::resolve(spec);
+    let directed = directed(spec);
+    match criteria::remembering(spec) || own || directed {
+        true => shelf.resolve(spec),
+        false => Ok(()),
+    }
+}
+
+/// Gives each of several bodies its materials, and points their horizons.
+fn complete<const D: usize>(
+    parts: &mut [Part],
+    body: &mut Body<D>,
+    named: &[PieceSpec],
+    shelf: &Shelf,
+) -> Result<(), BuildError> {
+    if named.is_empty() {
+        let part = &parts[0];
+        return own_horizons::give(&part.spec, body, part.horizon);
+    }
+    for (n, part) in parts.iter_mut().enumerate() {
+        let mut own = body.pieces()[n].body.clone();
+        part.choose(body, n, &mut own);
+        let made = lower(part.spec.to_mut(), shelf)
+            .and_then(|()| traits::agree(&part.spec, shelf))
+            .and_then(|()| own_horizons::give(&part.spec, &mut own, part.horizon));
+        made.map_err(|e| {
+            let own = named[n].own_horizon.is_some() && e.path == "own_horizon";
+            let e = part.named(&named[n], e);
+            match own {
+                true => e.at(format!("body[{n}].own_horizon")),
+                false => e,
+            }
+        })?;
+        if let Layout::Several(pieces) = &mut body.layout {
+            pieces[n].body = own;
+        }
+    }
+    body.horizon = body.own_horizons(&parts.iter().map(|p| p.horizon).collect::<Vec<_>>());
+    Ok(())
 }
 
 /// The longest and the shortest of bodies that have bonds.

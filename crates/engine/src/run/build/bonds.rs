@@ -10,7 +10,7 @@ use crate::message;
 use crate::quantity::{Dimension, Warnings, rounded};
 use crate::run::bind::bind;
 use crate::run::constitutive::{ConstitutiveModels, breaks};
-use crate::run::{bonds, gaps, meant, precracks, surface};
+use crate::run::{bonds, gaps, meant, precracks};
 use crate::spec::Spec;
 use crate::statics::SYMMETRIC;
 
@@ -36,6 +36,7 @@ impl<const D: usize> Bonds<D> {
         warnings: &mut Warnings,
     ) -> Result<Self, BuildError> {
         let (shelf, parts, body) = (&bodies.names.shelf, &mut bodies.parts, &mut bodies.body);
+        let cell_volume = body.volume.uniform();
         let (constitutive, mut interaction) = match bodies.smoothed.take() {
             None => bind(spec, parts, body, shelf, simd, warnings)?,
             Some((mut atoms, carried)) => {
@@ -45,11 +46,6 @@ impl<const D: usize> Bonds<D> {
                 (constitutive, made)
             }
         };
-        let cell_volume = body.volume.uniform();
-        if let Some(factors) = &spec.bonds.surface {
-            surface::scale(factors, body, interaction.as_mut())?;
-            warnings.extend(factors.warning.clone());
-        }
         warnings.extend(bonds::scale(spec, body, interaction.as_mut())?);
         // a ratio is meant inclusively; only a length leaves the decision to round-off
         let ratios = constitutive.all().filter(|m| m.ratio).count();

@@ -76,8 +76,10 @@ impl<const D: usize> Made<D> {
         let contact = match repulsion {
             None => None,
             Some(r) => {
-                let pairs = bonds.constitutive.first().pairs.as_ref();
-                let horizon = pairs.map_or(bodies.least_horizon, |p| p.shortest());
+                let pairs = bonds.constitutive.all().filter_map(|m| m.pairs.as_ref());
+                let horizon = pairs
+                    .map(|p| p.shortest())
+                    .fold(bodies.least_horizon, f64::min);
                 Some(ContactForces {
                     central: r.contact(parts, body, horizon),
                     friction: contact::friction(spec, body)?,

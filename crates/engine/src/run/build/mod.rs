@@ -4,19 +4,19 @@ mod bodies;
 mod bonds;
 mod made;
 
-use self::bodies::Bodies;
+use self::bodies::{Bodies, lower};
 use self::bonds::Bonds;
 use self::made::Made;
-use super::constitutive::{Shelf, criteria, directed};
+use super::constitutive::Shelf;
 use super::feasible::{consistent, possible};
 use super::model::Model;
 use super::stages::Stages;
 use super::stepper::stepper;
-use super::{Simulation, atoms, own_horizons, transfers};
+use super::{Simulation, atoms, transfers};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::quantity::Warnings;
-use crate::spec::Spec;
+use crate::spec::{BodySpec, Spec};
 
 /// How to build, as opposed to what.
 #[derive(Debug, Clone, Copy, Default)]
@@ -59,10 +59,11 @@ pub fn build_in<const D: usize>(
     let mut resolved = spec.clone();
     shelf.resolve(&mut resolved)?;
     let expanding = transfers::expanding(&mut resolved);
-    let own = own_horizons::resolve(&mut resolved);
-    let directed = directed(&mut resolved);
-    if criteria::remembering(&mut resolved) || expanding || own || directed {
+    if expanding {
         shelf.resolve(&mut resolved)?;
+    }
+    if !matches!(resolved.body, BodySpec::Several(_)) {
+        lower(&mut resolved, shelf)?;
     }
     consistent(&resolved, shelf)?;
     let potentials = shelf.potentials(&resolved)?;

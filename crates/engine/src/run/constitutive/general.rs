@@ -3,7 +3,7 @@
 
 use crate::law::material::{Thermoelastic, ThermoelasticSolid};
 use crate::law::solid::linear::{EamLike, Linear, Lps, LpsAsTyped, of_stiffness};
-use crate::spec::{BodySpec, Influence, LawSpec, NamedLaw, Parameter, Parameters, PieceSpec, Spec};
+use crate::spec::{LawSpec, NamedLaw, Parameter, Parameters, Spec};
 
 /// The same law there; `None`: it has no kernel of its own, or is not among them.
 pub(in crate::run) fn general(law: &LawSpec) -> Option<LawSpec> {
@@ -32,20 +32,10 @@ pub(in crate::run) fn general(law: &LawSpec) -> Option<LawSpec> {
     }))
 }
 
-/// Does the influence function of any body?
-fn knows_directions(spec: &Spec) -> bool {
-    let pieces: &[PieceSpec] = match &spec.body {
-        BodySpec::Several(pieces) => pieces,
-        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => &[],
-    };
-    let mut own = pieces.iter().filter_map(|p| p.influence);
-    spec.bonds.influence.is_directed() || own.any(Influence::is_directed)
-}
-
 /// Where an influence function knows directions, solids are laws of `law/material`: their own kernel weighs a bond alike at both ends. Were laws
 /// changed?
 pub(in crate::run) fn directed(spec: &mut Spec) -> bool {
-    knows_directions(spec) && generalised(spec, is_solid)
+    spec.bonds.influence.is_directed() && generalised(spec, is_solid)
 }
 
 /// Is it state-based, with a kernel of its own?

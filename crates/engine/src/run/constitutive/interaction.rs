@@ -14,6 +14,7 @@ use crate::interaction::pairs::BondTable;
 use crate::interaction::stencil::{StencilInteraction, StencilParts};
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
+use crate::law::influence::InfluenceFunction;
 use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
 use crate::law::solid::dual_horizon::DualHorizon;
 use crate::law::solid::eam_like::{EamLike, Solid};
@@ -51,11 +52,16 @@ impl ConstitutiveModel {
             return Ok(made);
         };
         let (mut wrong, mut most, mut bonds) = (None, 0.0f64, 0);
-        made.each_bond(body, &mut |_, _, xi, _| {
+        let function = InfluenceFunction::new(self.influence, self.horizon);
+        made.each_bond(body, &mut |i, j, xi, _| {
             let r = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
-            for sign in [1.0, -1.0] {
-                let full = std::array::from_fn(|a| xi.get(a).map_or(0.0, |x| sign * x));
-                let omega = formula.at(full, r, self.horizon);
+            let turned = xi.map(|x| -x);
+            let ends = self.horizons(body, [i, j]);
+            for (xi, horizon) in [xi, turned].iter().flat_map(|xi| ends.map(|d| (xi, d))) {
+                let omega = match horizon {
+                    None => function.at(xi, r, 1.0 / r),
+                    Some(horizon) => function.within(xi, r, 1.0 / r, horizon),
+                };
                 if !(omega >= 0.0 && omega.is_finite()) {
                     wrong.get_or_insert((r, omega));
                 }
@@ -79,6 +85,17 @@ impl ConstitutiveModel {
                 invalid(message![format!("ω = {text} is 0 on every bond")])
             }
             None => Ok(made),
+        }
+    }
+
+    /// Horizons of their own that the ends of a bond have (length).
+    fn horizons<const D: usize>(&self, body: &Body<D>, ends: [usize; 2]) -> [Option<f64>; 2] {
+        match &self.pairs {
+            None => ends.map(|s| body.horizon.get(s).copied()),
+            Some(pairs) => {
+                let [a, b] = ends.map(|s| body.material_of(s));
+                [Some(pairs.get(a, b).horizon); 2]
+            }
         }
     }
 
@@ -302,7 +319,7 @@ impl ConstitutiveModel {
         }
     }
 
-    /// Bonds of points with horizons of their own: `c ∝ δ^−(D+1)` at equal moduli.
+    /// Bonds of points with horizons of their own: at equal moduli c goes as the inverse of `∫ ω r dV`, `δ^−(D+1)` where nothing else is a length.
     fn of_own_horizons<const D: usize>(
         &self,
         body: &Body<D>,
@@ -312,22 +329,24 @@ impl ConstitutiveModel {
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         let own = |i: usize| body.horizon[i];
         let half = 0.5 * self.spacing;
+        let over = self.bond_weight().stiffnesses(body);
         let constants = (0..body.len).map(|i| match own(i) > 0.0 {
-            true => [
-                c * (self.horizon / own(i)).powi(D as i32 + 1),
-                0.5 + own(i) / self.spacing,
-            ],
-            false => [0.0; 2],
+            true => [c * over[i], 0.5 + own(i) / self.spacing],
+            // slots without a point
+            false => [0.0, 0.5 + self.horizon / self.spacing],
         });
+        let constants = constants.collect();
         let reach = |i: usize, j: usize| own(i).max(own(j)) + half;
         Ok(Box::new(ListInteraction::new(ListParts {
             body,
             list: HorizonList::within(body, self.horizon + half, reach)?,
             law: DualHorizon {
                 rate: self.spacing.recip(),
+                influence: InfluenceFunction::new(self.influence, self.horizon).mean(),
             },
-            weight: self.bond_weight().whole(),
-            point_constants: PointConstants::PerPoint(constants.collect()),
+            // ends weigh by their own
+            weight: BondWeight::new(Influence::Constant, self.horizon, None),
+            point_constants: PointConstants::PerPoint(constants),
             toughness,
             repulsion,
             simd: self.simd,
@@ -354,18 +373,10 @@ impl ConstitutiveModel {
                 let constants = PointConstants::Solid(vec![unit; solids.len()]);
                 self.list_of_pairs(body, pairs, law, constants, toughness)
             }
-            Laws::Bond(_) => self.list_of_pairs(
-                body,
-                pairs,
-                BondBased { c: 1.0 },
-                PointConstants::None,
-                toughness,
-            ),
-            Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => {
-                Err(BuildError::unsupported(
-                    "pairs",
-                    "springs, potentials and micromoduli have no constants of pairs of materials",
-                ))
+            // tables are of bonds or of solids
+            Laws::Bond(_) | Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => {
+                let law = BondBased { c: 1.0 };
+                self.list_of_pairs(body, pairs, law, PointConstants::None, toughness)
             }
         }
     }

@@ -8,6 +8,7 @@ mod pairs;
 pub(super) mod shelf;
 mod toughness;
 
+use crate::condition::toughness::Bears;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
@@ -15,7 +16,7 @@ use crate::family::volume_fraction;
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::pairs::BondTable;
 use crate::interaction::{PairTable, Repulsion, Toughness};
-use crate::law::influence::mean_influence;
+use crate::law::influence::{InfluenceFunction, mean_influence};
 use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
 use crate::spec::{Calibration, FamilyChoice, Horizon, Influence, InterfaceRule, Spec};
@@ -26,7 +27,7 @@ pub(super) use pairs::contact_stiffness;
 pub use shelf::Shelf;
 pub(super) use shelf::{AnyPotentials, Softens, Stiffness};
 use std::sync::Arc;
-use toughness::toughness;
+pub(super) use toughness::toughness;
 
 /// A full family.
 #[derive(Debug, Clone)]
@@ -43,6 +44,9 @@ pub(super) struct ConstitutiveModel {
     /// What bonds break by beside that.
     pub criteria: Criteria,
     pub repulsion: Option<Repulsion>,
+    /// `[slots]`: what critical stretches of points are of those of their materials, where horizons of their own and fracture energies make that another;
+    /// else empty.
+    pub strength: Vec<f64>,
     /// Stiffness of contact between points of a material, from its law (force / volume² / length).
     pub contact: Vec<f64>,
     pub stencil: Option<Stencil>,
@@ -144,12 +148,18 @@ impl ConstitutiveModels {
         self.per_material(count, |r| vec![(r.horizon, r.influence); r.toughness.len()])
     }
 
-    /// Works at which bonds break (energy / volume²), where they break by these; else empty.
-    pub fn critical_works(&self, count: usize) -> Vec<f64> {
-        self.per_material(count, |r| match &r.criteria.measure {
-            Measure::Work(limit) => limit.clone(),
-            Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => vec![],
-        })
+    /// What a material bears in the body of a slot: a critical stretch, or the root of a critical work (energy / volume²).
+    pub fn bears(&self, slot: usize, material: usize) -> (Bears, f64) {
+        let n = self.of.partition_point(|(first, _, _)| *first <= slot) - 1;
+        let (first, materials, model) = &self.of[n];
+        let own = materials.iter().position(|m| *m == material).unwrap_or(0);
+        let by = model.strength.get(slot - first).copied().unwrap_or(1.0);
+        match &model.criteria.measure {
+            Measure::Work(limits) => (Bears::Work, limits[own].sqrt()),
+            Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => {
+                (Bears::Stretch, by * model.toughness[own].s00)
+            }
+        }
     }
 
     /// What the laws of materials soften by.
@@ -209,6 +219,7 @@ impl ConstitutiveModel {
             toughness,
             criteria,
             repulsion,
+            strength: vec![],
             contact,
             stencil,
             horizon,
@@ -243,6 +254,13 @@ impl ConstitutiveModel {
             1.0
         };
         let full: [f64; 3] = std::array::from_fn(|a| xi.get(a).copied().unwrap_or(0.0));
-        nu * mean_influence(self.influence, &full, r0, horizon)
+        let omega = match horizon == self.horizon {
+            true => mean_influence(self.influence, &full, r0, horizon),
+            false => {
+                let function = InfluenceFunction::new(self.influence, horizon).mean();
+                function.within(&full, r0, 1.0 / r0, horizon)
+            }
+        };
+        nu * omega
     }
 }

@@ -7,7 +7,7 @@ use crate::interaction::{PairTable, Toughness, in_series};
 use crate::law::solid::eam_like::Solid;
 use crate::message;
 use crate::quantity::{Dimension, Message, rounded};
-use crate::spec::{ContactStiffness, LawSpec, PairSpec, PmbStiffness, Spec};
+use crate::spec::{ContactStiffness, LawSpec, PmbStiffness, Spec};
 
 /// What pairs of materials have, checked.
 pub(super) fn bond_table(
@@ -28,12 +28,6 @@ pub(super) fn bond_table(
             spec.interactions.pairs.len(),
             materials * materials
         )]);
-    }
-    let shorter = |p: &PairSpec| p.horizon > 0.0 && p.horizon < horizon * (1.0 - 1e-9);
-    if spec.bonds.influence.knows_horizon() && spec.interactions.pairs.iter().any(shorter) {
-        return unsupported(
-            "an influence function of the horizon is one of a single horizon, and these pairs have several",
-        );
     }
     if spec.bonds.influence.is_directed() && matches!(laws, Laws::Solid(_)) {
         return unsupported(

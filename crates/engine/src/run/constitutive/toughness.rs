@@ -15,7 +15,7 @@ const UNBREAKABLE: Toughness = Toughness {
 };
 
 /// Of a material; `path` is where the spec has it.
-pub(super) fn toughness<const D: usize>(
+pub(in crate::run) fn toughness<const D: usize>(
     spec: &Spec,
     m: &MaterialSpec,
     horizon: f64,

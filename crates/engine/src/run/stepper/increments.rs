@@ -200,7 +200,7 @@ fn wear<const D: usize>(system: &mut System<D>, cycles: Option<Cycles>) {
     };
     let left = (cycles.most - system.accounts.cycles).max(0.0);
     let passed = criterion::cycles(&bonds, &cycles, left);
-    system.interaction.wear(body, u, &cycles, passed);
+    system.interaction.wear(&mut bonds.into_iter(), passed);
     system.accounts.cycles += passed;
 }
 

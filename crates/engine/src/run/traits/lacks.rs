@@ -4,12 +4,11 @@ use super::{Lack, Property};
 use crate::law::descriptor::Memory;
 use crate::law::solid::eam_like::Solid;
 use crate::run::constitutive::{Shelf, Stiffness};
-use crate::run::own_horizons::of_energy;
 use crate::run::reference::{current_neighbours, listed};
 use crate::spec::{
     BodySpec, Calibration, Control, CrackKind, Criterion, FamilyChoice, FractureSpec,
-    IndenterMotion, Influence, LawSpec, MaterialSpec, Measure, Method, PreloadSpec, Quantity,
-    Release, Solver, Spec, Stepper, ToughnessFactor, TransferMethod, TransferSpec,
+    IndenterMotion, LawSpec, MaterialSpec, Measure, Method, PreloadSpec, Quantity, Release, Solver,
+    Spec, Stepper, ToughnessFactor, TransferMethod, TransferSpec,
 };
 
 pub(super) fn of(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
@@ -42,13 +41,11 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
         all.push(Lack::new(Property::Symmetric, says, ""));
     }
     if spec.bonds.surface.is_some() {
-        let says = "factors of bonds near the surface are those of one lattice";
-        all.push(Lack::new(Property::SideBySide, says, "leave surface out").at("surface"));
+        let says = "factors of bonds near the surface are those of the points of one lattice";
+        let instead = "give each body its own";
+        all.push(Lack::new(Property::SideBySide, says, instead).at("surface"));
     }
     if spec.bonds.own_horizon.is_some() {
-        let says = "points with horizons of their own are those of one cloud";
-        let lack = Lack::new(Property::SideBySide, says, "leave own_horizon out");
-        all.push(lack.at("own_horizon"));
         let says = "points have horizons of their own";
         all.push(Lack::new(Property::OneHorizon, says, "leave own_horizon out").at("own_horizon"));
     }
@@ -152,16 +149,14 @@ fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     {
         lack(
             "own_horizon",
-            "horizons of points belong to a single cloud: a lattice has one stencil",
+            "horizons of points are those of a cloud: a lattice has one stencil",
             "write family = \"list\", or take the points from a file",
         );
     }
-    let mut of_bonds = false;
     for m in &spec.materials {
         match shelf.stiffness(&m.law) {
-            Some(Stiffness::OfFamily) => {}
-            Some(Stiffness::OfBonds) => of_bonds = true,
-            None if matches!(m.law, LawSpec::Pmb(_)) => of_bonds = true,
+            Some(Stiffness::OfFamily | Stiffness::OfBonds) => {}
+            None if matches!(m.law, LawSpec::Pmb(_)) => {}
             Some(Stiffness::OfHorizon) => lack(
                 "own_horizon",
                 "bonds of this law have the stiffness of one horizon",
@@ -173,14 +168,6 @@ fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
                 "take lps, or leave own_horizon out",
             ),
         }
-    }
-    let constant = spec.bonds.influence == Influence::Constant;
-    if spec.bonds.influence.knows_horizon() || (of_bonds && !constant) {
-        lack(
-            "influence",
-            "an influence function of the horizon is not known where points have their own",
-            "leave influence out",
-        );
     }
     if !spec.bonds.volume_scaling {
         lack(
@@ -194,17 +181,6 @@ fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
             "calibration",
             "the constants of points with horizons of their own are those of the continuum",
             "write calibration = \"continuum\"",
-        );
-    }
-    let mut materials = spec.materials.iter();
-    if let (Some(n), Influence::Formula(_)) = (
-        materials.position(|m| m.fracture.is_some_and(of_energy)),
-        spec.bonds.influence,
-    ) {
-        lack(
-            &format!("materials[{n}].fracture"),
-            "the stretch that a fracture energy stands for falls with the root of the horizon where nothing else is a length, and this influence function has one",
-            "give critical_stretch, or leave influence out",
         );
     }
     all
@@ -436,9 +412,7 @@ fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, shelf: &Shelf) -> Vec<La
     let mut all = vec![];
     let name = match &m.law {
         LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
-            let says = "atoms, and given micromoduli, are a body of their own";
-            let lack = Lack::new(Property::SideBySide, says, "take pmb, lps or springs");
-            all.push(lack.at(format!("materials[{n}].law")));
+            all.extend(beside_others(&m.law).map(|l| l.at(format!("materials[{n}].law"))));
             let says = "atoms and given micromoduli conduct nothing: their bonds are not those of a continuum";
             let instead = "take a law of solids (pmb, lps, …)";
             all.push(Lack::new(Property::Continuum, says, instead));
@@ -472,6 +446,21 @@ fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, shelf: &Shelf) -> Vec<La
         }
     }
     all
+}
+
+/// What atoms and given micromoduli have not beside other bodies.
+fn beside_others(law: &LawSpec) -> Option<Lack> {
+    if let Some(linear) = law.micromoduli() {
+        let says = "loads or masses of a condensed body are those of all its points together";
+        let instead = "condense it without loads, with lumped masses";
+        return linear
+            .is_coupled()
+            .then(|| Lack::new(Property::SideBySide, says, instead));
+    }
+    let says = "how atoms act on each other is what their potential says, and neither a stiffness of contact nor one of bonds with a continuum follows from it";
+    let instead =
+        "make one body of the atoms, with a [[pair]] for unlike ones, or take pmb, lps or springs";
+    Some(Lack::new(Property::Meets, says, instead))
 }
 
 /// Of laws with kernels of their own, and of potentials.
@@ -517,7 +506,8 @@ pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
     let mut lack = |property, says: String, instead| {
         all.push(Lack::new(property, says, instead).at(path));
     };
-    if m.fracture.is_some_and(|f| f.alpha != 0.0) {
+    let stretch = |c: Criterion| matches!(c, Criterion::Stretch(_) | Criterion::Energy(_));
+    if (m.fracture).is_some_and(|f| f.alpha != 0.0 && !stretch(f.criterion)) {
         let says = "strengthening under compression (alpha) is of critical stretches alone: no law is known of a work, stress or strain that grows with it";
         lack(Property::OtherMeasures, says.into(), "leave alpha out");
     }
@@ -592,7 +582,8 @@ fn of_fracture(fracture: FractureSpec, path: &str) -> Vec<Lack> {
             all.push(Lack::new(property, says, "leave alpha out").at(path));
         }
     }
-    if fracture.remembers() {
+    let of_now = !fracture.remembers() || matches!(fracture.criterion, Criterion::VonMises(_));
+    if !of_now || fracture.rate.is_some() || fracture.fatigue.is_some() {
         let says = "these bonds break by more than the stretch that they have now";
         let instead = "give critical_stretch or energy without criterion, rate and fatigue";
         let lack = Lack::new(Property::PresentStretch, says, instead);

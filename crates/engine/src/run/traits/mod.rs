@@ -11,7 +11,7 @@ use super::constitutive::Shelf;
 use crate::error::BuildError;
 use crate::message;
 use crate::quantity::Message;
-use crate::spec::Spec;
+use crate::spec::{BodySpec, Spec};
 
 /// What parts of a spec ask for and others have not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub(super) enum Property {
     Fades,
     /// Bonds bear the same whatever acts on the body.
     ConstantStrength,
-    /// Bonds end by the stretch that they have now.
+    /// Bonds end by the stretch or the stress that they have now.
     PresentStretch,
     /// What bonds bear is known whatever the horizon.
     StretchAtEveryHorizon,
@@ -100,6 +100,8 @@ pub(super) enum Property {
     ConstantsOfPoints,
     /// May stand beside other bodies.
     SideBySide,
+    /// May touch other bodies, or be bonded to them.
+    Meets,
     /// No bonds between bodies.
     Unbonded,
     /// Its bonds may be whole again.
@@ -116,6 +118,23 @@ pub(super) enum Property {
     SameInCycles,
     /// Answers to a part of a load by that part.
     InProportion,
+}
+
+impl Property {
+    /// Does one of several bodies have it, whatever the others have?
+    fn is_of_a_body(self) -> bool {
+        matches!(
+            self,
+            Property::OneHorizon
+                | Property::OwnHorizons
+                | Property::OfStencil
+                | Property::Nonlinear
+                | Property::StretchAtEveryHorizon
+                | Property::OtherMeasures
+                | Property::Separates
+                | Property::ConstantsOfPoints
+        )
+    }
 }
 
 /// A part of a spec that has not some property.
@@ -190,10 +209,14 @@ pub(super) fn met(needs: Vec<Need>, lacks: &[Lack]) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Do the parts of a spec go together, and those of each of its materials and interfaces?
+/// Do the parts of a spec go together, and those of each of its materials and interfaces? Of several bodies what they share; each is asked alone what is
+/// its own, its materials among that.
 pub(super) fn agree(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
-    met(needs::of(spec), &lacks::of(spec, shelf))?;
-    for (n, m) in spec.materials.iter().enumerate() {
+    let several = matches!(spec.body, BodySpec::Several(_));
+    let mut needs = needs::of(spec);
+    needs.retain(|n| !(several && n.property.is_of_a_body()));
+    met(needs, &lacks::of(spec, shelf))?;
+    for (n, m) in spec.materials.iter().enumerate().filter(|_| !several) {
         let path = format!("materials[{n}].fracture");
         let needs = needs::of_fracture(spec, m.fracture, &path);
         met(needs, &lacks::of_law(m, &path, shelf))?;

@@ -2,10 +2,9 @@
 
 use super::{Need, Property};
 use crate::run::constitutive::{breaking, breaks};
-use crate::run::own_horizons;
 use crate::spec::{
-    BodySpec, Control, Criterion, FamilyChoice, FractureSpec, LawSpec, Method, Plane, Spec,
-    Statics, Stepper, ToughnessFactor,
+    BodySpec, Control, Criterion, FamilyChoice, FractureSpec, LawSpec, MaterialSpec, Method, Plane,
+    Spec, Statics, Stepper, ToughnessFactor,
 };
 
 pub(super) fn of(spec: &Spec) -> Vec<Need> {
@@ -25,14 +24,12 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
     if matches!(spec.body, BodySpec::Several(_)) {
         let why = ", and several bodies have bonds of their own each";
         all.push(Need::new(Property::SideBySide, "body", why, ""));
-        all.push(Need::new(Property::ConstantsOfPoints, "pairs", why, ""));
+        let why = ", and several bodies meet by these alone";
+        all.push(Need::new(Property::Meets, "body", why, ""));
     }
     if !spec.bonds.factors.is_empty() {
         let why = ", and factors of bonds need a bond-based law";
         all.push(Need::new(Property::BondByBond, "bonds[0]", why, ""));
-        let why = ", and factors of bonds are those of one";
-        let instead = "give the interface the stiffness that it shall have";
-        all.push(Need::new(Property::Unbonded, "interface[0]", why, instead));
     }
     if spec.interactions.contact.is_some() || breaks(spec) {
         all.push(Need::new(Property::Separates, "materials", "", ""));
@@ -65,21 +62,17 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
             "leave deformation out",
         ));
     }
-    if spec.bonds.surface.is_some()
-        || !spec.bonds.factors.is_empty()
-        || !spec.interactions.pairs.is_empty()
-    {
-        let why = ", and factors of bonds are those of one";
-        all.push(Need::new(Property::OneHorizon, "own_horizon", why, ""));
+    let of_one = |path: &str, why, instead| Need::new(Property::OneHorizon, path, why, instead);
+    if spec.bonds.surface.is_some() {
+        let why = ", and exact surfaces are those of the stencil of a lattice";
+        all.push(of_one("own_horizon", why, "leave surface out"));
+    }
+    if !spec.interactions.pairs.is_empty() {
+        let why = ", and so have pairs of materials: a bond has one";
+        all.push(of_one("own_horizon", why, ""));
     }
     if spec.bonds.own_horizon.is_some() {
         all.push(Need::new(Property::OwnHorizons, "own_horizon", "", ""));
-        if own_horizons::strengthen(spec) {
-            let why = ", and that of a fracture energy is another one at every horizon";
-            let instead = "give critical_stretch, or leave own_horizon out";
-            let need = Need::new(Property::StrengthOfPoints, "own_horizon", why, instead);
-            all.push(need);
-        }
         all.push(Need::new(
             Property::StretchAtEveryHorizon,
             "own_horizon",
@@ -93,13 +86,13 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
 /// Of laws of solids, of potentials and of atoms that move.
 fn of_atoms(spec: &Spec) -> Vec<Need> {
     let mut all = vec![];
+    let path = "materials[0].law";
     let mut laws = spec.materials.iter().map(|m| &m.law);
-    match laws.all(|l| l.potential().is_some()) {
-        true => {
-            let why = ", and this law is an interatomic potential";
-            all.push(Need::new(Property::Potentials, "materials[0].law", why, ""));
-        }
-        false => all.push(Need::new(Property::Solids, "materials[0].law", "", "")),
+    if laws.any(|l| l.potential().is_none()) {
+        all.push(Need::new(Property::Solids, path, "", ""));
+    } else if !spec.materials.is_empty() {
+        let why = ", and this law is an interatomic potential";
+        all.push(Need::new(Property::Potentials, path, why, ""));
     }
     if spec.bonds.family != FamilyChoice::Reference {
         all.push(Need::new(Property::OfNow, "family", "", ""));
@@ -201,6 +194,23 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
         all.push(need(Property::ConstantsOfPoints));
         all.push(need(Property::StrengthOfPoints));
     }
+    let energy = |m: &MaterialSpec| {
+        m.fracture
+            .is_some_and(|f| matches!(f.criterion, Criterion::Energy(_)))
+    };
+    let mut pieces = spec.body.pieces().iter();
+    if (spec.bonds.own_horizon.is_some() || pieces.any(|p| p.own_horizon.is_some()))
+        && spec.materials.iter().any(energy)
+    {
+        let why = ", and what a fracture energy means follows the horizon of each point";
+        let instead = "give critical_stretch, or leave own_horizon out";
+        all.push(Need::new(
+            Property::StrengthOfPoints,
+            "own_horizon",
+            why,
+            instead,
+        ));
+    }
     let factor = |factor: &ToughnessFactor| !matches!(factor, ToughnessFactor::NoFailure);
     if let Some(n) = (spec.damage.toughness.iter()).position(|t| factor(&t.factor)) {
         all.push(Need::new(
@@ -247,7 +257,7 @@ fn of_stages(spec: &Spec) -> Vec<Need> {
             "take integrator = \"verlet\" without [statics]",
         ));
     }
-    if spec.run.preload.is_none() && !spec.run.schedule.stepper.solves() {
+    if spec.run.preload.is_none() && spec.run.schedule.statics().is_none() {
         all.push(Need::new(Property::Inertia, "schedule", "", ""));
     }
     match spec.run.schedule.stepper {

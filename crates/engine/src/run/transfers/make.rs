@@ -1,6 +1,7 @@
 //! From a spec to what spreads.
 
 use super::state::TransferInfo;
+use crate::body::Body;
 use crate::error::BuildError;
 use crate::family::stencil::Stencil;
 use crate::message;
@@ -12,8 +13,8 @@ use crate::run::surface::Factors;
 use crate::run::system::System;
 use crate::space::Point;
 use crate::spec::{
-    BodySpec, Exchange, Quantity, Spec, SurfaceFactors, TimeStep, TransferCondition, TransferKind,
-    TransferMethod, TransferSpec,
+    BodySpec, Exchange, Horizon, Quantity, Spec, SurfaceFactors, TimeStep, TransferCondition,
+    TransferKind, TransferMethod, TransferSpec,
 };
 use crate::transfer::{Condition, Conduction, Rows, Surface, Transfer};
 
@@ -121,24 +122,23 @@ impl<const D: usize> Maker<'_, D> {
             let own = body.horizon.get(slot);
             model.weight_within(own.copied().unwrap_or(model.horizon), xi, r)
         };
-        let ends_at_points = |f: &&SurfaceFactors| f.ends_at_points();
-        let exact = spec.bonds.surface.as_ref().filter(ends_at_points);
-        let exact = exact.map(|f| (Factors::new(f, body), family(spec, body.spacing)));
+        let exact = exact_surfaces(spec, body);
         let factor = |i: usize, j: usize, xi: &[f64; D]| {
-            exact.as_ref().map_or(1.0, |(factors, _)| {
-                let to = xi.map(|x| (x / body.spacing).round() as i32);
+            let of = exact.iter().find(|of| of.slots.contains(&i));
+            of.filter(|of| of.slots.contains(&j)).map_or(1.0, |of| {
+                let (factors, [i, j]) = (&of.factors, [i, j].map(|s| s - of.slots.start));
+                let to = xi.map(|x| (x / of.spacing).round() as i32);
                 factors.of(i, to).conductance / (factors.part(i) * factors.part(j))
             })
         };
         let moment = |slot: usize| {
-            exact.as_ref().map_or(0.0, |(factors, bonds)| {
-                let cell = body.volume.at(slot) / factors.part(slot);
-                let term = |xi: &[f64; D]| {
-                    let square: f64 = xi.iter().map(|x| x * x).sum();
-                    weight(slot, xi, square.sqrt()) * square * cell
-                };
-                bonds.iter().map(term).sum()
-            })
+            let of = exact.iter().find(|of| of.slots.contains(&slot))?;
+            let cell = body.volume.at(slot) / of.factors.part(slot - of.slots.start);
+            let term = |xi: &[f64; D]| {
+                let square: f64 = xi.iter().map(|x| x * x).sum();
+                weight(slot, xi, square.sqrt()) * square * cell
+            };
+            Some(of.bonds.iter().map(term).sum())
         };
         let rows = Rows::new(
             body,
@@ -147,7 +147,7 @@ impl<const D: usize> Maker<'_, D> {
                 conductivity: &|slot| of(slot).conductivity,
                 weight: &|i, j, xi, r| 0.5 * (weight(i, xi, r) + weight(j, xi, r)),
                 place: &self.system.transfers.place,
-                surface: exact.as_ref().map(|_| Surface {
+                surface: (!exact.is_empty()).then_some(Surface {
                     factor: &factor,
                     moment: &moment,
                 }),
@@ -338,11 +338,40 @@ fn steady(made: &Transfer) -> Result<(), BuildError> {
     }
 }
 
+/// A body whose surface runs through its outermost points.
+struct ExactSurface<'a, const D: usize> {
+    slots: std::ops::Range<usize>,
+    factors: Factors<'a, D>,
+    bonds: Vec<[f64; D]>,
+    spacing: f64,
+}
+
+/// All bodies with such a surface.
+fn exact_surfaces<'a, const D: usize>(spec: &'a Spec, all: &Body<D>) -> Vec<ExactSurface<'a, D>> {
+    let made = |first: usize, f: &'a SurfaceFactors, body: &Body<D>, of: (&BodySpec, Horizon)| {
+        f.ends_at_points().then(|| ExactSurface {
+            slots: first..first + body.len,
+            factors: Factors::new(f, body),
+            bonds: family(of.0, body.spacing, of.1),
+            spacing: body.spacing,
+        })
+    };
+    let horizon = spec.bonds.horizon;
+    let single = spec.bonds.surface.iter();
+    let single = single.filter_map(|f| made(0, f, all, (&spec.body, horizon)));
+    let pieces = spec.body.pieces().iter().zip(all.pieces());
+    let several = pieces.filter_map(|(piece, own)| {
+        let of = (&piece.body, piece.horizon.unwrap_or(horizon));
+        made(own.first, piece.surface.as_ref()?, &own.body, of)
+    });
+    single.chain(several).collect()
+}
+
 /// Bonds of a point inside a body on a chain, square or cubic lattice.
-fn family<const D: usize>(spec: &Spec, spacing: f64) -> Vec<[f64; D]> {
-    match &spec.body {
+fn family<const D: usize>(body: &BodySpec, spacing: f64, horizon: Horizon) -> Vec<[f64; D]> {
+    match body {
         BodySpec::Lattice { kind, .. } | BodySpec::Sites { kind, .. } => {
-            let stencil = Stencil::new(*kind, spacing, spec.bonds.horizon);
+            let stencil = Stencil::new(*kind, spacing, horizon);
             let cells = stencil.offsets()[0].iter().map(|o| o.cell);
             cells
                 .map(|c| std::array::from_fn(|a| spacing * f64::from(c[a])))

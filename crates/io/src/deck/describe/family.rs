@@ -41,6 +41,15 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
             own.source()
         ));
     }
+    for piece in spec.body.pieces() {
+        if let Some(own) = &piece.own_horizon {
+            lines.push(format!(
+                "           of each point of {} {}, at most that: dual horizon",
+                piece.name,
+                own.source()
+            ));
+        }
+    }
     lines.extend(interfaces(spec, units));
     for (axis, period) in ["x", "y", "z"].iter().zip(spec.space.periodic) {
         if let Some(period) = period {
@@ -50,8 +59,12 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
             ));
         }
     }
-    if let Some(factors) = &spec.bonds.surface {
-        lines.push(surface(factors, !spec.interactions.transfers.is_empty()));
+    let spreads = !spec.interactions.transfers.is_empty();
+    let surfaces = spec.bonds.surface.iter().map(|f| ("", f));
+    let pieces = spec.body.pieces().iter();
+    let each = pieces.filter_map(|p| Some((p.name.as_str(), p.surface.as_ref()?)));
+    for (name, factors) in surfaces.chain(each) {
+        lines.push(surface(name, factors, spreads));
     }
     for bonds in &spec.bonds.factors {
         lines.push(match bonds {
@@ -135,8 +148,12 @@ fn interfaces(spec: &Spec, units: UnitSystem) -> Vec<String> {
     lines
 }
 
-/// Factors of bonds near the surface; `spreads`: does anything spread through bonds?
-fn surface(surface: &SurfaceFactors, spreads: bool) -> String {
+/// Factors of bonds near the surface of a body; `spreads`: does anything spread through bonds?
+fn surface(body: &str, surface: &SurfaceFactors, spreads: bool) -> String {
+    let of = match body {
+        "" => String::new(),
+        name => format!("of {name} "),
+    };
     let range = |of: fn(&SurfaceFactor) -> f64| {
         let all = surface.rows.iter().flatten().map(|(_, x)| of(x));
         all.fold((1.0f64, 1.0f64), |(a, b), x| (a.min(x), b.max(x)))
@@ -151,7 +168,7 @@ fn surface(surface: &SurfaceFactors, spreads: bool) -> String {
         others += &beside("conductances", range(|x| x.conductance));
     }
     format!(
-        "surface    {}: {} kinds of points, factors of bonds {low:.2} to {high:.2}{others}",
+        "surface    {of}{}: {} kinds of points, factors of bonds {low:.2} to {high:.2}{others}",
         words(&surface.method),
         surface.rows.len() - 1
     )

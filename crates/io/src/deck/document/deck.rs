@@ -77,7 +77,7 @@ pub struct Document {
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// Horizon of each point, an expression of x, y, z, at most `horizon` (dual horizon): on clouds, with family = "list" of lattices, too, of pmb, lps and
-    /// other laws that their families normalise; with calibration = "continuum".
+    /// other laws that their families normalise; with calibration = "continuum". Of several bodies that of all, or in a `[[body]]` its own.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub own_horizon: Option<Number>,
     /// constant for pmb and inverse for lps when left out.
@@ -95,9 +95,9 @@ pub struct Document {
     /// ["x"]: the body's region spans one period; or { x = "50 mm" }.
     pub periodic: Option<At<Periodic>>,
     /// Factors of bonds near the surface of a lattice body with a bond-based law; none when left out. exact: every uniform
-    /// strain is in equilibrium under its uniform traction, and the surface runs through the outermost points.
+    /// strain is in equilibrium under its uniform traction, and the surface runs through the outermost points. Of several bodies that of all, or in a `[[body]]` its own.
     pub surface: Option<At<SurfaceName>>,
-    /// Factors of the stiffness of bonds (bond-based laws on lattices); all that concern a bond are multiplied.
+    /// Factors of the stiffness of bonds (pmb, springs on lattices), of those of interfaces, too; all that concern a bond are multiplied.
     #[serde(default)]
     pub bond_factor: Vec<At<BondFactor>>,
     /// Factors of the toughness of sets, by place and time, and sets that never fail; all that concern a point are multiplied.
@@ -159,6 +159,11 @@ pub struct Body {
     pub influence: Option<At<InfluenceWritten>>,
     /// Its own, stencil or list, instead of that of the deck; of several bodies only.
     pub family: Option<At<FamilyName>>,
+    /// Horizon of each of its points, instead of that of the deck, at most its `horizon`; of several bodies only.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub own_horizon: Option<Number>,
+    /// Factors of its bonds near the surface, instead of those of the deck; of several bodies only.
+    pub surface: Option<At<SurfaceName>>,
     /// Lattice that fills the region; instead of a file.
     pub lattice: Option<At<LatticeName>>,
     /// Edge of the lattice cell; with a file, the typical distance of points.

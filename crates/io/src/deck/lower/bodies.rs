@@ -2,14 +2,19 @@
 
 use super::body;
 use super::context::{Context, Result};
-use super::family::{horizon, influence};
+use super::family::{horizon, influence, surface_factors};
 use super::pieces::within;
 use super::sets;
 use super::{Files, points};
-use crate::deck::document::{Body, Document, FamilyName};
+use crate::deck::document::{Body, Document, FamilyName, SurfaceName};
 use crate::deck::error::nearest;
+use crate::deck::units::Dim;
 use crate::deck::value::At;
-use peridyne::spec::{BodySpec, FamilyChoice, Horizon, MaterialSpec, Members, PieceSpec, SetSpec};
+use peridyne::run::materials_of_bodies;
+use peridyne::spec::{
+    AnyLinearBody, BodySpec, Cloud, FamilyChoice, Horizon, MaterialSpec, Members, PieceSpec,
+    SetSpec, Spec,
+};
 
 /// All bodies of a deck, the first included.
 pub(super) fn written(document: &Document) -> impl Iterator<Item = &At<Body>> {
@@ -42,12 +47,16 @@ pub(super) fn bodies(
         if !several(document) {
             return Ok(spec);
         }
-        if context.atoms.is_some() || context.micromoduli.is_some() {
-            let span = written.file.as_ref().map_or(&at.span, |f| &f.span);
+        let span = written.file.as_ref().map_or(&at.span, |f| &f.span);
+        if context.atoms.is_some() {
             return Err(context.error(
                 span,
-                "atoms, and linear bodies with their micromoduli, cannot be one of several bodies",
+                "how atoms act on each other is what their potential says: neither a stiffness of contact nor one of bonds with a continuum follows from it, and several bodies meet by these alone",
             ));
+        }
+        let linear = context.micromoduli.take();
+        if let Some(why) = linear.as_ref().and_then(|l| stands_alone(l, &spec)) {
+            return Err(context.error(span, why));
         }
         points::lie_together(context, &pieces, &spec, written.file.as_ref())?;
         let name = match &written.name {
@@ -62,16 +71,30 @@ pub(super) fn bodies(
             let span = written.name.as_ref().map_or(&at.span, |n| &n.span);
             return Err(context.error(span, format!("two bodies are called \"{name}\"")));
         }
+        let linear = linear.map(|linear| (name.clone(), linear));
+        context.linear_bodies.extend(linear);
         pieces.push(PieceSpec {
-            name,
-            body: spec,
             bonded: written.bonded.unwrap_or(true),
-            horizon: None,
-            influence: None,
-            family: None,
+            ..PieceSpec::new(name, spec)
         });
     }
     Ok(BodySpec::Several(pieces))
+}
+
+/// Why a linear body cannot be one of several.
+fn stands_alone(linear: &AnyLinearBody, body: &BodySpec) -> Option<&'static str> {
+    if linear.is_coupled() {
+        return Some(
+            "places of loads, and masses that couple points, are those of all points of a deck: condense it without loads, with lumped masses",
+        );
+    }
+    if linear.period().iter().any(Option::is_some) {
+        return Some("periods of a linear body are those of a whole deck");
+    }
+    let unlike = |cloud: &Cloud| cloud.density.windows(2).any(|d| d[0] != d[1]);
+    matches!(body, BodySpec::Cloud(cloud) if unlike(cloud)).then_some(
+        "the points of this linear body differ in density, and those of one of several bodies have that of their material",
+    )
 }
 
 /// A set for every body, of its name, and `BODY.NAME` for each named mark of its file.
@@ -110,11 +133,7 @@ pub(super) fn made_of<'a>(
     body: &'a BodySpec,
     material: &'a str,
 ) -> impl Iterator<Item = &'a str> {
-    let pieces: &[PieceSpec] = match body {
-        BodySpec::Several(pieces) => pieces,
-        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => &[],
-    };
-    let all = pieces.iter().zip(written(document));
+    let all = body.pieces().iter().zip(written(document));
     all.filter(move |(_, at)| {
         at.value
             .material
@@ -136,15 +155,19 @@ pub(super) fn own(
         return Ok(None);
     };
     for (piece, at) in pieces.iter_mut().zip(written(document)) {
+        let linear = context.linear_bodies.get(&piece.name);
         let given = at.value.horizon.as_ref().or(document.horizon.as_ref());
-        let Some(given) = given else {
+        if let (Some(linear), None) = (linear, &at.value.horizon) {
+            piece.horizon = Some(Horizon::Length(linear.range() * (1.0 + 1e-9)));
+        } else if let Some(given) = given {
+            piece.horizon = Some(horizon(context, given, &piece.body)?);
+        } else {
             return Err(context.error_with(
                 &at.span,
                 format!("the body \"{}\" has no horizon", piece.name),
                 "write horizon = { m_ratio = 3 }, or a length, in it or for all bodies above them",
             ));
-        };
-        piece.horizon = Some(horizon(context, given, &piece.body)?);
+        }
         // customary is that of its law
         let of_body = |m: &&MaterialSpec| {
             m.set == piece.name
@@ -159,6 +182,9 @@ pub(super) fn own(
             at.value.influence.as_ref().or(document.influence.as_ref()),
             material.map_or(&[], std::slice::from_ref),
         )?);
+        if let Some(own) = &at.value.own_horizon {
+            piece.own_horizon = Some(context.expression(own, Dim::LENGTH)?);
+        }
         piece.family = match &at.value.family {
             None => None,
             Some(family) => Some(match family.value {
@@ -177,6 +203,40 @@ pub(super) fn own(
     Ok(pieces.first().and_then(|p| p.horizon))
 }
 
+/// Gives each of several bodies that have bonds its factors near the surface, or the only one.
+pub(super) fn surfaces(context: &Context, document: &Document, spec: &mut Spec) -> Result<()> {
+    if spec.body.pieces().is_empty() {
+        if let Some(surface) = &document.surface {
+            spec.bonds.surface = surface_factors(context, surface, spec)?;
+        }
+        return Ok(());
+    }
+    let named: Vec<Option<&At<SurfaceName>>> = written(document)
+        .map(|at| at.value.surface.as_ref().or(document.surface.as_ref()))
+        .collect();
+    if named.iter().flatten().all(|s| s.value == SurfaceName::None) {
+        return Ok(());
+    }
+    // who has no material is told when the model is made
+    let Ok(materials) = materials_of_bodies(spec) else {
+        return Ok(());
+    };
+    for (n, surface) in named.into_iter().enumerate() {
+        let piece = &spec.body.pieces()[n];
+        let Some(surface) = surface.filter(|_| piece.bonded) else {
+            continue;
+        };
+        let mut own = spec.alone(piece);
+        let of = |m: &usize| spec.materials[*m].clone();
+        own.materials = materials[n].iter().map(of).collect();
+        let factors = surface_factors(context, surface, &own)?;
+        if let BodySpec::Several(pieces) = &mut spec.body {
+            pieces[n].surface = factors;
+        }
+    }
+    Ok(())
+}
+
 /// Keys of a body that only have a meaning where there are several, and materials that do not exist.
 pub(super) fn check(context: &Context, document: &Document) -> Result<()> {
     for at in written(document) {
@@ -184,6 +244,11 @@ pub(super) fn check(context: &Context, document: &Document) -> Result<()> {
             ("horizon", at.value.horizon.as_ref().map(|h| &h.span)),
             ("influence", at.value.influence.as_ref().map(|i| &i.span)),
             ("family", at.value.family.as_ref().map(|f| &f.span)),
+            (
+                "own_horizon",
+                at.value.own_horizon.as_ref().map(|e| &e.span),
+            ),
+            ("surface", at.value.surface.as_ref().map(|s| &s.span)),
         ];
         if let Some((key, span)) = own.iter().find_map(|(key, span)| Some((key, (*span)?)))
             && !several(document)

@@ -78,7 +78,7 @@ pub(super) fn body(
     }
     match (&written.lattice, spec) {
         (Some(kind), _) => {
-            let filling = Filling::of(document);
+            let filling = Filling::of(document, written);
             lattice(context, body, LatticeKind::from(kind.value), &filling)
         }
         (None, Some(cloud)) => points_of_file(context, document, written, natural, cloud, cells),
@@ -290,11 +290,12 @@ pub(super) struct Filling {
 }
 
 impl Filling {
-    pub fn of(document: &Document) -> Filling {
+    pub fn of(document: &Document, body: &Body) -> Filling {
         let shelf = Shelf::standard();
         let mut materials = document.material.values();
         let atoms = materials.any(|m| shelf.is_potential(&m.value.law.value.name));
-        let exact = matches!(&document.surface, Some(s) if s.value == SurfaceName::Exact);
+        let surface = body.surface.as_ref().or(document.surface.as_ref());
+        let exact = surface.is_some_and(|s| s.value == SurfaceName::Exact);
         let periodic = document.periodic.as_ref().map(|p| match &p.value {
             Or::Bare(axes) => {
                 std::array::from_fn(|a| axes.iter().any(|axis| axis.value as usize == a))

@@ -24,6 +24,8 @@ pub(in crate::deck) struct Context<'a> {
     pub atoms: Option<AtomsFile>,
     /// Of the body's file.
     pub micromoduli: Option<Arc<AnyLinearBody>>,
+    /// The same of several bodies, by their names.
+    pub linear_bodies: BTreeMap<String, Arc<AnyLinearBody>>,
     /// Lowest and highest coordinates of the cells of a mesh; of several bodies those of the last.
     pub ends: Option<[[f64; 2]; 3]>,
     /// Cells of all meshes.
@@ -54,6 +56,7 @@ impl<'a> Context<'a> {
             dimension: 3,
             atoms: None,
             micromoduli: None,
+            linear_bodies: BTreeMap::new(),
             ends: None,
             cells: Cells::default(),
             notes: Vec::new(),

@@ -127,9 +127,7 @@ pub(in crate::deck) fn lower(
         },
     };
     between_points(&context, document, files, &potentials, &mut spec)?;
-    if let Some(surface) = &document.surface {
-        spec.bonds.surface = family::surface_factors(&context, surface, &spec)?;
-    }
+    bodies::surfaces(&context, document, &mut spec)?;
     indenter::of_material(&mut context, document, &mut spec)?;
     let species = potentials.into_values().map(|p| p.element);
     names::folders(&context, &document.output, &document.fields)?;

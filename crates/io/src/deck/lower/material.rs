@@ -84,6 +84,11 @@ pub(super) fn materials(
         let potential = potentials.get(name);
         let law = match potential {
             Some(potential) => LawSpec::Atoms(potential.spec.clone()),
+            None if given.law.value.name == Micromoduli::NAME
+                && let Some(linear) = context.linear_bodies.get(&set) =>
+            {
+                LawSpec::Micromoduli(linear.clone())
+            }
             None => law(context, &given.law)?,
         };
         // each of several bodies has one kind, which the engine sees to

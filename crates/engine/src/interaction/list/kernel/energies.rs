@@ -35,6 +35,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                     let j = v.end::<L, true>(partners);
                     let b = v.bond::<L>(&i, &j, rows, partners);
                     let (k, own, other) = v.acting(&b, i.field, j.field);
+                    let k = v.scaled(k, line);
                     let dead = L::dead(*v.alive.at(line));
                     let s = series.at(b.e.nan_if(dead)).zero_if(dead);
                     let kr = (b.k * b.r0_squared).zero_if(dead);

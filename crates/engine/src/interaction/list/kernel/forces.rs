@@ -68,6 +68,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let j = v.end::<L, true>(partners);
                 let b = v.bond::<L>(&i, &j, rows, partners);
                 let (k, own, other) = v.acting(&b, i.field, j.field);
+                let k = v.scaled(k, line);
                 let dead = L::dead(*v.alive.at(line));
                 let e = b.e.nan_if(dead);
                 let g = series.at(e);

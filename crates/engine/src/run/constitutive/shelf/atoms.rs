@@ -28,6 +28,8 @@ use std::sync::Arc;
 
 type Bound<const D: usize> = Result<Box<dyn Interaction<D>>, Wrong>;
 type Binder<const D: usize> = fn(&Given, &Body<D>, Neighbours<D>, Simd) -> Bound<D>;
+/// On families of the reference within this horizon (length).
+type Holder<const D: usize> = fn(&Given, &Body<D>, f64, Simd) -> Result<Box<dyn Held<D>>, Wrong>;
 
 /// Who feels whom.
 #[derive(Clone)]
@@ -55,8 +57,9 @@ pub(super) struct Atoms {
     reach: fn(&Given) -> Result<f64, Wrong>,
     pair: fn(&Given) -> Result<Box<PairEnergy>, Wrong>,
     sites: fn(&Given) -> Result<Box<dyn Sites>, Wrong>,
-    /// [`Binder`]s of one, two and three dimensions.
+    /// [`Binder`]s and [`Holder`]s of one, two and three dimensions.
     binders: [Arc<dyn Any + Send + Sync>; 3],
+    holders: [Arc<dyn Any + Send + Sync>; 3],
 }
 
 impl Atoms {
@@ -82,6 +85,11 @@ impl Atoms {
                 Arc::new(flat::<1, F> as Binder<1>),
                 Arc::new(flat::<2, F> as Binder<2>),
                 Arc::new(bind_fan::<F> as Binder<3>),
+            ],
+            holders: [
+                Arc::new(()),
+                Arc::new(()),
+                Arc::new(hold_fan::<F> as Holder<3>),
             ],
         }
     }
@@ -124,6 +132,11 @@ impl Atoms {
                 Arc::new(bind::<2, P> as Binder<2>),
                 Arc::new(bind::<3, P> as Binder<3>),
             ],
+            holders: [
+                Arc::new(hold::<1, P> as Holder<1>),
+                Arc::new(hold::<2, P> as Holder<2>),
+                Arc::new(hold::<3, P> as Holder<3>),
+            ],
         }
     }
 }
@@ -137,24 +150,38 @@ fn bind<const D: usize, P: Described>(
     let potential = mixture::<P>(given)?;
     Ok(match neighbours {
         Neighbours::Linked(links) => Box::new(FixedAtoms::new(body, links, potential, simd)),
-        Neighbours::Reference { horizon, breaks } => {
-            let held = CurrentAtoms::of_reference(body, potential, horizon, simd);
-            breaking(body, held, breaks, simd)
-        }
+        Neighbours::Reference { horizon, breaks } => breaking(
+            body,
+            hold::<D, P>(given, body, horizon, simd)?,
+            breaks,
+            simd,
+        ),
         Neighbours::Current => Box::new(CurrentAtoms::new(body, potential, simd)),
     })
+}
+
+fn hold<const D: usize, P: Described>(
+    given: &Given,
+    body: &Body<D>,
+    horizon: f64,
+    simd: Simd,
+) -> Result<Box<dyn Held<D>>, Wrong> {
+    let potential = mixture::<P>(given)?;
+    Ok(Box::new(CurrentAtoms::of_reference(
+        body, potential, horizon, simd,
+    )))
 }
 
 /// A held potential, with bonds that break if any do.
 fn breaking<const D: usize>(
     body: &Body<D>,
-    held: impl Held<D> + 'static,
+    held: Box<dyn Held<D>>,
     breaks: Option<Breaks>,
     simd: Simd,
 ) -> Box<dyn Interaction<D>> {
     match breaks {
-        None => Box::new(held),
-        Some(breaks) => Box::new(Breaking::new(body, Box::new(held), breaks, simd)),
+        None => held,
+        Some(breaks) => Box::new(Breaking::new(body, held, breaks, simd)),
     }
 }
 
@@ -169,6 +196,37 @@ fn bind_fan<F: fan::Described>(
     neighbours: Neighbours<3>,
     simd: Simd,
 ) -> Bound<3> {
+    let fan = fan_of::<F>(given, body)?;
+    Ok(match neighbours {
+        Neighbours::Linked(_) => {
+            let message = format!(
+                "{} has no stencil: its terms have pairs that no bond of one atom is; write family = \"reference\"",
+                F::NAME
+            );
+            return Err((String::new(), message));
+        }
+        Neighbours::Reference { horizon, breaks } => breaking(
+            body,
+            hold_fan::<F>(given, body, horizon, simd)?,
+            breaks,
+            simd,
+        ),
+        Neighbours::Current => Box::new(FanAtoms::new(body, fan, simd)),
+    })
+}
+
+fn hold_fan<F: fan::Described>(
+    given: &Given,
+    body: &Body<3>,
+    horizon: f64,
+    simd: Simd,
+) -> Result<Box<dyn Held<3>>, Wrong> {
+    let fan = fan_of::<F>(given, body)?;
+    Ok(Box::new(FanAtoms::of_reference(body, fan, horizon, simd)))
+}
+
+/// One that knows all kinds of the body.
+fn fan_of<F: fan::Described>(given: &Given, body: &Body<3>) -> Result<F, Wrong> {
     let fan = fan::of_kinds::<F>(given)?;
     let known = fan.table().kinds();
     let kinds = body.slots.iter().map(|s| body.material_of(*s as usize));
@@ -180,20 +238,7 @@ fn bind_fan<F: fan::Described>(
         );
         return Err((String::new(), message));
     }
-    Ok(match neighbours {
-        Neighbours::Linked(_) => {
-            let message = format!(
-                "{} has no stencil: its terms have pairs that no bond of one atom is; write family = \"reference\"",
-                F::NAME
-            );
-            return Err((String::new(), message));
-        }
-        Neighbours::Reference { horizon, breaks } => {
-            let held = FanAtoms::of_reference(body, fan, horizon, simd);
-            breaking(body, held, breaks, simd)
-        }
-        Neighbours::Current => Box::new(FanAtoms::new(body, fan, simd)),
-    })
+    Ok(fan)
 }
 
 /// Angles between bonds need space.
@@ -460,6 +505,26 @@ impl AnyPotential {
             }
         })
     }
+
+    fn hold<const D: usize>(
+        &self,
+        body: &Body<D>,
+        horizon: f64,
+        simd: Simd,
+    ) -> Result<Box<dyn Held<D>>, BuildError> {
+        self.with(|a| {
+            let holder = a.holders.get(D - 1);
+            match holder.and_then(|h| h.downcast_ref::<Holder<D>>()) {
+                Some(holder) => holder(&self.given, body, horizon, simd),
+                None => {
+                    let name = &self.entry.descriptor.name;
+                    let message =
+                        format!("{name} is a potential in three dimensions, the body has {D}");
+                    Err((String::new(), message))
+                }
+            }
+        })
+    }
 }
 
 impl AnyPotentials {
@@ -527,19 +592,19 @@ impl AnyPotentials {
         if let [one] = &self.parts[..] {
             return one.bind(body, neighbours, simd);
         }
+        let each = self.parts.iter();
         if let Neighbours::Reference {
+            horizon,
             breaks: Some(breaks),
-            ..
         } = &neighbours
             && matches!(breaks.measure, Measure::Work(_))
         {
-            return Err(BuildError::unsupported(
-                "materials[0].fracture",
-                "between these atoms act several potentials, and the work on a bond is that of all",
-            )
-            .help("give critical_stretch"));
+            let parts = each.map(|p| p.hold(body, *horizon, simd));
+            let parts = parts.collect::<Result<Vec<_>, _>>()?;
+            let sum = Together::of_reference(body, parts, *horizon, simd);
+            let made = Breaking::new(body, Box::new(sum), breaks.clone(), simd);
+            return Ok(Box::new(made));
         }
-        let each = self.parts.iter();
         let parts = each.map(|p| p.bind(body, neighbours.clone(), simd));
         let parts = parts.collect::<Result<Vec<_>, _>>()?;
         Ok(Box::new(Together::new(body, parts)))

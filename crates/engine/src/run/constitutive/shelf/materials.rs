@@ -419,6 +419,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
             Ok(Box::new(made.map_err(unfit)?))
         }
         _ => {
+            let stiffnesses = weight.stiffnesses(body);
             let (list, weight) = match body.horizon.is_empty() {
                 true => (HorizonList::new(body, horizon)?, weight),
                 false => own_horizons(body, horizon, weight)?,
@@ -427,7 +428,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
             let near_horizon = list.near_horizon;
             let family = CloudFamily::new(body, chosen.horizon, list, weight, remembers);
             let family = match M::OF_BONDS {
-                true => family.of_bonds(chosen.horizon),
+                true => family.of_bonds(stiffnesses),
                 false => family,
             };
             let parts = BondParts {
