@@ -6,7 +6,7 @@ use crate::expression::Expression;
 use crate::law::partner::Partner;
 use crate::law::solid::eam_like::Solid;
 use crate::quantity::rounded;
-use crate::spec::{Influence, LawSpec, Moduli, Parameter, Parameters, Plane};
+use crate::spec::{Influence, InterfaceRule, LawSpec, Moduli, Parameter, Parameters, Plane};
 use std::borrow::Cow;
 
 /// A law, or what else a spec names, as its users see it.
@@ -573,4 +573,9 @@ pub trait Shelved: Sized {
     /// # Errors
     /// Which material, and why.
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)>;
+
+    /// The same with this rule for bonds between unlike materials; most laws answer for each end by itself.
+    fn meeting(self, _: InterfaceRule) -> Self {
+        self
+    }
 }

@@ -531,6 +531,86 @@ fn a_bar_lasts_as_its_line_says() {
     assert_eq!((endures.cycles(), endures.broken()), (Some(0.0), 0));
 }
 
+/// A row of points whose bonds are shorter by γ, longer by ε, shorter by γ: the outer ones wear out after 1/(A γ^m) cycles, and with them goes what
+/// strengthened the points between, `s0 = s00 + α γ`. What is left of it, `s00 − α ε`, is below ε where α > s00/ε − 1: the bond breaks though it would
+/// last; else it has lost its part of life.
+#[test]
+fn what_wears_out_strengthens_its_points_no_more() {
+    let (a, m, s00) = (1e6, 3.0, 1e-2);
+    let (shorter, longer, little) = (1.2e-2f64, 8e-3f64, 1e-4);
+    let last = 1.0 / (a * shorter.powf(m));
+    for (alpha, broken) in [(0.0, 4), (0.2, 4), (0.3, 6)] {
+        let mut spec = block(1, [6, 1, 1], LawSpec::Pmb(PmbStiffness::Young(1.0)));
+        spec.bonds.horizon = Horizon::Ratio(1);
+        spec.materials[0].fracture = Some(FractureSpec {
+            alpha,
+            fatigue: Some(FatigueSpec {
+                nucleation: Some([a, m]),
+                limit: 0.0,
+                growth: Some([a, m]),
+                crack: 0.35,
+            }),
+            ..FractureSpec::new(Criterion::Stretch(s00))
+        });
+        // the last but one is free, or nothing would be sought
+        let ends = longer - 2.0 * shorter;
+        let row = format!(
+            "x < 1 ? 0 : x < 2 ? {} : x < 3 ? {} : {ends}",
+            -shorter,
+            longer - shorter
+        );
+        for (name, low, u) in [
+            ("row", 0.0, row),
+            ("end", 5.0, format!("{}", ends - 2.0 * little)),
+        ] {
+            spec.sets.push(SetSpec {
+                name: name.into(),
+                members: Members::Region(Region::Block {
+                    low: [low, -1.0, -1.0],
+                    high: [if low > 0.0 { 6.0 } else { 4.0 }, 1.0, 1.0],
+                }),
+            });
+            spec.loading.conditions.push(ConditionSpec {
+                set: name.into(),
+                kind: ConditionKind::Displacement([Some(e(&u)), None, None]),
+            });
+        }
+        spec.run.schedule.steps = 4;
+        spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+        spec.run.schedule.stepper = Stepper::Statics(Statics {
+            method: Method::Newton,
+            cycles: Some(Cycles {
+                load_ratio: 0.0,
+                bonds: 1,
+                most: 2.0 * last,
+            }),
+            ..Statics::default()
+        });
+        let mut sim = started(&spec);
+        let mut step = |expected: f64| {
+            sim.step().unwrap();
+            let found = sim.cycles().unwrap();
+            assert!(
+                (found - expected).abs() < 1e-9 * last,
+                "{alpha}: {found} {expected}"
+            );
+            sim.broken()
+        };
+        // bonds count from both ends
+        let all = [0.0, last, 2.0 * last, 2.0 * last].map(&mut step);
+        assert_eq!(all, [0, 4, broken, broken], "{alpha}");
+        let (whole, life) = (sim.scalars("whole"), sim.scalars("remaining_life"));
+        let left = { whole.iter().zip(&life) }.filter(|(w, _)| **w == 1.0);
+        let least = left.fold(1.0f64, |least, (_, life)| least.min(*life));
+        let stretch = if broken == 4 { longer } else { little };
+        let expected = 1.0 - 2.0 * (stretch / shorter).powf(m);
+        assert!(
+            (least - expected).abs() < 1e-9,
+            "{alpha}: {least} {expected}"
+        );
+    }
+}
+
 /// Two bars side by side wear in the same cycles: while the bonds of the one that is stretched more wear out, those of the other lose their part,
 /// and last as long as if they were alone.
 #[test]

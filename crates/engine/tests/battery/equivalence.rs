@@ -1,6 +1,7 @@
 //! Things that must be the same: stencil and list; LPS and PMB at ν = ¼ (plane stress ⅓); LPS and EAM-like.
 
 use crate::sample::*;
+use peridyne::run::Simulation;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 
@@ -236,6 +237,81 @@ fn interface_bonds_follow_their_rule() {
             "{rule:?}: {}",
             across / right
         );
+    }
+}
+
+/// Density of forces that answers to displacements `change` about those of now, of the linear body.
+fn slopes<const D: usize>(sim: &mut dyn Simulation, change: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let body = sim.linear_body().of::<D>().unwrap();
+    let flat: Vec<[f64; D]> = change
+        .iter()
+        .map(|c| std::array::from_fn(|a| c[a]))
+        .collect();
+    let of = |i: usize| {
+        let f = body.force(&flat, i);
+        std::array::from_fn(|a| f.get(a).copied().unwrap_or(0.0))
+    };
+    (0..flat.len()).map(of).collect()
+}
+
+/// Two materials whose bonds are asked for rates, and never break, have the forces, energies and tangents of those whose bonds break by nothing.
+#[test]
+fn bonds_between_materials_follow_their_rule_whatever_they_break_by() {
+    let rules = [
+        InterfaceRule::Series,
+        InterfaceRule::Parallel,
+        InterfaceRule::Minimum,
+    ];
+    let families = [FamilyChoice::Stencil, FamilyChoice::List];
+    let each = || rules.into_iter().flat_map(|r| families.map(|f| (r, f)));
+    for (place, (rule, family)) in places()
+        .into_iter()
+        .flat_map(|p| each().map(move |e| (p, e)))
+    {
+        let case = Case::of("pmb mixed", place);
+        let mut spec = case.spec();
+        spec.interactions.interface = rule;
+        spec.bonds.family = family;
+        let mut asked = spec.clone();
+        for m in &mut asked.materials {
+            m.fracture = Some(FractureSpec {
+                rate: Some(RateSpec {
+                    coefficient: 0.1,
+                    reference: 1.0,
+                }),
+                ..FractureSpec::new(Criterion::Stretch(1e3))
+            });
+        }
+        let [expected, found] = [spec, asked].map(|spec| {
+            let mut sim = at_rest(&spec);
+            let n = sim.info().points as usize;
+            let [u, change] = [23, 29].map(|seed| Random(seed).vectors(n, case.d(), 0.1 * H));
+            let f = sim.forces_under(&u);
+            sim.set_displacements(&u);
+            sim.start(true);
+            let tangents = match case.d() {
+                1 => slopes::<1>(sim.as_mut(), &change),
+                2 => slopes::<2>(sim.as_mut(), &change),
+                _ => slopes::<3>(sim.as_mut(), &change),
+            };
+            let energies: Vec<[f64; 3]> = sim
+                .scalars("energy_density")
+                .iter()
+                .map(|w| [*w; 3])
+                .collect();
+            [f, tangents, energies]
+        });
+        for (what, (a, b)) in ["forces", "tangents", "energies"]
+            .iter()
+            .zip(expected.iter().zip(&found))
+        {
+            let off = distance(a, b) / largest(a);
+            assert!(
+                off < 1e-12,
+                "{what}, {rule:?}, {family:?}, {}: {off:e}",
+                case.name()
+            );
+        }
     }
 }
 

@@ -427,6 +427,89 @@ fn laws_of_bonds_answer_at_every_horizon_as_pmb_does() {
     }
 }
 
+/// Two materials, the second three times as stiff.
+fn of_two(mut spec: Spec, rule: InterfaceRule) -> Spec {
+    spec.interactions.interface = rule;
+    spec.materials.push(spec.materials[0].clone());
+    spec.materials[1].law = LawSpec::Pmb(PmbStiffness::Young(3.0));
+    for (n, condition) in ["x < 4.5", "x >= 4.5"].into_iter().enumerate() {
+        let name = ["low", "high"][n].to_string();
+        spec.materials[n].set.clone_from(&name);
+        spec.sets.push(SetSpec {
+            name,
+            members: Members::Where(Expression::parse(condition, &[]).unwrap()),
+        });
+    }
+    spec
+}
+
+/// What a bond between micromoduli 1 and 3 has.
+const RULES: [(InterfaceRule, f64); 3] = [
+    (InterfaceRule::Series, 1.5),
+    (InterfaceRule::Parallel, 2.0),
+    (InterfaceRule::Minimum, 1.0),
+];
+
+#[test]
+fn two_materials_of_alike_horizons_are_those_of_the_body() {
+    for (rule, _) in RULES {
+        for (size, horizon, own) in [(&[20.0][..], 2.45, "2.45"), (&[9.0, 8.0], 2.3, "2.3")] {
+            let mut one = started(&of_two(solid(size, horizon, None), rule));
+            let mut other = started(&of_two(solid(size, horizon, Some(own)), rule));
+            let u = bent(one.as_mut());
+            let [f, g] = [&mut one, &mut other].map(|sim| sim.forces_under(&u));
+            let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+            for (f, g) in f.iter().flatten().zip(g.iter().flatten()) {
+                assert!((f - g).abs() < 1e-12 * most, "{rule:?} {size:?}: {f} {g}");
+            }
+            let energies = [one, other].map(|mut sim| {
+                sim.set_displacements(&u);
+                sim.start(true);
+                sim.ledger().unwrap().strain
+            });
+            assert!(
+                (energies[0] / energies[1] - 1.0).abs() < 1e-12,
+                "{rule:?} {size:?}: {energies:?}"
+            );
+        }
+    }
+}
+
+/// Where one half moves as a whole nothing but bonds across are stretched: they have so many times what they have of the softer material alone.
+#[test]
+fn bonds_across_follow_their_rule_at_every_horizon() {
+    for size in [&[12.0][..], &[10.0, 6.0], &[9.0, 4.0, 4.0]] {
+        let alone = solid(size, 3.6, Some(GRADED));
+        let across = |spec: &Spec| {
+            let mut sim = started(spec);
+            let moved = |x: &[f64; 3]| match x[0] < 4.5 {
+                true => [0.0; 3],
+                false => std::array::from_fn(|a| if a < size.len() { 0.02 } else { 0.0 }),
+            };
+            let u: Vec<[f64; 3]> = sim.vectors("reference").iter().map(moved).collect();
+            let f = sim.forces_under(&u);
+            sim.set_displacements(&u);
+            sim.start(true);
+            (f, sim.ledger().unwrap().strain)
+        };
+        let (f, energy) = across(&alone);
+        let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        for (rule, times) in RULES {
+            let (g, found) = across(&of_two(alone.clone(), rule));
+            for (f, g) in f.iter().flatten().zip(g.iter().flatten()) {
+                assert!(
+                    (times * f - g).abs() < 1e-12 * most,
+                    "{rule:?} {size:?}: {f} {g}"
+                );
+            }
+            assert!(
+                (found / energy / times - 1.0).abs() < 1e-12,
+                "{rule:?} {size:?}: {found:e} {energy:e}"
+            );
+        }
+    }
+}
+
 /// Laws that compute from a horizon or a family what each of their points uses, and what shows it.
 fn of_points() -> Vec<(LawSpec, &'static str)> {
     let all = |name: &str, numbers: &[(&str, f64)], words: &[(&str, &str)]| {

@@ -160,4 +160,28 @@ fn rectangles_that_mean_nothing_are_refused() {
         assert_eq!(error.path, "probes[0].corners");
         assert!(error.message.contains(message), "{}", error.message);
     }
+    // statics before motion is not all of the run
+    let mut spec = plate(24, A, PMB);
+    probe(&mut spec, "tip", "all", around(A, 0.5));
+    spec.run.preload = Some(PreloadSpec {
+        statics: Statics {
+            method: Method::Newton,
+            ..Statics::default()
+        },
+        increments: 1,
+        duration: None,
+        conditions: std::mem::take(&mut spec.loading.conditions),
+        indenters: vec![],
+        cuts: vec![],
+    });
+    spec.run.schedule.stepper = Stepper::Verlet;
+    let Err(error) = build(&spec, Options::default()) else {
+        panic!("in motion")
+    };
+    assert_eq!(error.path, "probes[0]");
+    assert!(
+        error.message.contains("needs equilibrium"),
+        "{}",
+        error.message
+    );
 }

@@ -164,6 +164,120 @@ fn a_held_bar_is_under_pressure() {
     }
 }
 
+/// Two materials along x that meet at `x`, the second three times as stiff.
+fn of_two(spec: &mut Spec, x: f64, rule: InterfaceRule) {
+    spec.interactions.interface = rule;
+    spec.materials.push(spec.materials[0].clone());
+    spec.sets
+        .extend([beyond("soft", x, -1.0), beyond("stiff", x, 1.0)]);
+    for (m, (set, young)) in spec
+        .materials
+        .iter_mut()
+        .zip([("soft", 1.0), ("stiff", 3.0)])
+    {
+        m.set = set.into();
+        m.law = LawSpec::Pmb(PmbStiffness::Young(young));
+    }
+    for transfer in &mut spec.interactions.transfers {
+        transfer.materials.push(transfer.materials[0]);
+    }
+}
+
+const RULES: [InterfaceRule; 3] = [
+    InterfaceRule::Series,
+    InterfaceRule::Parallel,
+    InterfaceRule::Minimum,
+];
+
+/// At the temperature of reference two materials are what they are without one, on lattices and clouds.
+#[test]
+fn materials_that_may_expand_meet_as_those_that_do_not() {
+    let each = (1..=3).flat_map(|d| [false, true].map(|cloud| (d, cloud)));
+    for ((d, cloud), rule) in each.flat_map(|e| RULES.map(|rule| (e, rule))) {
+        let mut warm = block(d, SPRINGS, cloud, told(1e-3, "20"));
+        of_two(&mut warm, 2.9, rule);
+        let mut plain = warm.clone();
+        plain.interactions.transfers.clear();
+        // and nothing spreads
+        plain.run.schedule.stepper = Stepper::Verlet;
+        plain.run.schedule.time_step = TimeStep::Fraction(0.5);
+        let found = [plain, warm].map(|spec| {
+            let mut sim = built(&spec);
+            let n = sim.info().points as usize;
+            let at = |n: usize, a: usize| {
+                if a < d {
+                    0.03 * ((3 * n + 2 * a) as f64).sin()
+                } else {
+                    0.0
+                }
+            };
+            let u: Vec<[f64; 3]> = (0..n).map(|n| std::array::from_fn(|a| at(n, a))).collect();
+            let mut all: Vec<f64> = sim.forces_under(&u).into_iter().flatten().collect();
+            sim.set_displacements(&u);
+            sim.start(true);
+            all.push(sim.ledger().unwrap().strain);
+            all
+        });
+        let most = found[0].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        for (a, b) in found[0].iter().zip(&found[1]) {
+            assert!(
+                (a - b).abs() < 1e-12 * most,
+                "{d}-D {cloud} {rule:?}: {a} {b}"
+            );
+        }
+    }
+}
+
+/// A chain of nearest neighbours of two halves between walls is warmed. All its bonds bear one force, `F = c (s − ε)/(1 + ε)²`, ε the mean strain
+/// of their ends, and together they stay as long as they were: `F Σ (1 + ε)²/c = −Σ ε`. Of unit moduli c is 1 and 3, across that of the rule.
+#[test]
+fn a_warm_bar_of_two_halves_between_walls() {
+    let grown = [0.03, 0.06];
+    for (rule, across) in RULES.into_iter().zip([1.5, 2.0, 1.0]) {
+        let mut spec = still(
+            1,
+            cells(1, 1.0, [0.0; 3], [20.0; 3]),
+            1,
+            0.5,
+            told(0.0, "20 + 60*t"),
+        );
+        of_two(&mut spec, 10.0, rule);
+        let expands = &mut spec.interactions.transfers[0].materials;
+        for (m, grown) in expands.iter_mut().zip(grown) {
+            m.expansion = grown / 60.0;
+        }
+        statics(&mut spec);
+        for (name, x, sign) in [("left", 1.0, -1.0), ("right", 19.0, 1.0)] {
+            spec.sets.push(beyond(name, x, sign));
+            spec.loading.conditions.push(ConditionSpec {
+                set: name.into(),
+                kind: ConditionKind::Displacement([Some(text("0")), None, None]),
+            });
+        }
+        let mut sim = built(&spec);
+        run(&mut *sim, 2);
+        let bond = |k: usize| match k {
+            0..9 => (1.0, grown[0]),
+            9 => (across, 0.5 * (grown[0] + grown[1])),
+            _ => (3.0, grown[1]),
+        };
+        let sum = |of: &dyn Fn((f64, f64)) -> f64| (0..19).map(|k| of(bond(k))).sum::<f64>();
+        let force = -sum(&|(_, e)| e) / sum(&|(c, e)| (1.0 + e).powi(2) / c);
+        let mut u = 0.0;
+        for (k, found) in sim.displacements().iter().enumerate() {
+            assert!(
+                (found[0] - u).abs() < 1e-9,
+                "{rule:?}: {} {u} at {k}",
+                found[0]
+            );
+            if k < 19 {
+                let (c, e) = bond(k);
+                u += e + force * (1.0 + e).powi(2) / c;
+            }
+        }
+    }
+}
+
 /// Tangents are slopes of the forces, of bodies that are warm in places.
 #[test]
 fn tangents_know_the_temperature() {

@@ -16,20 +16,25 @@ pub struct PlainPoint {
 impl<const D: usize, F: Family<D>> BondState<D, F> {
     /// `constants`: `[materials][numbers]`
     pub fn plain_point(&self, constants: &[f64], slot: usize) -> PlainPoint {
-        let count = self.law.constants;
         let mut section = 0.0;
         if self.law.section && D == 2 && !self.held.is_empty() && !self.expansion.is_empty() {
             let strain = self.expansion[slot];
             section = (0.0 - strain) / (1.0 + strain);
         }
         PlainPoint {
-            constants: match self.placed.data.is_empty() {
-                true => constants[self.material_at(slot) * count..][..count].to_vec(),
-                false => self.placed.numbers(slot),
-            },
+            constants: self.plain_constants(constants, slot),
             form: self.form.numbers(slot),
             past: self.past.numbers(slot),
             section,
+        }
+    }
+
+    /// Constants of a slot, of `[materials][numbers]`.
+    pub fn plain_constants(&self, constants: &[f64], slot: usize) -> Vec<f64> {
+        let count = self.law.constants;
+        match self.placed.data.is_empty() {
+            true => constants[self.material_at(slot) * count..][..count].to_vec(),
+            false => self.placed.numbers(slot),
         }
     }
 

@@ -101,8 +101,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for GroupEnergy<'_, D,
                 for k in 0..v.family.bonds(group) {
                     let (bond, weight) = self.bond::<L>(&at, k);
                     let memory = v.memory::<L>(group, k);
+                    let constants = match last {
+                        true => v.constants_to::<L>(&at, v.family.ends(group, k)),
+                        false => at.constants,
+                    };
                     let end = End {
-                        constants: &at.constants,
+                        constants: &constants,
                         point: &point,
                         memory: &memory,
                     };

@@ -13,11 +13,11 @@ pub trait PlainLaw<const D: usize>: PointLaw<D> {
     fn constants(&self, materials: usize, dt: f64, all: &mut Vec<f64>);
 
     /// Strain energy density, `Σ ω ν V |ξ|² s` and `Σ ω ν V |ξ|²` of a point under a homogeneous displacement gradient, by its whole bonds with what they
-    /// remember.
+    /// remember, and the constants of their other ends.
     fn strained(
         &self,
         at: &PlainPoint,
-        bonds: &[(WholeBond<D>, Vec<f64>)],
+        bonds: &[(WholeBond<D>, [Vec<f64>; 2])],
         gradient: &[[f64; D]; D],
     ) -> [f64; 3];
 
@@ -57,7 +57,7 @@ impl<const D: usize, M: Material<D>> PlainLaw<D> for Compiled<M> {
     fn strained(
         &self,
         at: &PlainPoint,
-        bonds: &[(WholeBond<D>, Vec<f64>)],
+        bonds: &[(WholeBond<D>, [Vec<f64>; 2])],
         gradient: &[[f64; D]; D],
     ) -> [f64; 3] {
         let constants: M::Constants<f64> = numbers(&at.constants);
@@ -72,7 +72,7 @@ impl<const D: usize, M: Material<D>> PlainLaw<D> for Compiled<M> {
         let mut sum = <M::Sum<f64> as Numbers<f64>>::constant(0.0);
         for pass in 0..M::PASSES {
             sum = <M::Sum<f64> as Numbers<f64>>::constant(0.0);
-            for ((_, xi, omega, weight), memory) in bonds {
+            for ((_, xi, omega, weight), [memory, _]) in bonds {
                 let memory = numbers(memory);
                 let end = End {
                     constants: &constants,
@@ -85,10 +85,10 @@ impl<const D: usize, M: Material<D>> PlainLaw<D> for Compiled<M> {
         }
         let mut energy = self.0.point_energy(&site, sum, &point);
         let (mut share, mut whole) = (0.0, 0.0);
-        for ((_, xi, omega, weight), memory) in bonds {
+        for ((_, xi, omega, weight), [memory, others]) in bonds {
             let memory = numbers(memory);
             let end = End {
-                constants: &constants,
+                constants: &self.0.between(constants, &numbers(others)),
                 point: &point,
                 memory: &memory,
             };

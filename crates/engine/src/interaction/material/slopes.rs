@@ -75,6 +75,8 @@ pub struct PassSlopes<const D: usize> {
 #[derive(Clone, Copy)]
 pub struct PlainEnd<'a> {
     pub constants: &'a [f64],
+    /// Those of the other end.
+    pub others: &'a [f64],
     pub point: &'a [f64],
     pub memory: &'a [f64],
 }
@@ -175,7 +177,8 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
     }
 
     fn answer_slopes(&self, b: &Bent<D>, end: PlainEnd, own: bool) -> AnswerSlopes<D> {
-        let constants: M::Constants<Real> = lifted(end.constants, None);
+        let others: M::Constants<Real> = lifted(end.others, None);
+        let constants = self.0.between(lifted(end.constants, None), &others);
         let memory: M::Memory<Real> = lifted(end.memory, None);
         let pull = |axis: Option<usize>, number: Option<usize>| -> [Real; D] {
             let bond = bent(&b.xi, &b.eta, b.omega, axis);

@@ -125,8 +125,9 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
         let dead = v.dead::<L>(at.number, k);
         let (bond, weight) = v.bond::<L>(at, k, ends, dead);
         let memory = v.memory::<L>(at.number, k);
+        let constants = v.constants_to::<L>(at, ends);
         let end = End {
-            constants: &at.constants,
+            constants: &constants,
             point,
             memory: &memory,
         };
@@ -143,7 +144,8 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
             let constants = if v.alike || !M::READS {
                 at.constants
             } else {
-                v.constants_at::<L>(ends)
+                let other = v.constants_at::<L>(ends);
+                v.law.between(other, &at.constants)
             };
             v.law.answer(
                 &mirrored(&bond),
@@ -175,9 +177,16 @@ pub unsafe fn answers<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     bond: &Bond<L, D>,
 ) -> M::State<L> {
     // SAFETY: the caller's promise
-    let (memory, left) = unsafe { (v.memory::<L>(at.number, k), v.integrity::<L>(at.rows)) };
+    let (memory, left, constants) = unsafe {
+        let ends = v.family.ends(at.number, k);
+        (
+            v.memory::<L>(at.number, k),
+            v.integrity::<L>(at.rows),
+            v.constants_to::<L>(at, ends),
+        )
+    };
     let end = End {
-        constants: &at.constants,
+        constants: &constants,
         point,
         memory: &memory,
     };

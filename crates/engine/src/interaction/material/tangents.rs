@@ -101,12 +101,13 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
         }
     }
 
-    /// Derivatives of what one end of a node's bond answers, as the force density on i: by η, and by the channels of that end.
+    /// Derivatives of what one end of a node's bond answers, as the force density on i: by η, and by the channels of that end;
+    /// with the constants of the `other`.
     fn answer(
         &self,
         node: &Node<D>,
         b: &Bent<D>,
-        end: &Node<D>,
+        (end, other): (&Node<D>, &Node<D>),
         own: bool,
     ) -> ([[f64; D]; D], Vec<[f64; D]>, [f64; D]) {
         let channels = end.gain.first().map_or(0, Vec::len);
@@ -122,6 +123,7 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
         };
         let end_of = PlainEnd {
             constants: &end.at.constants,
+            others: &other.at.constants,
             point: &end.point,
             memory: if own { &b.memory } else { &back },
         };
@@ -152,8 +154,8 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
             for (b, shares) in node.bonds.iter().zip(&node.shares) {
                 let j = original(b.end);
                 let Some(partner) = &nodes[j] else { continue };
-                let (own, pull, force) = self.answer(node, b, node, true);
-                let (other, partner_pull, more) = self.answer(node, b, partner, false);
+                let (own, pull, force) = self.answer(node, b, (node, partner), true);
+                let (other, partner_pull, more) = self.answer(node, b, (partner, node), false);
                 let y: [f64; D] = std::array::from_fn(|a| b.xi[a] + b.moved[a]);
                 let square: f64 = y.iter().map(|c| c * c).sum();
                 let along: f64 = (0..D).map(|a| (force[a] + more[a]) * y[a]).sum();

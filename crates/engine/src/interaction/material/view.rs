@@ -101,6 +101,24 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         out
     }
 
+    /// Constants of the group's end of its bonds to these ends.
+    ///
+    /// # Safety
+    /// The ends of a bond of the group.
+    #[inline(always)]
+    pub unsafe fn constants_to<L: Lane>(
+        &self,
+        at: &GroupOf<L, D, F, M>,
+        ends: F::Slots,
+    ) -> M::Constants<L> {
+        if !M::MEETS || self.alike {
+            return at.constants;
+        }
+        // SAFETY: the caller's promise
+        let other = unsafe { self.constants_at::<L>(ends) };
+        self.law.between(at.constants, &other)
+    }
+
     /// η of a group's bonds; 0 in lanes without one.
     ///
     /// # Safety

@@ -22,7 +22,11 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         for (group, l, slot) in bonds.family.points() {
             let at = bonds.plain_point(&constants, slot);
             let whole = bonds.bonds_of(group, l).into_iter();
-            let whole = whole.map(|b| (b, bonds.memory_at(group, b.0, l)));
+            let whole = whole.map(|b| {
+                let end = bonds.family.ends(group, b.0).slot(l);
+                let others = bonds.plain_constants(&constants, end);
+                (b, [bonds.memory_at(group, b.0, l), others])
+            });
             let found = (self.law).strained(&at, &whole.collect::<Vec<_>>(), gradient);
             out.strain[slot] = part_of(bonds.integrity_at(slot), found[0]);
             out.dilatation[slot] = found[1];

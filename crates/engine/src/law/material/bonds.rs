@@ -4,7 +4,7 @@ use super::{Along, Bond, End, Material};
 use crate::law::descriptor::{Descriptor, Given, Key, Shelved};
 use crate::law::number::Number;
 use crate::law::solid::linear::{ONE_STIFFNESS, stiffness};
-use crate::spec::{LawSpec, Parameters, Plane};
+use crate::spec::{InterfaceRule, LawSpec, Parameters, Plane};
 use std::marker::PhantomData;
 
 /// Bonds that answer along themselves with `T = ½ c ω t(s)` and store `½ c ω |ξ| w(s)` at either end, `w′ = t`, `t = s + …` for small
@@ -12,6 +12,8 @@ use std::marker::PhantomData;
 pub trait BondLaw<const K: usize>: Send + Sync + 'static {
     /// Keys of those numbers.
     const NUMBERS: [Key; K];
+    /// Have bonds between unlike materials a micromodulus by the rule of the spec? Else each end has its own half.
+    const RULED: bool = false;
 
     /// Without the keys.
     fn descriptor() -> Descriptor;
@@ -27,6 +29,8 @@ pub trait BondLaw<const K: usize>: Send + Sync + 'static {
 pub struct Bonds<L, const K: usize> {
     /// ½ c and the numbers of each material.
     materials: Vec<([f64; 1], [f64; K])>,
+    /// What bonds between unlike micromoduli have; in parallel where all are alike.
+    rule: InterfaceRule,
     law: PhantomData<L>,
 }
 
@@ -44,9 +48,25 @@ impl<L: BondLaw<K>, const K: usize, const D: usize> Material<D> for Bonds<L, K> 
     const PASSES: usize = 0;
     const ALIKE: bool = true;
     const OF_BONDS: bool = true;
+    const MEETS: bool = L::RULED;
 
     fn constants(&self, material: usize, _: f64) -> Constants<f64, K> {
         self.materials[material]
+    }
+
+    #[inline(always)]
+    fn between<N: Number>(
+        &self,
+        ([own], numbers): Constants<N, K>,
+        ([other], _): &Constants<N, K>,
+    ) -> Constants<N, K> {
+        let half = match self.rule {
+            // each end has its own
+            InterfaceRule::Parallel => own,
+            InterfaceRule::Series => (N::constant(2.0) * own * *other).div(own + *other),
+            InterfaceRule::Minimum => own.least(*other),
+        };
+        ([half], numbers)
     }
 
     #[inline(always)]
@@ -82,7 +102,16 @@ impl<L: BondLaw<K>, const K: usize> Shelved for Bonds<L, K> {
         };
         Ok(Bonds {
             materials: all.iter().enumerate().map(of).collect::<Result<_, _>>()?,
+            rule: InterfaceRule::Parallel,
             law: PhantomData,
         })
+    }
+
+    fn meeting(self, rule: InterfaceRule) -> Self {
+        let mut unlike = self.materials.windows(2).map(|m| m[0].0 != m[1].0);
+        match unlike.any(|is| is) {
+            true => Bonds { rule, ..self },
+            false => self,
+        }
     }
 }

@@ -364,6 +364,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const ACROSS: bool = false;
     /// Does an answer read constants? False saves finding those of the other end.
     const READS: bool = true;
+    /// Do bonds between unlike materials answer and store by constants of their own ([`Material::between`])?
+    const MEETS: bool = false;
     /// Are its force states slopes of its energy? Laws of rates have no potential.
     const POTENTIAL: bool = true;
     /// Does [`Material::form`] see the bonds that are whole now, or the family as it was?
@@ -450,6 +452,16 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         _sum: Self::Sum<N>,
         _point: &mut Self::Point<N>,
     ) {
+    }
+
+    /// Constants of this end's half of a bond, `own` those of its material and `_other` of the other end's; answers and energies read them.
+    #[inline(always)]
+    fn between<N: Number>(
+        &self,
+        own: Self::Constants<N>,
+        _other: &Self::Constants<N>,
+    ) -> Self::Constants<N> {
+        own
     }
 
     /// The force state of this end.

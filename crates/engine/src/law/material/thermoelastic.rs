@@ -14,6 +14,7 @@ impl Thermoelastic {
 
 impl BondLaw<0> for Thermoelastic {
     const NUMBERS: [Key; 0] = [];
+    const RULED: bool = true;
 
     fn descriptor() -> Descriptor {
         Descriptor::new(

@@ -257,7 +257,8 @@ fn of_stages(spec: &Spec) -> Vec<Need> {
             "take integrator = \"verlet\" without [statics]",
         ));
     }
-    if spec.run.preload.is_none() && spec.run.schedule.statics().is_none() {
+    // motion that follows on statics is measured by the same probes
+    if spec.run.schedule.statics().is_none() {
         all.push(Need::new(Property::Inertia, "schedule", "", ""));
     }
     match spec.run.schedule.stepper {

@@ -376,6 +376,12 @@ pub fn materials() -> Vec<Material> {
             Influence::Constant,
         ),
         two(
+            "thermoelastic mixed",
+            LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 3.0)])),
+            LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 1.0)])),
+            Influence::Gaussian,
+        ),
+        two(
             "thermoelastic solids",
             LawSpec::named("thermoelastic_solid", elastic(3.0, 0.2)),
             LawSpec::named("thermoelastic_solid", elastic(1.0, 0.4)),

@@ -64,8 +64,8 @@ pub struct Document {
     /// Potentials between atoms of two materials, or on top of that of one: energies are added.
     #[serde(default)]
     pub pair: Vec<At<Pair>>,
-    /// Bond-based bonds between unlike materials of one body, and factors of bonds between unlike ends; series when left out. Ends of other
-    /// laws answer for themselves, which is parallel. Or `[[interface]]`, bonds between two of several bodies.
+    /// Bonds of pmb (that expand or break by whatever, too) between unlike materials of one body, and factors of bonds between unlike ends; series when
+    /// left out. Ends of other laws answer for themselves, which is parallel. Or `[[interface]]`, bonds between two of several bodies.
     #[schemars(with = "Option<Or<Vec<Interface>, InterfaceName>>")]
     pub interface: Option<At<InterfaceName>>,
     /// `[[interface]]`, under the name that [`locate`](super::super::locate) gives them.

@@ -5,6 +5,7 @@ use super::family::{horizon, influence};
 use super::material::{fracture, law};
 use super::pieces::named;
 use crate::deck::document::{Document, InterfaceName};
+use peridyne::law::material::Thermoelastic;
 use peridyne::spec::{BodySpec, InterfaceRule, InterfaceSpec, LawSpec, MaterialSpec};
 
 /// What bonds between unlike ends have.
@@ -21,7 +22,16 @@ pub(super) fn rule(
         InterfaceName::Minimum => InterfaceRule::Minimum,
         InterfaceName::Series => InterfaceRule::Series,
     };
-    let bonds = |m: &MaterialSpec| matches!(m.law, LawSpec::Pmb(_) | LawSpec::Springs(_));
+    let bonds = |m: &MaterialSpec| match &m.law {
+        LawSpec::Pmb(_) | LawSpec::Springs(_) => true,
+        // what pmb becomes
+        LawSpec::Named(law) => law.name == Thermoelastic::NAME,
+        LawSpec::Lps(_)
+        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::EamLike { .. }
+        | LawSpec::Micromoduli(_)
+        | LawSpec::Atoms(_) => false,
+    };
     let meant = rule == InterfaceRule::Parallel
         || !document.bond_factor.is_empty()
         || materials.iter().all(bonds);

@@ -20,7 +20,7 @@ use crate::law::solid::eam_like::Solid;
 use crate::message;
 use crate::quantity::{self, Dimension};
 use crate::spec::{
-    Calibration, LawSpec, NamedLaw, Parameter, Parameters, Plane, PmbStiffness, Spec,
+    Calibration, InterfaceRule, LawSpec, NamedLaw, Parameter, Parameters, Plane, PmbStiffness, Spec,
 };
 use std::any::Any;
 use std::sync::Arc;
@@ -153,6 +153,7 @@ pub(crate) struct Chosen {
     entry: Arc<Entry>,
     materials: Vec<Made>,
     plane: Plane,
+    rule: InterfaceRule,
     /// Of the full ball, where constants are those of the continuum.
     weighted_volume: Option<f64>,
     first_moment: f64,
@@ -257,6 +258,7 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
         entry: entry.clone(),
         materials,
         plane: spec.space.plane,
+        rule: spec.interactions.interface,
         weighted_volume: match spec.bonds.calibration {
             // points with horizons of their own have balls of their own
             Calibration::Continuum if spec.bonds.own_horizon.is_none() => Some(moments.second),
@@ -366,6 +368,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
         let n = numbers.get(n).copied().unwrap_or(0);
         BuildError::invalid(format!("materials[{n}].law"), message)
     })?;
+    let law = law.meeting(chosen.rule);
     let Place {
         body,
         stencil,
