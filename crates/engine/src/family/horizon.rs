@@ -28,8 +28,6 @@ pub struct HorizonList {
     pub(crate) start: Vec<usize>,
     /// `[lines][TILE]` slots; the row's own slot where there is no bond. Partners of a row ascend.
     pub(crate) partner: Vec<u32>,
-    /// Bits of the bonds that are there, a byte per line.
-    pub(crate) present: Vec<u8>,
     /// Directed bonds.
     pub(crate) directed: u64,
     /// Directed pairs within 1e-9 of the horizon, in or out: round-off decides about them.
@@ -129,7 +127,6 @@ impl HorizonList {
             rows,
             start,
             partner: vec![0; lines * TILE],
-            present: vec![0; lines],
             directed: size.iter().map(|s| *s as u64).sum(),
             near_horizon: near,
         };
@@ -145,18 +142,16 @@ impl HorizonList {
         limit: &(impl Fn(usize, u32) -> f64 + Sync),
     ) {
         let mut slices = Vec::with_capacity(self.start.len() - 1);
-        let (mut partner, mut present) = (self.partner.as_mut_slice(), self.present.as_mut_slice());
+        let mut partner = self.partner.as_mut_slice();
         for (slice, rows) in self.rows.chunks(TILE).enumerate() {
             let lines = self.start[slice + 1] - self.start[slice];
             let (p, rest) = partner.split_at_mut(lines * TILE);
             partner = rest;
-            let (b, rest) = present.split_at_mut(lines);
-            present = rest;
-            slices.push((rows, p, b));
+            slices.push((rows, p));
         }
         slices
             .into_par_iter()
-            .for_each_init(Vec::new, |family, (rows, partner, present)| {
+            .for_each_init(Vec::new, |family, (rows, partner)| {
                 for (l, &i) in rows.iter().enumerate() {
                     family.clear();
                     if (i as usize) < points {
@@ -167,10 +162,8 @@ impl HorizonList {
                         });
                     }
                     family.sort_unstable();
-                    for (k, bits) in present.iter_mut().enumerate() {
-                        let there = family.get(k);
-                        partner[k * TILE + l] = *there.unwrap_or(&i);
-                        *bits |= (there.is_some() as u8) << l;
+                    for (k, line) in partner.chunks_mut(TILE).enumerate() {
+                        line[l] = *family.get(k).unwrap_or(&i);
                     }
                 }
             });
@@ -188,7 +181,7 @@ impl HorizonList {
 
     /// Lines of all slices: bytes that a bit per bond takes.
     pub fn line_count(&self) -> usize {
-        self.present.len()
+        self.partner.len() / TILE
     }
 
     /// Number of slices of eight rows.
@@ -219,7 +212,7 @@ impl HorizonList {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * self.rows.len() + 8 * self.start.len() + 4 * self.partner.len() + self.present.len()
+        4 * self.rows.len() + 8 * self.start.len() + 4 * self.partner.len()
     }
 }
 

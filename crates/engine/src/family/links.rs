@@ -17,7 +17,8 @@ pub struct Link<const D: usize> {
     pub xi: [f64; D],
     /// Cells to the partner.
     pub cell: [i32; D],
-    to: usize,
+    /// Sublattice of the partner.
+    pub to: usize,
 }
 
 impl<const D: usize> Link<D> {
@@ -112,6 +113,12 @@ impl<const D: usize> Links<D> {
     fn bits(&self, n: usize, sublattice: usize) -> Option<&[u8]> {
         let begin = self.begin[n];
         (begin != WHOLE).then(|| &self.bits[begin as usize..][..self.links[sublattice].len()])
+    }
+
+    /// Has point `l` of tile `n` (of `tiles`) bond `k` of its sublattice?
+    pub fn has(&self, n: usize, sublattice: usize, k: usize, l: usize) -> bool {
+        self.bits(n, sublattice)
+            .is_none_or(|bits| bits[k] >> l & 1 == 1)
     }
 
     /// Blocks of work that the tiles make.

@@ -196,7 +196,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     }
 
     /// Broken bonds become whole again, as they were in the reference, where `heals` of their ends and their `e` (see [`history`](super::history)) at `u`,
-    /// images of which are fresh; it must say the same of both directions. How many directed ones; `None`: those of the law do not.
+    /// images of which are fresh; it must say the same of both directions. Those of absent cracks do not. How many directed ones; `None`: those of the law do not.
     fn mend(
         &mut self,
         _body: &Body<D>,

@@ -1,7 +1,7 @@
 //! What bonds remember: the next critical stretch, and the energy of those that just broke.
 
+use super::Toughness;
 use super::bond::{critical_stretch, relative_square_stretch};
-use super::{Repulsion, Toughness};
 use crate::body::Body;
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::execute::lane::{Lane, TILE};
@@ -99,11 +99,6 @@ pub fn write_critical<const D: usize>(
         critical[s as usize] = values[s as usize];
     }
     true
-}
-
-/// Does anything depend on how far bonds were stretched: do they break, or repel when broken?
-pub fn remembers(repulsion: Option<&Repulsion>, toughness: &[Toughness]) -> bool {
-    repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite())
 }
 
 /// `e` of the bond ξ whose ends have moved by η against each other; of both directions the same bits.

@@ -5,124 +5,97 @@ mod assemble;
 mod bonds;
 mod images;
 mod kernel;
-mod memory;
 mod weights;
 
+use super::bonds::family::Family;
+use super::bonds::fused::Fused;
+use super::bonds::{BondState, CloudFamily};
 use super::history;
 use super::pairs::BondTable;
 use super::point_constants::pressure_factor;
-use super::weight::BondWeight;
 use super::{
     BondForce, BondStatus, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
-    PointEnergiesMut, Repulsion, Sweep, Tally, Toughness, along,
+    PointEnergiesMut, Sweep, Tally, along,
 };
 use crate::body::{Body, FieldView, FieldViewMut, Identity};
 use crate::columns::Declaration;
 use crate::error::BuildError;
-use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
-use crate::execute::simd::Simd;
-use crate::family::horizon::HorizonList;
+use crate::execute::blocks::{Seen, Shared};
 use crate::law::{BondFactors, Law};
 use crate::spec::CrackKind;
 use crate::state::Archive;
 pub use assemble::ListParts;
 use images::Images;
-use kernel::{Energies, Forces, Pack, Share, View};
-use std::ops::AddAssign;
+use kernel::{Energies, Forces, Share, View};
 use std::sync::Arc;
 
 /// A law on a horizon list.
 pub struct ListInteraction<const D: usize, W: Law> {
-    body: Identity,
+    /// Its records of displacements have the critical `e` as their fourth number, and materials are known where repulsion or the law depends on them.
+    bonds: BondState<D, CloudFamily<D>>,
     law: W,
-    simd: Simd,
-    weight: BondWeight,
-    /// Its `present` bits are the family that damage counts: without absent bonds.
-    list: HorizonList,
-    /// `[lines]`: bits of whole bonds.
-    alive: Vec<u8>,
     /// `[lines][8]`: factors of bonds; empty: all are 1.
     scale: Vec<f64>,
-    /// `[slots][4]`: x, y, z, volume.
-    reference: Vec<f64>,
-    /// `[slots][4]`: displacement and critical `e`, written before every sweep.
-    moved: Vec<f64>,
     /// `[slots][2]`: point fields of the law (empty where unused).
     fields: Vec<f64>,
     /// Pressure factors per slot where materials differ; else the law's own.
     pressure: Vec<f64>,
     point_constants: PointConstants,
-    toughness: Vec<Toughness>,
-    repulsion: Option<Repulsion>,
-    /// `[slots]`, where repulsion or the law depends on it; else empty.
-    materials: Vec<u8>,
     /// Constants of bonds of pairs of materials, if the law is that of unit constants; else empty.
     pairs: Arc<BondTable>,
-    /// Critical `e` per slot, now and next.
-    critical: Vec<f64>,
     /// Are there points whose bonds never break?
     spares: bool,
-    next: Vec<f64>,
-    period: [f64; D],
-    inv_period: [f64; D],
-    tallies: PerBlock<Tally>,
-    sums: PerBlock<[f64; 2]>,
 }
 
 impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// For kernels that only read.
     fn view<'a>(&'a self, moved: &'a [f64]) -> View<'a, D, W> {
-        let alive = Seen(self.alive.as_ptr());
+        let alive = Seen(self.bonds.alive.as_ptr());
         let fields = Seen(self.fields.as_ptr());
         self.view_of(moved, alive, fields)
     }
 
     fn view_of<'a>(&'a self, moved: &'a [f64], alive: Seen<u8>, fields: Seen) -> View<'a, D, W> {
+        let family = &self.bonds.family;
         View {
             law: self.law,
-            weight: self.weight,
-            list: &self.list,
+            weight: family.weight,
+            list: &family.list,
             alive,
             scale: &self.scale,
-            reference: &self.reference,
+            reference: &family.reference,
             moved,
             fields,
             pressure: &self.pressure,
-            period: self.period,
-            inv_period: self.inv_period,
-            repulsion: self.repulsion.as_ref(),
-            materials: &self.materials,
-            periodic: self.is_periodic(),
+            period: family.period,
+            inv_period: family.inv_period,
+            repulsion: self.bonds.repulsion.as_ref(),
+            materials: &self.bonds.material,
+            periodic: family.is_periodic(),
             paired: self.pairs.materials() > 0,
             pairs: &self.pairs,
         }
     }
 
     /// Write displacements and critical stretches into the records.
-    fn pack(&self, u: FieldView<D>, moved: &mut [f64]) {
-        let kernel = Pack::<D> {
-            u,
-            critical: &self.critical,
-            moved: Shared(moved.as_mut_ptr()),
-        };
-        run_blocks(self.simd, &kernel, self.sums.blocks());
+    fn pack_now(&mut self, u: FieldView<D>) {
+        let mut moved = std::mem::take(&mut self.bonds.room.records);
+        self.bonds.pack(u, &mut moved);
+        self.bonds.room.records = moved;
     }
 
-    /// Write those of now.
-    fn pack_now(&mut self, u: FieldView<D>) {
-        let mut moved = std::mem::take(&mut self.moved);
-        self.pack(u, &mut moved);
-        self.moved = moved;
+    fn moved(&self) -> &[f64] {
+        &self.bonds.room.records
     }
 
     fn share(&mut self) {
-        let alive = Seen(self.alive.as_ptr());
+        let alive = Seen(self.bonds.alive.as_ptr());
         let fields = Shared(self.fields.as_mut_ptr());
         let kernel = Share::<D, W> {
-            view: self.view_of(&self.moved, alive, fields.seen()),
+            view: self.view_of(self.moved(), alive, fields.seen()),
             fields,
         };
-        run_blocks(self.simd, &kernel, self.sums.blocks());
+        self.bonds.blocks.run(&kernel);
     }
 
     fn sweep<const FULL: bool>(
@@ -131,24 +104,25 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         f: FieldViewMut<D>,
         motion: Option<Motion<D>>,
     ) -> Tally {
-        let alive = Shared(self.alive.as_mut_ptr());
+        let alive = Shared(self.bonds.alive.as_mut_ptr());
         let fields = Seen(self.fields.as_ptr());
-        let next = Shared(self.next.as_mut_ptr());
+        let next = Shared(self.bonds.next.as_mut_ptr());
         let kernel = Forces::<D, W, FULL> {
-            view: self.view_of(&self.moved, alive.seen(), fields),
+            view: self.view_of(self.moved(), alive.seen(), fields),
             alive,
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             next,
-            toughness: &self.toughness,
+            toughness: &self.bonds.toughness,
             spares: self.spares,
             material: &body.material,
             motion,
         };
-        self.tallies.fold(self.simd, &kernel, Tally::add_assign)
+        self.bonds.blocks.tally(&kernel)
     }
 
-    fn is_periodic(&self) -> bool {
-        self.period.iter().any(|p| *p > 0.0)
+    /// Critical stretches are others.
+    fn look_critical(&mut self) {
+        self.spares = self.bonds.critical.contains(&history::NEVER);
     }
 
     /// n and 1/m at a slot.
@@ -161,7 +135,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// Energies of all points, with `Σ k r0² s` in place of the dilatation and `Σ k r0²` of what is whole.
     fn sums(&self, body: &Body<D>, u: FieldView<D>, out: &mut PointEnergiesMut) {
         let mut moved = vec![0.0; 4 * body.len];
-        self.pack(u, &mut moved);
+        self.bonds.pack(u, &mut moved);
         self.sums_of(body, self.view(&moved), out);
     }
 
@@ -171,7 +145,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             view,
             fields: Some(EnergyFields::of(out, body.len)),
         };
-        self.sums.sum(self.simd, &kernel);
+        self.bonds.blocks.sum(&kernel);
     }
 
     /// `P / Σ k r0² s` at a slot.
@@ -182,11 +156,11 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
 
 impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     fn made_for(&self) -> Identity {
-        self.body
+        self.bonds.body
     }
 
     fn family(&self) -> &'static str {
-        "list"
+        self.bonds.kind
     }
 
     unsafe fn forces_unchecked(
@@ -211,13 +185,13 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
             self.share();
         }
         let motion = sweep.motion();
-        let total = if self.critical.is_empty() {
+        let total = if self.bonds.critical.is_empty() {
             self.sweep::<false>(body, f, motion)
         } else {
             self.sweep::<true>(body, f, motion)
         };
-        if motion.is_some() && !self.critical.is_empty() {
-            std::mem::swap(&mut self.critical, &mut self.next);
+        if motion.is_some() && !self.bonds.critical.is_empty() {
+            self.bonds.next_critical(body);
         }
         total
     }
@@ -225,10 +199,10 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     unsafe fn energy_unchecked(&mut self, _: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         self.pack_now(u);
         let kernel = Energies {
-            view: self.view(&self.moved),
+            view: self.view(self.moved()),
             fields: None,
         };
-        self.sums.sum(self.simd, &kernel)
+        self.bonds.blocks.sum(&kernel)
     }
 
     unsafe fn observe_unchecked(
@@ -285,8 +259,8 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         true
     }
 
-    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
-        self.each_of_family(visit);
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+        self.bonds.each_pair(body, visit);
     }
 
     fn mend(
@@ -296,15 +270,15 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> Option<u64> {
         self.check(body, &[u]);
-        Some(self.mend_where(u, heals))
+        Some(self.bonds.mend(body, u, heals, &Fused))
     }
 
-    fn each_broken(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        self.each_torn(visit);
+    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        self.bonds.each_broken(body, visit);
     }
 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {
-        self.damages(body, out);
+        self.bonds.damage(body, out);
     }
 
     fn cut(
@@ -313,7 +287,8 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         kind: CrackKind,
         crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
     ) -> u64 {
-        self.cut_where(body, kind, crosses)
+        let periodic = self.bonds.family.is_periodic();
+        self.bonds.cut(body, kind, crosses, |_, _| periodic, &Fused)
     }
 
     fn scale_bonds(
@@ -341,62 +316,57 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.list.directed
+        self.bonds.directed
     }
 
     fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
-        let row = self.list.row(slot);
-        self.sum(row, &self.list.present, |_| 1.0) as usize
+        self.bonds.family_size(slot)
     }
 
     fn near_horizon(&self) -> u64 {
-        self.list.near_horizon
+        self.bonds.near_horizon
     }
 
-    fn in_family(&self, _: &Body<D>, i: usize, j: usize) -> bool {
-        self.list.partners(self.list.row(i)).any(|(_, k)| k == j)
+    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
+        self.bonds.family.joins(body, i, j)
     }
 
     fn columns(&self) -> Vec<Declaration> {
-        history::columns(!self.critical.is_empty())
+        self.bonds.declared()
     }
 
     fn read_column(&self, body: &Body<D>, _: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
-        self.read_named(body, name, out)
+        self.bonds.read_named(body, name, &Fused, out)
     }
 
     fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
-        self.write_named(body, name, values)
+        let known = self.bonds.write_named(body, name, values, &Fused);
+        self.look_critical();
+        known
     }
 
-    fn archive(&mut self, _: &Body<D>, archive: &mut Archive<'_>) {
-        archive.all("whole", &mut self.alive);
-        archive.all("critical", &mut self.critical);
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        self.bonds.archive(body, archive, &Fused);
         if archive.loads() {
-            // kernels follow every bit
-            let there = self.list.present.iter();
-            self.alive.iter_mut().zip(there).for_each(|(a, t)| *a &= t);
-            self.spares = self.critical.contains(&history::NEVER);
+            self.look_critical();
         }
     }
 
-    fn each_directed(&self, _: &Body<D>, _: &str, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        let view = self.view(&self.moved);
-        self.each_line(|_, _, [i, j]| visit(i, j, view.constant(i, j).0));
+    fn each_directed(
+        &self,
+        body: &Body<D>,
+        _: &str,
+        visit: &mut dyn FnMut(usize, usize, [f64; D]),
+    ) {
+        self.bonds.each_directed(body, visit);
     }
 
     fn memory(&self) -> (&[u8], &[f64]) {
-        (&self.alive, &self.critical)
+        (&self.bonds.alive, &self.bonds.critical)
     }
 
     fn bytes(&self) -> usize {
-        let words = self.reference.len()
-            + self.moved.len()
-            + self.fields.len()
-            + self.pressure.len()
-            + self.scale.len()
-            + self.critical.len()
-            + self.next.len();
-        self.list.bytes() + self.alive.len() + self.materials.len() + self.pairs.bytes() + 8 * words
+        let words = self.fields.len() + self.pressure.len() + self.scale.len();
+        self.bonds.bytes() + self.pairs.bytes() + 8 * words
     }
 }

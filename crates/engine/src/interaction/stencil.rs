@@ -4,48 +4,37 @@
 mod assemble;
 mod bonds;
 mod kernel;
-mod memory;
 mod weights;
 
+use super::bonds::family::Family;
+use super::bonds::fused::Fused;
+use super::bonds::{BondState, LatticeFamily};
 use super::history;
 use super::point_constants::pressure_factor;
 use super::scale::Scale;
 use super::{
     BondForce, BondStatus, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
-    PointEnergiesMut, Repulsion, Sweep, Tally, Toughness,
+    PointEnergiesMut, Sweep, Tally,
 };
 use crate::body::{Body, Column, FieldView, FieldViewMut, Identity};
 use crate::columns::Declaration;
 use crate::error::BuildError;
-use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
-use crate::execute::lane::TILE;
-use crate::execute::simd::Simd;
-use crate::family::offsets::OffsetSet;
+use crate::execute::blocks::{Seen, Shared};
 use crate::law::BondFactors;
 use crate::law::Law;
 use crate::spec::CrackKind;
 use crate::state::Archive;
 pub use assemble::StencilParts;
 pub use kernel::MOST;
-use kernel::{Bond, Energies, Forces, Partner, Remember, Share, View};
-use std::ops::AddAssign;
+use kernel::{Bond, Energies, Forces, Partner, Remember, Share, View, WHOLE};
 
 /// A law on a stencil.
 pub struct StencilInteraction<const D: usize, W: Law> {
-    body: Identity,
+    bonds: BondState<D, LatticeFamily<D>>,
     law: W,
-    simd: Simd,
-    /// Per sublattice.
-    bonds: Vec<Vec<Bond<D>>>,
+    /// Bonds as sweeps read them, per sublattice.
+    stencil: Vec<Vec<Bond<D>>>,
     partners: Vec<Vec<Partner<D>>>,
-    /// The offsets of `bonds`.
-    offsets: OffsetSet<D>,
-    /// Bytes per tile in `alive`: the longest stencil.
-    width: usize,
-    /// Tiles that have points.
-    tiles: Vec<u32>,
-    /// `[tiles][width]`: bit l of a byte is the bond of point l of the tile.
-    alive: Vec<u8>,
     /// `[tiles]`: are all bonds whole, and their ends alike? See the kernel's `WHOLE` and `ALIKE`.
     state: Vec<u8>,
     /// `[tiles]`: which row of `reaches`.
@@ -54,21 +43,14 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     reaches: Vec<u64>,
     /// Factors of bonds.
     scale: Scale,
-    /// Family size per active tile and lane.
-    family: Vec<u16>,
-    directed: u64,
     /// Point fields of the law, per slot (empty where unused).
     fields: [Column; 2],
     /// Pressure factors per slot where materials differ; else the law's own.
     pressure: Column,
     point_constants: PointConstants,
-    toughness: Vec<Toughness>,
-    repulsion: Option<Repulsion>,
-    /// Critical `e` per slot.
-    critical: Column,
-    /// `[tiles][8]`: the next ones.
+    /// `[tiles][8]`: the next critical values, which sweeps write tile by tile.
     next: Vec<f64>,
-    /// The lowest of `critical`.
+    /// The lowest critical value.
     least_critical: f64,
     /// No critical stretch changes any more: none depends on the strain, and the first are known.
     settled: bool,
@@ -76,15 +58,12 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     most_contact: f64,
     /// Of a whole cell.
     volume: f64,
-    guard: usize,
-    tallies: PerBlock<Tally>,
-    sums: PerBlock<[f64; 2]>,
 }
 
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
     /// For kernels that only read.
     fn view<'a>(&'a self, body: &'a Body<D>, u: FieldView<'a, D>) -> View<'a, D, W> {
-        let alive = Seen(self.alive.as_ptr());
+        let alive = Seen(self.bonds.alive.as_ptr());
         let state = Seen(self.state.as_ptr());
         self.view_of(body, u, alive, state)
     }
@@ -96,15 +75,15 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         alive: Seen<u8>,
         state: Seen<u8>,
     ) -> View<'a, D, W> {
-        let grid = body.grid();
+        let family = &self.bonds.family;
         View {
             law: self.law,
-            grid,
+            grid: body.grid(),
             body,
-            bonds: &self.bonds,
+            bonds: &self.stencil,
             partners: &self.partners,
-            width: self.width,
-            tiles: &self.tiles,
+            width: family.width,
+            tiles: family.tiles(),
             alive,
             state,
             reach: &self.reach,
@@ -113,7 +92,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             u,
             fields: [&self.fields[0], &self.fields[1]],
             pressure: &self.pressure,
-            repulsion: self.repulsion.as_ref(),
+            repulsion: self.bonds.repulsion.as_ref(),
             most_contact: self.most_contact,
         }
     }
@@ -125,7 +104,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         f: FieldViewMut<D>,
         motion: Option<Motion<D>>,
     ) -> Tally {
-        let alive = Shared(self.alive.as_mut_ptr());
+        let alive = Shared(self.bonds.alive.as_mut_ptr());
         let state = Shared(self.state.as_mut_ptr());
         let next = Shared(self.next.as_mut_ptr());
         let next = (!self.settled).then_some(next);
@@ -134,14 +113,14 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             alive,
             state,
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
-            critical: &self.critical,
+            critical: &self.bonds.critical,
             next,
-            toughness: &self.toughness,
+            toughness: &self.bonds.toughness,
             lower: self.most_contact,
             upper: self.least_critical,
             motion,
         };
-        self.tallies.fold(self.simd, &kernel, Tally::add_assign)
+        self.bonds.blocks.tally(&kernel)
     }
 
     /// n and 1/m at a slot.
@@ -157,7 +136,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             view: self.view(body, u),
             fields: Some(EnergyFields::of(out, body.len)),
         };
-        self.sums.sum(self.simd, &kernel);
+        self.bonds.blocks.sum(&kernel);
     }
 
     /// `P / Σ k r0² s` at a slot.
@@ -168,11 +147,11 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
 
 impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     fn made_for(&self) -> Identity {
-        self.body
+        self.bonds.body
     }
 
     fn family(&self) -> &'static str {
-        "stencil"
+        self.bonds.kind
     }
 
     unsafe fn forces_unchecked(
@@ -198,30 +177,30 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 view: self.view(body, u),
                 out: Shared(pressure.as_mut_ptr()),
             };
-            run_blocks(self.simd, &kernel, self.sums.blocks());
+            self.bonds.blocks.run(&kernel);
             self.fields[0] = pressure;
         }
         if W::SHARES {
             body.fill_images(&mut self.fields[0]);
         }
         let motion = sweep.motion();
-        let total = if self.critical.is_empty() {
+        let total = if self.bonds.critical.is_empty() {
             self.sweep::<false>(body, u, f, motion)
         } else {
             self.sweep::<true>(body, u, f, motion)
         };
-        if motion.is_some() && !self.critical.is_empty() && !self.settled {
-            let mut critical = std::mem::take(&mut self.critical);
+        if motion.is_some() && !self.bonds.critical.is_empty() && !self.settled {
+            let mut critical = std::mem::take(&mut self.bonds.critical);
             let kernel = Remember {
                 view: self.view(body, u),
                 next: &self.next,
                 critical: Shared(critical.as_mut_ptr()),
             };
-            run_blocks(self.simd, &kernel, self.sums.blocks());
-            self.critical = critical;
-            body.fill_images(&mut self.critical);
+            self.bonds.blocks.run(&kernel);
+            self.bonds.critical = critical;
+            body.fill_images(&mut self.bonds.critical);
             self.least_critical = total.least_critical;
-            self.settled = self.toughness.iter().all(|t| t.alpha == 0.0);
+            self.settled = self.bonds.toughness.iter().all(|t| t.alpha == 0.0);
         }
         // a point may have lost its last bond
         self.settled &= total.broken == 0;
@@ -233,7 +212,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             view: self.view(body, u),
             fields: None,
         };
-        self.sums.sum(self.simd, &kernel)
+        self.bonds.blocks.sum(&kernel)
     }
 
     unsafe fn observe_unchecked(
@@ -279,7 +258,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
-        self.each_of_family(body, false, visit);
+        self.bonds.each_pair(body, visit);
     }
 
     fn mend(
@@ -289,19 +268,19 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         heals: &dyn Fn(usize, usize, f64) -> bool,
     ) -> Option<u64> {
         self.check(body, &[u]);
-        Some(self.mend_where(body, u, heals))
+        let mended = self.bonds.mend(body, u, heals, &Fused);
+        self.look();
+        Some(mended)
     }
 
     fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        self.each_of_family(body, true, &mut |i, j, xi, state| {
-            if state == BondStatus::Broken {
-                visit(i, j, xi);
-            }
-        });
+        let torn = |n: usize| self.state[n] & WHOLE == 0;
+        self.bonds.each_broken_of(body, torn, visit);
     }
 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {
-        self.damages(body, out);
+        // all points of a lattice are alike
+        self.bonds.damage_of(body, |_| 1.0, out);
     }
 
     fn cut(
@@ -310,20 +289,23 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         kind: CrackKind,
         crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
     ) -> u64 {
-        self.cut_where(body, kind, crosses)
+        let image = |end: usize, j: usize| end != j;
+        let cut = self.bonds.cut(body, kind, crosses, image, &Fused);
+        self.look();
+        cut
     }
 
     fn scale_bonds(
         &mut self,
-        body: &Body<D>,
+        _: &Body<D>,
         factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
     ) -> Result<(), BuildError> {
-        self.multiply_factors(body, factors);
+        self.multiply_factors(factors);
         Ok(())
     }
 
-    fn reached(&self, body: &Body<D>, i: usize, xi: [f64; D]) -> Option<(f64, BondFactors<f64>)> {
-        self.reach(body, i, xi)
+    fn reached(&self, _: &Body<D>, i: usize, xi: [f64; D]) -> Option<(f64, BondFactors<f64>)> {
+        self.reach(i, xi)
     }
 
     fn prepare(&mut self, body: &Body<D>) {
@@ -332,41 +314,48 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.directed
+        self.bonds.directed
     }
 
     fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
-        // tiles are sorted; find the one that holds the slot
-        let first = |t: u32| t as usize * TILE;
-        let n = self
-            .tiles
-            .partition_point(|t| first(*t) + self.guard + TILE <= slot);
-        self.family
-            .get(n * TILE + (slot - self.guard) % TILE)
-            .map_or(0, |f| *f as usize)
+        self.bonds.family_size(slot)
     }
 
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
-        let grid = body.grid();
-        let ((ci, bi), (cj, bj)) = (grid.cell(i), grid.cell(j));
-        self.offsets
-            .contains(std::array::from_fn(|a| cj[a] - ci[a]), bi, bj)
+        self.bonds.family.joins(body, i, j)
     }
 
     fn columns(&self) -> Vec<Declaration> {
-        history::columns(!self.critical.is_empty())
+        self.bonds.declared()
     }
 
     fn read_column(&self, body: &Body<D>, _: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
-        self.read_named(body, name, out)
+        self.bonds.read_named(body, name, &Fused, out)
     }
 
     fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
-        self.write_named(body, name, values)
+        if !self.bonds.write_named(body, name, values, &Fused) {
+            return false;
+        }
+        match name {
+            history::WHOLE => {
+                self.settled = false;
+                self.look();
+            }
+            _ => self.look_critical(body),
+        }
+        true
     }
 
     fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
-        self.archive_memory(body, archive);
+        self.bonds.archive(body, archive, &Fused);
+        if archive.loads() {
+            if !self.bonds.critical.is_empty() {
+                body.fill_images(&mut self.bonds.critical);
+            }
+            self.look_critical(body);
+            self.look();
+        }
     }
 
     fn each_directed(
@@ -375,27 +364,21 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         _: &str,
         visit: &mut dyn FnMut(usize, usize, [f64; D]),
     ) {
-        self.each_end(body, visit);
+        self.bonds.each_directed(body, visit);
     }
 
     fn memory(&self) -> (&[u8], &[f64]) {
-        (&self.alive, &self.critical)
+        (&self.bonds.alive, &self.bonds.critical)
     }
 
     fn bytes(&self) -> usize {
-        let words = self.fields[0].len()
-            + self.fields[1].len()
-            + self.pressure.len()
-            + self.critical.len()
-            + self.next.len();
-        self.alive.len()
+        let words =
+            self.fields[0].len() + self.fields[1].len() + self.pressure.len() + self.next.len();
+        self.bonds.bytes()
             + self.state.len()
             + self.scale.bytes()
             + 4 * self.reach.len()
             + 8 * self.reaches.len()
-            + self.offsets.bytes()
-            + 2 * self.family.len()
-            + 4 * self.tiles.len()
             + 8 * words
     }
 }

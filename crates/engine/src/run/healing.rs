@@ -1,6 +1,7 @@
 //! Healing: broken bonds that become whole again, in motion.
 //!
-//! A bond heals with the length that it had in the reference, where both its ends may heal and the size of its stretch is below the limit of the time. What it
+//! A bond heals with the length that it had in the reference, where both its ends may heal and the size of its stretch is below the limit of the time; bonds of absent
+//! cracks were never there and do not. What it
 //! holds then comes from what healing is driven by, not from the body: it is taken from the energy released.
 
 pub(super) mod state;
@@ -107,7 +108,10 @@ impl<const D: usize> System<D> {
             return false;
         }
         let [before, _] = self.interaction.energy(body, view(u));
-        self.interaction.mend(body, view(u), &heals);
+        // broken bonds of absent cracks repel, and do not heal
+        if self.interaction.mend(body, view(u), &heals) == Some(0) {
+            return false;
+        }
         let [after, _] = self.interaction.energy(body, view(u));
         self.accounts.released.lost -= after - before;
         // they conduct again

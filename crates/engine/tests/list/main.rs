@@ -1,6 +1,7 @@
 //! Horizon lists: the same mechanics as stencils on lattices, the textbook's formulas on random clouds, the same bits
 //! in every width and on any number of threads, little memory and no allocation.
 
+mod bits;
 mod case;
 mod cloud;
 mod dual_horizon;

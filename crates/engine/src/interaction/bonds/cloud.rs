@@ -56,8 +56,8 @@ impl Slots for Listed {
 /// All bonds of a cloud.
 #[derive(Debug, Clone)]
 pub struct CloudFamily<const D: usize> {
-    list: HorizonList,
-    weight: BondWeight,
+    pub list: HorizonList,
+    pub weight: BondWeight,
     /// `[slots]` δ of points with horizons of their own; empty: they have one.
     own: Vec<f64>,
     /// The same horizons over that of the body; empty: they have one.
@@ -67,11 +67,12 @@ pub struct CloudFamily<const D: usize> {
     /// `[slots]`: micromodulus over that at the longest horizon, where points have their own and bonds the stiffness; else empty.
     stiff: Vec<f64>,
     /// `[slots][4]`: x, y, z, volume.
-    reference: Vec<f64>,
+    pub reference: Vec<f64>,
     /// `[lines][8]`: place of the bond that leads back; empty: nobody asks.
     back: Vec<u32>,
-    period: [f64; D],
-    inv_period: [f64; D],
+    /// 0 on free axes.
+    pub period: [f64; D],
+    pub inv_period: [f64; D],
     slots: usize,
 }
 
@@ -85,29 +86,42 @@ impl<const D: usize> CloudFamily<D> {
         weight: BondWeight,
         remembers: bool,
     ) -> Self {
-        let mut reference = vec![0.0; 4 * body.len];
-        for (slot, record) in reference.chunks_mut(4).enumerate() {
-            record[..3].copy_from_slice(&body.position(slot));
-            record[3] = body.volume.at(slot);
-        }
-        let rate = body.spacing.recip();
         // slots without a point have one, too
         let of = |d: &f64| if *d > 0.0 { *d } else { horizon };
         let own = body.horizon.iter().map(of).collect();
         let back = if remembers { ways_back(&list) } else { vec![] };
         CloudFamily {
-            list,
-            weight,
             own,
             reach: body.horizon.iter().map(|d| d / horizon).collect(),
-            rate,
+            back,
+            ..Self::plain(body, list, weight)
+        }
+    }
+
+    /// Of points that have one horizon, and a law without memory of bonds.
+    pub fn plain(body: &Body<D>, list: HorizonList, weight: BondWeight) -> Self {
+        let mut reference = vec![0.0; 4 * body.len];
+        for (slot, record) in reference.chunks_mut(4).enumerate() {
+            record[..3].copy_from_slice(&body.position(slot));
+            record[3] = body.volume.at(slot);
+        }
+        CloudFamily {
+            list,
+            weight,
+            own: vec![],
+            reach: vec![],
+            rate: body.spacing.recip(),
             stiff: vec![],
             reference,
-            back,
+            back: vec![],
             period: body.period.map(|p| p.unwrap_or(0.0)),
             inv_period: body.period.map(|p| p.map_or(0.0, f64::recip)),
             slots: body.len,
         }
+    }
+
+    pub fn is_periodic(&self) -> bool {
+        self.period.iter().any(|p| *p > 0.0)
     }
 
     /// Of bonds that make the stiffness, which have the mean of their ends: micromoduli over that of the law, by slot.
@@ -170,13 +184,14 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         self.line(group, k)
     }
     fn bytes_of_bits(&self) -> usize {
-        self.list.present.len()
+        self.list.line_count()
     }
     fn is_point(&self, group: usize, l: usize) -> bool {
         (self.rows(group).slot(l)) < self.slots
     }
     fn is_bond(&self, group: usize, k: usize, l: usize) -> bool {
-        self.list.present[self.line(group, k)] >> l & 1 == 1
+        // a row's own slot: there is no bond
+        self.list.partner[self.line(group, k) * TILE + l] != self.list.rows[group * TILE + l]
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::family::Family;
 use super::law::PointLaw;
-use super::state::{Before, BondState};
+use super::state::{Before, BondState, all_whole};
 use super::store::Store;
 use crate::body::Body;
 use crate::columns::{Declaration, Dimension, On, Shape};
@@ -267,7 +267,10 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         archive.one("stiffened", &mut self.stiffened);
         if archive.loads() {
             // kernels follow every bit
-            let there = self.counted.iter();
+            let there = match self.counted.is_empty() {
+                true => &all_whole(&self.family).0,
+                false => &self.counted,
+            };
             self.alive.iter_mut().zip(there).for_each(|(a, t)| *a &= t);
             self.look_forms(body, law);
         }

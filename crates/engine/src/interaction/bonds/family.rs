@@ -1,10 +1,11 @@
 //! What a family is to the sweeps of a law: groups of eight points, whose bonds are walked together.
 
 use super::store::Rows;
-use crate::body::FieldView;
+use crate::body::{Body, FieldView};
 use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::{Lane, TILE};
 use crate::law::material::{Kin, Numbers, Partner};
+use std::ops::Range;
 
 /// Eight slots: where the points of a group are, or their partners along one of its bonds.
 pub trait Slots: Copy {
@@ -154,10 +155,25 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
 
     /// Points of the body, group by group: group, place in it, slot.
     fn points(&self) -> impl Iterator<Item = (usize, usize, usize)> {
-        (0..self.groups()).flat_map(move |group| {
+        self.points_of(0..self.groups())
+    }
+
+    /// Those of some groups.
+    fn points_of(&self, groups: Range<usize>) -> impl Iterator<Item = (usize, usize, usize)> {
+        groups.flat_map(move |group| {
             let places = (0..TILE).filter(move |l| self.is_point(group, *l));
             places.map(move |l| (group, l, self.rows(group).slot(l)))
         })
+    }
+
+    /// Do two points have a bond, whole or not, images resolved?
+    fn joins(&self, body: &Body<D>, i: usize, j: usize) -> bool {
+        let Some((group, l)) = self.find(i) else {
+            return false;
+        };
+        let original = body.originals();
+        (0..self.bonds(group))
+            .any(|k| original(self.ends(group, k).slot(l)) == j && self.is_bond(group, k, l))
     }
 
     /// Group and place in it of a slot; `None`: no point.

@@ -6,6 +6,7 @@ use crate::body::{Body, Grid};
 use crate::execute::blocks::Seen;
 use crate::execute::lane::{Lane, TILE, prefetch};
 use crate::family::links::Links;
+use crate::family::offsets::OffsetSet;
 use crate::family::stencil::Stencil;
 use crate::law::material::{Numbers, Source};
 
@@ -65,21 +66,23 @@ struct GroupOf {
     /// Its first slot.
     first: usize,
     /// Its first offset, and how many there are.
-    offset: usize,
-    bonds: usize,
-    sublattice: usize,
+    offset: u32,
+    bonds: u16,
+    sublattice: u16,
 }
 
 /// All bonds of a lattice body.
 #[derive(Debug, Clone)]
 pub struct LatticeFamily<const D: usize> {
     links: Links<D>,
+    /// Which cells have bonds, for [`Family::joins`].
+    pairs: OffsetSet<D>,
     /// Those of one sublattice after those of another.
     offsets: Vec<Offset<D>>,
     groups: Vec<GroupOf>,
     grid: Grid<D>,
-    /// Bits per group.
-    width: usize,
+    /// Bytes per group.
+    pub width: usize,
     slots: usize,
     /// What slots lack so that tiles begin at whole eights.
     phase: usize,
@@ -99,7 +102,7 @@ impl<const D: usize> LatticeFamily<D> {
         let mut offsets = vec![];
         let mut starts = vec![];
         for (from, (list, links)) in stencil.offsets.iter().zip(&links.links).enumerate() {
-            starts.push(offsets.len());
+            starts.push(offsets.len() as u32);
             for (o, link) in list.iter().zip(links) {
                 let square = h * h * (o.squared as f64 / 16.0);
                 let length = square.sqrt();
@@ -126,19 +129,30 @@ impl<const D: usize> LatticeFamily<D> {
             GroupOf {
                 first: grid.tile_slot(*tile as usize),
                 offset: starts[sublattice],
-                bonds: stencil.offsets[sublattice].len(),
-                sublattice,
+                bonds: stencil.offsets[sublattice].len() as u16,
+                sublattice: sublattice as u16,
             }
         };
         LatticeFamily {
             groups: links.tiles.iter().map(group).collect(),
             width: stencil.offsets.iter().map(Vec::len).max().unwrap_or(0),
             offsets,
+            pairs: OffsetSet::new(grid, &links.links, |l| (l.cell, l.to)),
             links,
             grid: grid.clone(),
             slots: body.len,
             phase: TILE - grid.tile_slot(0) % TILE,
         }
+    }
+
+    /// Tiles of the grid that are groups, in order.
+    pub fn tiles(&self) -> &[u32] {
+        &self.links.tiles
+    }
+
+    /// Sublattice of a group.
+    pub fn sublattice(&self, group: usize) -> usize {
+        usize::from(self.groups[group].sublattice)
     }
 
     #[inline(always)]
@@ -155,7 +169,7 @@ impl<const D: usize> LatticeFamily<D> {
 
     #[inline(always)]
     fn offset(&self, group: usize, k: usize) -> &Offset<D> {
-        &self.offsets[self.groups[group].offset + k]
+        &self.offsets[self.groups[group].offset as usize + k]
     }
 }
 
@@ -172,7 +186,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
     }
     #[inline(always)]
     fn bonds(&self, group: usize) -> usize {
-        self.groups[group].bonds
+        usize::from(self.groups[group].bonds)
     }
     #[inline(always)]
     fn ends(&self, group: usize, k: usize) -> Run {
@@ -191,8 +205,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         self.grid.is_owned(self.first(group) + l)
     }
     fn is_bond(&self, group: usize, k: usize, l: usize) -> bool {
-        let link = &self.links.links[self.groups[group].sublattice][k];
-        link.partner(&self.grid, self.first(group) + l).is_some()
+        self.links.has(group, self.sublattice(group), k, l)
     }
 
     #[inline(always)]
@@ -209,7 +222,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         // SAFETY: a bond of the group
         let o = unsafe {
             let of = self.groups.get_unchecked(group);
-            self.offsets.get_unchecked(of.offset + k)
+            self.offsets.get_unchecked(of.offset as usize + k)
         };
         let mut xi = [L::splat(0.0); D];
         for a in 0..D {
@@ -259,7 +272,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         // SAFETY: the caller's promise
         unsafe {
             let of = self.groups.get_unchecked(group);
-            let offset = self.offsets.get_unchecked(of.offset + k);
+            let offset = self.offsets.get_unchecked(of.offset as usize + k);
             let slot = of.first.wrapping_add_signed(offset.shift) + part;
             let inside = (slot + self.phase) % TILE;
             let place = self.place_of(slot, offset.back, n, count);
@@ -287,6 +300,12 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         }
     }
 
+    fn joins(&self, _: &Body<D>, i: usize, j: usize) -> bool {
+        let ((ci, bi), (cj, bj)) = (self.grid.cell(i), self.grid.cell(j));
+        let cell = std::array::from_fn(|a| cj[a] - ci[a]);
+        self.pairs.contains(cell, bi, bj)
+    }
+
     fn find(&self, slot: usize) -> Option<(usize, usize)> {
         let at = slot.checked_sub(self.grid.guard)?;
         let group = self.links.tiles.binary_search(&((at / TILE) as u32)).ok()?;
@@ -295,6 +314,9 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
     }
 
     fn bytes(&self) -> usize {
-        self.links.bytes() + size_of_val(&*self.offsets) + size_of_val(&*self.groups)
+        self.links.bytes()
+            + self.pairs.bytes()
+            + size_of_val(&*self.offsets)
+            + size_of_val(&*self.groups)
     }
 }

@@ -6,6 +6,8 @@ use crate::space::Point;
 
 /// What bonds ask of their law beside its functions: the same at all times.
 pub struct LawProperties<const D: usize> {
+    /// Do its sweeps break bonds where they find them, with numbers of their own?
+    pub fused: bool,
     /// How many numbers it has of a material, of a point (three kinds of them), and of a directed bond.
     pub constants: usize,
     pub form: usize,
@@ -31,6 +33,7 @@ pub struct LawProperties<const D: usize> {
 impl<const D: usize> LawProperties<D> {
     pub fn of<M: Material<D>>(law: &M) -> Self {
         LawProperties {
+            fused: false,
             constants: <M::Constants<f64> as Numbers<f64>>::COUNT,
             form: <M::Form<f64> as Numbers<f64>>::COUNT,
             point: <M::Point<f64> as Numbers<f64>>::COUNT,

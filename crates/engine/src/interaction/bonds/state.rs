@@ -2,11 +2,12 @@
 
 use super::family::{Family, Moved};
 use super::law::LawProperties;
+use super::records::Pack;
 use super::repulsion::Pushed;
 use super::store::Store;
 use super::view::{BLOCK, BondView};
 use crate::body::{Body, Column, Field, FieldView, Identity, field};
-use crate::execute::blocks::{PerBlock, Seen, run_blocks};
+use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::simd::{Kernel, Simd};
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::{Repulsion, Tally, Toughness};
@@ -19,7 +20,7 @@ pub struct BondState<const D: usize, F> {
     pub law: LawProperties<D>,
     pub family: F,
     pub kind: &'static str,
-    /// Bits of whole bonds, and of those that damage counts.
+    /// Bits of whole bonds, and of those that damage counts; empty: all that the family ever had ([`BondState::is_counted`]).
     pub alive: Vec<u8>,
     pub counted: Vec<u8>,
     pub directed: u64,
@@ -150,7 +151,7 @@ pub struct BondParts<'a, const D: usize, F> {
 }
 
 /// Bits of all bonds of a family, and how many there are.
-fn all_whole<const D: usize, F: Family<D>>(family: &F) -> (Vec<u8>, u64) {
+pub(super) fn all_whole<const D: usize, F: Family<D>>(family: &F) -> (Vec<u8>, u64) {
     let mut alive = vec![0u8; family.bytes_of_bits()];
     let mut directed = 0;
     for (group, l, _) in family.points() {
@@ -209,13 +210,16 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         let works = matches!(criteria.measure, Measure::Work(_));
         let wears = !criteria.fatigue.is_empty();
         let breaks = fails || works || wears || toughness.iter().any(|t| t.s00.is_finite());
+        // fused sweeps look at broken bonds that repel, too, and tear what they find themselves
+        let criticals = breaks || law.fused && repulsion.is_some();
+        let found = breaks && !law.fused;
         let bonds = |is: bool, x: f64| vec![x; if is { family.memory() } else { 0 }];
         let column = |is: bool, x: f64| match is {
             true => Column::new(body.len, x, field::line(3)),
             false => Column::default(),
         };
         let critical = || {
-            let mut critical = column(breaks, f64::INFINITY);
+            let mut critical = column(criticals, f64::INFINITY);
             if let Measure::Work(limit) = &criteria.measure {
                 for (slot, x) in critical.iter_mut().enumerate() {
                     *x = limit[body.material_of(slot)];
@@ -229,7 +233,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         let records = if gathers { 4 * body.len } else { 0 };
         BondState {
             body: body.identity,
-            counted: alive.clone(),
+            counted: if law.fused { vec![] } else { alive.clone() },
             alive,
             directed,
             near_horizon,
@@ -254,8 +258,8 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             stiffness: [const { vec![] }; 2],
             stiffened: 1.0,
             held,
-            breaks: vec![0; if breaks { family.bytes_of_bits() } else { 0 }],
-            torn: vec![0; if breaks { family.groups() } else { 0 }],
+            breaks: vec![0; if found { family.bytes_of_bits() } else { 0 }],
+            torn: vec![0; if found { family.groups() } else { 0 }],
             step: 0.0,
             prepared: false,
             room: Room {
@@ -301,13 +305,18 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         }
     }
 
-    /// Displacements as gathers want them.
+    /// Displacements as gathers want them, where the family gathers; fused sweeps want the critical `e`, too.
     pub fn pack(&self, u: FieldView<D>, records: &mut [f64]) {
-        for (slot, record) in records.chunks_mut(4).enumerate() {
-            for a in 0..D {
-                record[a] = u[a][slot];
-            }
+        if records.is_empty() {
+            return;
         }
+        let critical: &[f64] = &self.critical;
+        self.blocks.run(&Pack {
+            u,
+            slots: records.len() / 4,
+            fourth: if self.law.fused { critical } else { &[] },
+            records: Shared(records.as_mut_ptr()),
+        });
     }
 
     /// What is left of a slot's energy and force states.

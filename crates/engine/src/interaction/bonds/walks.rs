@@ -3,7 +3,7 @@
 use super::breaking::fibre_limit;
 use super::family::{Family, Slots};
 use super::law::PointLaw;
-use super::state::{BondState, WholeBond};
+use super::state::{BondState, WholeBond, all_whole};
 use crate::body::Body;
 use crate::execute::lane::TILE;
 use crate::interaction::history::Crosses;
@@ -12,7 +12,7 @@ use crate::spec::CrackKind;
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {
     /// Every directed bond of the family that damage counts: group, bond, place.
-    fn counted(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+    pub(super) fn counted(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         self.family.points().flat_map(move |(group, l, _)| {
             let bonds = (0..self.family.bonds(group)).map(move |k| (group, k, l));
             bonds.filter(|(group, k, l)| self.is_counted(*group, *k, *l))
@@ -31,8 +31,11 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         self.alive[self.family.byte(group, k)] >> l & 1 == 1
     }
 
-    fn is_counted(&self, group: usize, k: usize, l: usize) -> bool {
-        self.counted[self.family.byte(group, k)] >> l & 1 == 1
+    pub(super) fn is_counted(&self, group: usize, k: usize, l: usize) -> bool {
+        match self.counted.get(self.family.byte(group, k)) {
+            Some(bits) => bits >> l & 1 == 1,
+            None => self.family.is_bond(group, k, l),
+        }
     }
 
     /// The whole bonds of a point.
@@ -71,8 +74,26 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         body: &Body<D>,
         visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
     ) {
+        self.each_of(self.counted(), body, visit);
+    }
+
+    /// The same of every bond that the family ever had: those of absent cracks are broken, too.
+    pub fn each_pair(
+        &self,
+        body: &Body<D>,
+        visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
+    ) {
+        self.each_of(self.pairs(), body, visit);
+    }
+
+    fn each_of(
+        &self,
+        bonds: impl Iterator<Item = (usize, usize, usize)>,
+        body: &Body<D>,
+        visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
+    ) {
         let original = body.originals();
-        for (group, k, l) in self.counted() {
+        for (group, k, l) in bonds {
             let i = self.family.rows(group).slot(l);
             let end = self.family.ends(group, k).slot(l);
             let j = original(end);
@@ -86,23 +107,45 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// [`each_broken`](crate::interaction::Interaction::each_broken)
     pub fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        self.each_broken_of(body, |_| true, visit);
+    }
+
+    /// Of those groups alone that may have lost a bond.
+    pub fn each_broken_of(
+        &self,
+        body: &Body<D>,
+        torn: impl Fn(usize) -> bool,
+        visit: &mut dyn FnMut(usize, usize, [f64; D]),
+    ) {
         let original = body.originals();
-        for group in 0..self.family.groups() {
-            for k in 0..self.family.bonds(group) {
-                let alive = self.alive[self.family.byte(group, k)];
-                for l in (0..TILE).filter(|l| alive >> l & 1 == 0) {
-                    if !self.family.is_point(group, l) || !self.family.is_bond(group, k, l) {
-                        continue;
-                    }
-                    let i = self.family.rows(group).slot(l);
-                    let end = self.family.ends(group, k).slot(l);
-                    let j = original(end);
-                    if i < j || (i == j && end > i) {
-                        visit(i, j, self.family.bond(group, k, l).0);
-                    }
-                }
+        for (group, k, l) in self.lost(torn) {
+            let i = self.family.rows(group).slot(l);
+            let end = self.family.ends(group, k).slot(l);
+            let j = original(end);
+            if i < j || (i == j && end > i) {
+                visit(i, j, self.family.bond(group, k, l).0);
             }
         }
+    }
+
+    /// Every directed bond of the family that is not whole, those of absent cracks too, of groups that may have lost one: group, bond, place.
+    pub(super) fn lost(
+        &self,
+        torn: impl Fn(usize) -> bool,
+    ) -> impl Iterator<Item = (usize, usize, usize)> {
+        let groups = (0..self.family.groups()).filter(move |n| torn(*n));
+        groups.flat_map(move |group| {
+            let bits = self.family.bits(&self.alive, group).iter().enumerate();
+            // most are whole
+            let lost = bits.filter(|(_, bits)| **bits != 0xff);
+            lost.flat_map(move |(k, bits)| {
+                let lanes = (0..TILE).filter(move |l| bits >> l & 1 == 0);
+                let there = move |l: &usize| {
+                    self.family.is_point(group, *l) && self.family.is_bond(group, k, *l)
+                };
+                lanes.filter(there).map(move |l| (group, k, l))
+            })
+        })
     }
 
     /// [`bond_limit`](crate::interaction::Interaction::bond_limit), where there are fibres.
@@ -116,31 +159,39 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot.
     pub fn damage(&self, body: &Body<D>, out: &mut [f64]) {
-        let mut family = vec![0.0; body.len];
-        let mut whole = vec![0.0; body.len];
+        self.damage_of(body, |j| body.volume.at(j), out);
+    }
+
+    /// The same with what bonds to a point count for.
+    pub fn damage_of(&self, body: &Body<D>, counts: impl Fn(usize) -> f64, out: &mut [f64]) {
         let original = body.originals();
-        for (group, k, l) in self.counted() {
-            let i = self.family.rows(group).slot(l);
-            let volume = body.volume.at(original(self.family.ends(group, k).slot(l)));
-            family[i] += volume;
-            if self.is_whole(group, k, l) {
-                whole[i] += volume;
+        out.fill(0.0);
+        for (group, l, i) in self.family.points() {
+            // most groups have lost nothing
+            let bits = self.family.bits(&self.alive, group);
+            if bits.iter().all(|b| *b == 0xff) {
+                continue;
             }
-        }
-        for (i, damage) in out.iter_mut().enumerate() {
-            *damage = match family[i] > 0.0 {
-                true => 1.0 - whole[i] / family[i],
-                false => 0.0,
-            };
+            let [mut family, mut whole] = [0.0; 2];
+            for k in (0..bits.len()).filter(|k| self.is_counted(group, *k, l)) {
+                let one = counts(original(self.family.ends(group, k).slot(l)));
+                family += one;
+                if bits[k] >> l & 1 == 1 {
+                    whole += one;
+                }
+            }
+            out[i] = history::damage(whole, family);
         }
     }
 
-    /// [`cut`](crate::interaction::Interaction::cut)
+    /// [`cut`](crate::interaction::Interaction::cut). A bond through a periodic face is in two places, and either end must see the same: `twice` of an end and its
+    /// original says which bonds are looked at from both.
     pub fn cut(
         &mut self,
         body: &Body<D>,
         kind: CrackKind,
         crosses: &Crosses<D>,
+        twice: impl Fn(usize, usize) -> bool,
         law: &dyn PointLaw<D>,
     ) -> u64 {
         let original = body.originals();
@@ -152,11 +203,14 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
                 std::array::from_fn(|a| x[a])
             };
             let from = at(self.family.rows(group).slot(l));
-            // a bond through a periodic face is in two places; either end must see the same
-            let to = at(original(self.family.ends(group, k).slot(l)));
-            if history::crossed(crosses, from, xi, Some(to)) {
+            let end = self.family.ends(group, k).slot(l);
+            let j = original(end);
+            if history::crossed(crosses, from, xi, twice(end, j).then(|| at(j))) {
                 cut.push((self.family.byte(group, k), 1u8 << l));
             }
+        }
+        if kind == CrackKind::Absent && self.counted.is_empty() && !cut.is_empty() {
+            (self.counted, _) = all_whole(&self.family);
         }
         for (byte, bit) in &cut {
             self.alive[*byte] &= !bit;
@@ -180,16 +234,6 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         (0..self.family.bonds(group))
             .filter(|k| self.is_counted(group, *k, l))
             .count()
-    }
-
-    pub fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
-        let Some((group, l)) = self.family.find(i) else {
-            return false;
-        };
-        let original = body.originals();
-        (0..self.family.bonds(group)).any(|k| {
-            self.family.is_bond(group, k, l) && original(self.family.ends(group, k).slot(l)) == j
-        })
     }
 
     /// Dilatations from `Σ ω ν V |ξ|² s` over the whole bonds: over the weighted volume of those that count, broken or not, where the law

@@ -1,14 +1,18 @@
 //! A list interaction from a body, its list of pairs and a law.
 
 use super::ListInteraction;
-use super::kernel::BLOCK;
 use crate::body::Body;
-use crate::execute::blocks::PerBlock;
 use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
+use crate::interaction::bonds::family::Family;
+use crate::interaction::bonds::law::LawProperties;
+use crate::interaction::bonds::state::BondParts;
+use crate::interaction::bonds::store::Store;
+use crate::interaction::bonds::{BondState, CloudFamily};
+use crate::interaction::criterion::Criteria;
 use crate::interaction::pairs::BondTable;
 use crate::interaction::weight::BondWeight;
-use crate::interaction::{PointConstants, Repulsion, Tally, Toughness, history, laws_fields};
+use crate::interaction::{PointConstants, Repulsion, Toughness, laws_fields};
 use crate::law::Law;
 use std::sync::Arc;
 
@@ -51,16 +55,6 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             list.body == body.identity,
             "the list of another body: make one for this body"
         );
-        let mut reference = vec![0.0; 4 * body.len];
-        for (slot, record) in reference.chunks_mut(4).enumerate() {
-            record[..3].copy_from_slice(&body.position(slot));
-            record[3] = body.volume.at(slot);
-        }
-        let critical = if history::remembers(repulsion.as_ref(), &toughness) {
-            vec![f64::INFINITY; body.len]
-        } else {
-            vec![]
-        };
         let paired = pairs.materials() > 0;
         let alike = |r: &Repulsion| r.stiffness.one().is_some();
         let materials: Vec<u8> = match !paired && repulsion.as_ref().is_none_or(alike) {
@@ -71,31 +65,29 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             let known = |m: &u8| (*m as usize) < pairs.materials();
             assert!(materials.iter().all(known), "constants of every material");
         }
-        let blocks = list.slices().div_ceil(BLOCK);
-        ListInteraction {
-            body: body.identity,
-            law,
+        let parts = BondParts {
+            body,
+            near_horizon: list.near_horizon,
+            family: CloudFamily::plain(body, list, weight),
+            kind: "list",
+            toughness,
+            criteria: Criteria::default(),
+            repulsion,
+            held: vec![],
             simd,
-            weight,
-            alive: list.present.clone(),
+        };
+        let numbers = Store::zeros(parts.family.layout(0));
+        let mut bonds = BondState::new(parts, LawProperties::fused(), numbers);
+        bonds.material = materials;
+        ListInteraction {
+            bonds,
+            law,
             scale: vec![],
-            list,
-            reference,
-            moved: vec![0.0; 4 * body.len],
             fields: vec![0.0; if W::FIELDS > 0 { 2 * body.len } else { 0 }],
             pressure: vec![],
             point_constants,
-            toughness,
-            repulsion,
-            materials,
             pairs,
-            next: critical.clone(),
-            critical,
             spares: false,
-            period: body.period.map(|p| p.unwrap_or(0.0)),
-            inv_period: body.period.map(|p| p.map_or(0.0, f64::recip)),
-            tallies: PerBlock::new(blocks, Tally::default()),
-            sums: PerBlock::sums(blocks),
         }
     }
 }

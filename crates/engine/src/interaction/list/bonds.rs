@@ -2,22 +2,19 @@
 
 use super::ListInteraction;
 use crate::body::{Body, FieldView, view_mut, zeros};
-use crate::execute::lane::TILE;
-use crate::interaction::{BondForce, BondStatus, BondTangent, Interaction, Sweep};
+use crate::interaction::bonds::family::{Family, Slots};
+use crate::interaction::{BondForce, BondTangent, Interaction, Sweep};
 use crate::law::{BondFactors, Law};
 
 impl<const D: usize, W: Law> ListInteraction<D, W> {
-    /// Every directed bond of the list: row, line, slots.
-    pub(super) fn each_line(&self, mut visit: impl FnMut(usize, usize, [usize; 2])) {
-        for (row, &i) in self.list.rows.iter().enumerate() {
-            for (line, j) in self.list.partners(row) {
-                visit(row, line, [i as usize, j]);
-            }
+    /// Every directed bond of the list: place, in order of rows; is it whole; slots.
+    pub(super) fn each_line(&self, mut visit: impl FnMut(usize, bool, [usize; 2])) {
+        let family = &self.bonds.family;
+        for (group, k, l) in self.bonds.pairs() {
+            let ends = [family.rows(group), family.ends(group, k)].map(|s| s.slot(l));
+            let whole = self.bonds.is_whole(group, k, l);
+            visit(family.own(group, k, 0, 1) + l, whole, ends);
         }
-    }
-
-    pub(super) fn is_whole(&self, row: usize, line: usize) -> bool {
-        self.alive[line] >> (row % TILE) & 1 == 1
     }
 
     fn field(&self, slot: usize) -> [f64; 2] {
@@ -34,9 +31,9 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             // the pressures of this state
             self.forces(body, u, view_mut(&mut zeros(body.len)), Sweep::Hold, None);
         }
-        let view = self.view(&self.moved);
-        self.each_line(|row, line, [i, j]| {
-            if !self.is_whole(row, line) {
+        let view = self.view(self.moved());
+        self.each_line(|place, whole, [i, j]| {
+            if !whole {
                 return;
             }
             let (xi, share) = view.constant(i, j);
@@ -44,7 +41,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             let mut fields = [i, j].map(|s| self.field(s));
             let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
             k = self.law.between_ends(k, &xi, length, fields[0], fields[1]);
-            k *= self.factor(row, line);
+            k *= self.factor(place);
             if view.paired {
                 let pair = self.pairs.get(body.material_of(i), body.material_of(j));
                 k *= pair.stiffness;
@@ -74,42 +71,12 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         if W::SHARES {
             self.share();
         }
-        let view = self.view(&self.moved);
-        self.each_line(|row, line, [i, j]| {
-            let whole = self.is_whole(row, line);
-            let (pull, y) = view.pull_of(i, j, whole.then(|| self.factor(row, line)));
+        let view = self.view(self.moved());
+        self.each_line(|place, whole, [i, j]| {
+            let (pull, y) = view.pull_of(i, j, whole.then(|| self.factor(place)));
             if pull[0] != 0.0 {
                 visit(BondForce::central([i, j], y, pull));
             }
         });
-    }
-
-    /// Every undirected bond of the reference family.
-    pub(super) fn each_of_family(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
-        let view = self.view(&self.moved);
-        self.each_line(|row, line, [i, j]| {
-            if i <= j {
-                let state = BondStatus::of(self.is_whole(row, line));
-                visit(i, j, view.constant(i, j).0, state);
-            }
-        });
-    }
-
-    /// Every undirected bond that is broken.
-    pub(super) fn each_torn(&self, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        let view = self.view(&self.moved);
-        for (slice, rows) in self.list.rows.chunks(TILE).enumerate() {
-            let lines = self.list.lines(TILE * slice);
-            for line in lines.filter(|line| self.alive[*line] != 0xff) {
-                for (l, &i) in rows.iter().enumerate() {
-                    // a row's own slot: there is no bond
-                    let j = self.list.partner[TILE * line + l];
-                    if i < j && self.alive[line] >> l & 1 == 0 {
-                        let (i, j) = (i as usize, j as usize);
-                        visit(i, j, view.constant(i, j).0);
-                    }
-                }
-            }
-        }
     }
 }

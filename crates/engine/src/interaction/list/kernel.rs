@@ -8,19 +8,16 @@ mod share;
 use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::series::{Extension, Function};
 use crate::execute::lane::{self, Lane, TILE};
-use crate::execute::simd::Kernel;
 use crate::family::horizon::HorizonList;
 use crate::interaction::Repulsion;
 use crate::interaction::bond::relative_square_stretch;
+use crate::interaction::bonds::view::BLOCK;
 use crate::interaction::pairs::{BondLanes, BondTable};
 use crate::interaction::weight::BondWeight;
 use crate::law::{BondFactors, Law};
 pub use energies::Energies;
 pub use forces::Forces;
 pub use share::Share;
-
-/// Slices per block of work.
-pub const BLOCK: usize = 32;
 
 /// What all kernels read. Records keep what one bond needs of its partner together.
 pub struct View<'a, const D: usize, W> {
@@ -346,33 +343,5 @@ unsafe fn scatter<L: Lane>(value: L, out: Shared, rows: *const u32, step: usize)
     for (l, x) in all.iter().enumerate() {
         // SAFETY: rows are slots of the caller's field, and every slot is the row of one slice
         unsafe { *out.at(*rows.add(l) as usize * step) = *x };
-    }
-}
-
-/// Fill the records of a step.
-pub struct Pack<'a, const D: usize> {
-    pub u: [&'a [f64]; D],
-    /// Empty: nothing breaks.
-    pub critical: &'a [f64],
-    pub moved: Shared,
-}
-
-impl<const D: usize> Kernel for Pack<'_, D> {
-    type Out = ();
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) {
-        let slots = BLOCK * TILE;
-        for s in block * slots..((block + 1) * slots).min(self.u[0].len()) {
-            // SAFETY: there is a record per slot
-            unsafe {
-                for a in 0..D {
-                    *self.moved.at(4 * s + a) = self.u[a][s];
-                }
-                if let Some(c) = self.critical.get(s) {
-                    *self.moved.at(4 * s + 3) = *c;
-                }
-            }
-        }
     }
 }

@@ -131,7 +131,7 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         kind: CrackKind,
         crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
     ) -> u64 {
-        self.bonds.cut(body, kind, crosses, &*self.law)
+        self.bonds.cut(body, kind, crosses, |_, _| true, &*self.law)
     }
 
     fn scale_bonds(
@@ -165,7 +165,7 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
     }
 
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
-        self.bonds.in_family(body, i, j)
+        self.bonds.family.joins(body, i, j)
     }
 
     fn expand(&mut self, body: &Body<D>, strain: &[f64]) -> bool {

@@ -128,7 +128,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         }
         for a in 0..D {
             force[a] = per_length * (weight * force[a]);
-            own[a] = weight * per_length * own[a];
+            own[a] *= weight * per_length;
         }
         let pushed = self.bonds.pushed(body);
         if let Some(push) = { pushed }.and_then(|p| p.of(family, &seen.moved, group, k, l)) {

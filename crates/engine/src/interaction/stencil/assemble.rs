@@ -1,15 +1,19 @@
 //! A stencil interaction from a body, a stencil and a law.
 
 use super::StencilInteraction;
-use super::kernel::{BLOCK, Bond, MOST, Partner};
-use crate::body::{Body, Column, Grid, Layout, field};
-use crate::execute::blocks::PerBlock;
+use super::kernel::{Bond, MOST, Partner};
+use crate::body::{Body, Column, Layout, field};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
-use crate::family::offsets::OffsetSet;
 use crate::family::stencil::{Offset, Stencil};
+use crate::interaction::bonds::family::Family;
+use crate::interaction::bonds::law::LawProperties;
+use crate::interaction::bonds::state::BondParts;
+use crate::interaction::bonds::store::Store;
+use crate::interaction::bonds::{BondState, LatticeFamily};
+use crate::interaction::criterion::Criteria;
 use crate::interaction::scale::Scale;
-use crate::interaction::{PointConstants, Repulsion, Tally, Toughness, history, laws_fields};
+use crate::interaction::{PointConstants, Repulsion, Toughness, laws_fields};
 use crate::law::Law;
 use std::collections::HashMap;
 
@@ -86,120 +90,82 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             };
             (bond, partner)
         };
-        let (bonds, partners): (Vec<Vec<Bond<D>>>, Vec<Vec<Partner<D>>>) = stencil
+        let (all, partners): (Vec<Vec<Bond<D>>>, Vec<Vec<Partner<D>>>) = stencil
             .offsets
             .iter()
             .enumerate()
             .map(|(from, list)| list.iter().enumerate().map(|(k, o)| of(from, k, o)).unzip())
             .unzip();
-        let contact_e = bonds.iter().flatten().map(|b| b.contact_e);
+        let contact_e = all.iter().flatten().map(|b| b.contact_e);
         let most_contact = contact_e.fold(-1.0, f64::max);
         let width = stencil.bonds();
         assert!(width <= MOST, "checked when the horizon was read");
-        let tiles: Vec<u32> = (0..grid.tiles())
-            .filter(|t| grid.owned[*t] != 0)
-            .map(|t| t as u32)
-            .collect();
-        let families = Families::of(grid, &tiles, &partners, width);
-        let remembers = history::remembers(repulsion.as_ref(), &toughness);
-        let critical = if remembers {
-            Column::new(body.len, f64::INFINITY, field::line(3))
-        } else {
-            Column::default()
-        };
-        let next = vec![0.0; if remembers { tiles.len() * TILE } else { 0 }];
-        let blocks = tiles.len().div_ceil(BLOCK);
-        let mut made = StencilInteraction {
-            body: body.identity,
-            law,
+        let family = LatticeFamily::new(body, grid, stencil, &|xi, length| {
+            let of = weight(xi, length);
+            [of, of, 1.0]
+        });
+        let parts = BondParts {
+            body,
+            near_horizon: 0,
+            family,
+            kind: "stencil",
+            toughness,
+            criteria: Criteria::default(),
+            repulsion,
+            held: vec![],
             simd,
-            offsets: OffsetSet::new(grid, &partners, |b| (b.cell, b.to)),
+        };
+        let numbers = Store::zeros(parts.family.layout(0));
+        let mut bonds = BondState::new(parts, LawProperties::fused(), numbers);
+        // sweeps ask the body, and write what comes next tile by tile
+        (bonds.material, bonds.next) = (vec![], Column::default());
+        let tiles = bonds.family.groups();
+        let next = match bonds.critical.is_empty() {
+            true => vec![],
+            false => vec![0.0; tiles * TILE],
+        };
+        let (reach, reaches) = reaches(&bonds);
+        let mut made = StencilInteraction {
             bonds,
+            law,
+            stencil: all,
             partners,
-            width,
-            alive: families.alive,
-            state: vec![0; tiles.len()],
-            tiles,
-            reach: families.reach,
-            reaches: families.reaches,
+            state: vec![0; tiles],
+            reach,
+            reaches,
             scale: Scale::default(),
-            family: families.family,
-            directed: families.directed,
             fields: std::array::from_fn(|n| match n < W::FIELDS {
                 true => Column::new(body.len, 0.0, field::line(4 + n)),
                 false => Column::default(),
             }),
             pressure: Column::default(),
             point_constants,
-            toughness,
-            repulsion,
             next,
-            critical,
             least_critical: f64::INFINITY,
             settled: false,
             most_contact,
             volume,
-            guard: grid.guard,
-            tallies: PerBlock::new(blocks, Tally::default()),
-            sums: PerBlock::sums(blocks),
         };
-        made.look(grid);
+        made.look();
         made
     }
 }
 
-/// Which bonds of the stencil the points of tiles have.
-struct Families {
-    /// `[tile, bond]`, a bit for each lane.
-    alive: Vec<u8>,
-    /// Of each tile, its bonds' number among `reaches`.
-    reach: Vec<u32>,
-    /// Bits of the bonds that any lane has, of all unlike tiles.
-    reaches: Vec<u64>,
-    /// Bonds of each lane.
-    family: Vec<u16>,
-    directed: u64,
-}
-
-impl Families {
-    fn of<const D: usize>(
-        grid: &Grid<D>,
-        tiles: &[u32],
-        partners: &[Vec<Partner<D>>],
-        width: usize,
-    ) -> Families {
-        let words = width.div_ceil(64);
-        let mut all = Families {
-            alive: vec![0; tiles.len() * width],
-            reach: vec![0; tiles.len()],
-            reaches: vec![],
-            family: vec![0; tiles.len() * TILE],
-            directed: 0,
-        };
-        let mut known: HashMap<Vec<u64>, u32> = HashMap::new();
-        for (n, &t) in tiles.iter().enumerate() {
-            let first = grid.tile_slot(t as usize);
-            let sub = grid.tile_sublattice(t as usize);
-            let mut leads = vec![0u64; words];
-            for l in 0..TILE {
-                if !grid.is_owned(first + l) {
-                    continue;
-                }
-                for (k, b) in partners[sub].iter().enumerate() {
-                    if grid.neighbour(first + l, b.cell, b.to).is_some() {
-                        all.alive[n * width + k] |= 1 << l;
-                        leads[k / 64] |= 1 << (k % 64);
-                        all.family[n * TILE + l] += 1;
-                        all.directed += 1;
-                    }
-                }
-            }
-            let new = known.len() as u32;
-            all.reach[n] = *known.entry(leads).or_insert_with_key(|leads| {
-                all.reaches.extend_from_slice(leads);
-                new
-            });
+/// Of each tile which row of bits it has, and the bits of the bonds that any of its points has, of all unlike tiles.
+fn reaches<const D: usize>(bonds: &BondState<D, LatticeFamily<D>>) -> (Vec<u32>, Vec<u64>) {
+    let family = &bonds.family;
+    let (mut reach, mut reaches) = (vec![], vec![]);
+    let mut known: HashMap<Vec<u64>, u32> = HashMap::new();
+    for n in 0..family.groups() {
+        let mut leads = vec![0u64; family.width.div_ceil(64)];
+        for (k, bits) in family.bits(&bonds.alive, n).iter().enumerate() {
+            leads[k / 64] |= u64::from(*bits != 0) << (k % 64);
         }
-        all
+        let new = known.len() as u32;
+        reach.push(*known.entry(leads).or_insert_with_key(|leads| {
+            reaches.extend_from_slice(leads);
+            new
+        }));
     }
+    (reach, reaches)
 }

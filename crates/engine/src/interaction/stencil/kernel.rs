@@ -20,10 +20,10 @@ pub use energies::Energies;
 pub use forces::{Forces, Remember};
 pub use share::Share;
 
-/// Tiles per block of work.
-pub const BLOCK: usize = 32;
 /// Longest stencil that a sweep can keep account of.
 pub use crate::family::stencil::MOST;
+/// Tiles per block of work.
+pub use crate::interaction::bonds::view::BLOCK;
 
 /// State of a tile: every bond of `reach` is whole for all eight points.
 pub const WHOLE: u8 = 1;

@@ -2,9 +2,10 @@
 
 use super::StencilInteraction;
 use super::kernel::{ALIKE, WHOLE};
-use crate::body::{Body, Column, Grid, field};
+use crate::body::{Body, Column, field};
 use crate::execute::lane::TILE;
 use crate::interaction::PointConstants;
+use crate::interaction::bonds::family::{Family, Slots};
 use crate::interaction::point_constants::unlike;
 use crate::interaction::scale::Scale;
 use crate::law::{BondFactors, Law};
@@ -12,45 +13,34 @@ use crate::law::{BondFactors, Law};
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
     pub(super) fn multiply_factors(
         &mut self,
-        body: &Body<D>,
         factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
     ) {
-        let grid = body.grid();
+        let family = &self.bonds.family;
         let old = std::mem::take(&mut self.scale);
-        self.scale = Scale::new(self.tiles.len(), self.width, W::SHARES, |n, k, l| {
-            let tile = self.tiles[n] as usize;
-            let i = grid.tile_slot(tile) + l;
-            let to = self.partners[grid.tile_sublattice(tile)].get(k);
-            let to = to.filter(|_| self.row(n)[k] >> l & 1 == 1);
-            let ends = to.and_then(|b| Some((b.cell, grid.neighbour(i, b.cell, b.to)?)));
-            ends.map_or(BondFactors::ONE, |(cell, j)| {
-                old.of(n, k, l).times(factors(i, j, cell))
-            })
+        self.scale = Scale::new(family.groups(), family.width, W::SHARES, |n, k, l| {
+            if !self.bonds.is_whole(n, k, l) {
+                return BondFactors::ONE;
+            }
+            let [i, j] = [family.rows(n), family.ends(n, k)].map(|s| s.slot(l));
+            let cell = self.partners[family.sublattice(n)][k].cell;
+            old.of(n, k, l).times(factors(i, j, cell))
         });
     }
 
     /// Volume with which the bond along ξ acts on slot i, and its factors, where there are any.
-    pub(super) fn reach(
-        &self,
-        body: &Body<D>,
-        i: usize,
-        xi: [f64; D],
-    ) -> Option<(f64, BondFactors<f64>)> {
-        let grid = body.grid();
+    pub(super) fn reach(&self, i: usize, xi: [f64; D]) -> Option<(f64, BondFactors<f64>)> {
         if self.scale.is_empty() {
             return None;
         }
-        let tile = (i - grid.guard) / TILE;
-        let n = self.tiles.binary_search(&(tile as u32)).ok()?;
-        let k = self.bonds[grid.tile_sublattice(tile)]
+        let (n, l) = self.bonds.family.find(i)?;
+        let k = self.stencil[self.bonds.family.sublattice(n)]
             .iter()
             .position(|b| b.back.map(|x| -x) == xi)?;
-        Some((self.volume, self.scale.of(n, k, (i - grid.guard) % TILE)))
+        Some((self.volume, self.scale.of(n, k, l)))
     }
 
     /// Weighted volumes, and what follows.
     pub(super) fn weigh(&mut self, body: &Body<D>) {
-        let grid = body.grid();
         let column = |n: usize| Column::new(body.len, 0.0, field::line(4 + n));
         let per_slot = |n: usize, value: &dyn Fn(usize) -> f64| {
             let mut field = column(n);
@@ -72,11 +62,12 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             }
             PointConstants::Solid(solids) => {
                 let mut m = vec![0.0; body.len];
-                for (n, &t) in self.tiles.iter().enumerate() {
-                    let first = grid.tile_slot(t as usize);
-                    let bonds = &self.bonds[grid.tile_sublattice(t as usize)];
+                let family = &self.bonds.family;
+                for n in 0..family.groups() {
+                    let first = family.rows(n).slot(0);
+                    let bonds = &self.stencil[family.sublattice(n)];
                     let whole = !self.scale.is_empty();
-                    for (b, bits) in bonds.iter().zip(self.row(n)) {
+                    for (b, bits) in bonds.iter().zip(family.bits(&self.bonds.alive, n)) {
                         for l in 0..TILE {
                             if whole || bits >> l & 1 == 1 {
                                 m[first + l] += b.share;
@@ -95,26 +86,36 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 }
             }
         }
-        self.look(grid);
+        self.look();
+    }
+
+    /// What follows from critical stretches, whose images are those of originals.
+    pub(super) fn look_critical(&mut self, body: &Body<D>) {
+        let critical = &self.bonds.critical;
+        let known = body.slots.iter().map(|s| critical.get(*s as usize));
+        let known = known.flatten().copied();
+        self.least_critical = known.fold(f64::INFINITY, f64::min);
+        self.settled = false;
     }
 
     /// Find the tiles whose bonds are all whole, and those of them whose ends are alike.
-    pub(super) fn look(&mut self, grid: &Grid<D>) {
-        let words = self.width.div_ceil(64);
+    pub(super) fn look(&mut self) {
+        let family = &self.bonds.family;
+        let words = family.width.div_ceil(64);
         let mut state = std::mem::take(&mut self.state);
         for (n, state) in state.iter_mut().enumerate() {
-            let row = self.row(n);
+            let row = family.bits(&self.bonds.alive, n);
             let reach = &self.reaches[self.reach[n] as usize * words..][..words];
             let leads = |k: &usize| reach[k / 64] >> (k % 64) & 1 == 1;
-            let whole = (0..self.width).filter(leads).all(|k| row[k] == 0xff);
-            let first = grid.tile_slot(self.tiles[n] as usize);
-            let bonds = &self.bonds[grid.tile_sublattice(self.tiles[n] as usize)];
+            let whole = (0..family.width).filter(leads).all(|k| row[k] == 0xff);
+            let first = family.rows(n).slot(0);
+            let bonds = &self.stencil[family.sublattice(n)];
             let field = &self.fields[1];
             let alike = whole && !field.is_empty() && {
                 let same =
                     |slot: usize| field[slot..slot + TILE].iter().all(|x| *x == field[first]);
                 same(first)
-                    && (0..self.width)
+                    && (0..family.width)
                         .filter(leads)
                         .all(|k| same(bonds[k].to(first)))
             };

@@ -155,9 +155,9 @@ fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     }
     for m in &spec.materials {
         match shelf.stiffness(&m.law) {
-            Some(Stiffness::OfFamily | Stiffness::OfBonds) => {}
+            Some(Stiffness::Family | Stiffness::Bonds) => {}
             None if matches!(m.law, LawSpec::Pmb(_)) => {}
-            Some(Stiffness::OfHorizon) => lack(
+            Some(Stiffness::Horizon) => lack(
                 "own_horizon",
                 "bonds of this law have the stiffness of one horizon",
                 "take pmb, lps or another law of sums over families, or leave own_horizon out",
@@ -386,17 +386,6 @@ fn of_strength(spec: &Spec) -> Vec<Lack> {
         let says = "bonds that pull once more after they broke";
         let lack = Lack::new(Property::EndsAtOnce, says, "leave release out");
         all.push(lack.at("materials[0].fracture"));
-    }
-    if spec
-        .damage
-        .precracks
-        .iter()
-        .any(|p| p.kind == CrackKind::Absent)
-    {
-        let says =
-            "a bond that is absent from the start cannot be told from one that was never there";
-        let instead = "write kind = \"broken\" in [[precrack]]";
-        all.push(Lack::new(Property::Heals, says, instead));
     }
     if spec.run.schedule.stepper == Stepper::Still {
         let says = "points stand still";

@@ -104,8 +104,6 @@ pub(super) enum Property {
     Meets,
     /// No bonds between bodies.
     Unbonded,
-    /// Its bonds may be whole again.
-    Heals,
     /// Points go away and come back.
     Motion,
     /// Points go anywhere.

@@ -221,12 +221,12 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
         ));
     }
     if spec.damage.healing.is_some() {
-        let need = |property, why| Need::new(property, "healing", why, "leave healing out");
-        all.push(need(
+        all.push(Need::new(
             Property::Motion,
+            "healing",
             ", and bonds heal in motion, which brings their points back",
+            "leave healing out",
         ));
-        all.push(need(Property::Heals, ", and none such heals"));
     }
     all
 }

@@ -71,19 +71,19 @@ pub(super) struct Materials {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stiffness {
     /// [`Material::OF_FAMILY`]
-    OfFamily,
+    Family,
     /// [`Material::OF_BONDS`]
-    OfBonds,
+    Bonds,
     /// Computed for one horizon.
-    OfHorizon,
+    Horizon,
 }
 
 impl Stiffness {
     fn of<M: Material<2>>() -> Stiffness {
         match (M::OF_FAMILY, M::OF_BONDS) {
-            (true, _) => Stiffness::OfFamily,
-            (false, true) => Stiffness::OfBonds,
-            (false, false) => Stiffness::OfHorizon,
+            (true, _) => Stiffness::Family,
+            (false, true) => Stiffness::Bonds,
+            (false, false) => Stiffness::Horizon,
         }
     }
 }
