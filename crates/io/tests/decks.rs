@@ -344,7 +344,7 @@ fn densities_come_from_the_data_file_or_from_the_materials() {
 
 /// The disk of the impact, with fracture and contact: state, bonds and lists.
 #[test]
-fn a_lattice_takes_at_most_150_bytes_per_point() {
+fn a_lattice_takes_at_most_155_bytes_per_point() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good/impact.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     let deck = Deck::parse(&text, path.to_str().unwrap(), &[]).unwrap();
@@ -355,7 +355,7 @@ fn a_lattice_takes_at_most_150_bytes_per_point() {
     }
     let info = sim.info();
     let bytes = info.bytes as f64 / info.points as f64;
-    assert!((72.0..=150.0).contains(&bytes), "{bytes} bytes per point");
+    assert!((72.0..=155.0).contains(&bytes), "{bytes} bytes per point");
 }
 
 /// Laws: the good ones run, the bad ones say what their first line expects.

@@ -3,6 +3,7 @@
 use super::stencil::Stencil;
 use crate::body::{Body, FieldView, Grid, Identity, Layout};
 use crate::execute::lane::{Lane, TILE};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Tiles per block of work.
@@ -37,7 +38,7 @@ pub struct Links<const D: usize> {
     pub links: Vec<Vec<Link<D>>>,
     /// Tiles that have points.
     pub tiles: Vec<u32>,
-    /// Per tile of `tiles`: where its bits begin in `bits`; [`WHOLE`] if all its eight points have all their partners.
+    /// Per tile of `tiles`: where its bits, which others may have, too, begin in `bits`; [`WHOLE`] if all its eight points have all their partners.
     begin: Vec<u32>,
     /// Per bond of tiles that are not whole: which of the eight points have it.
     bits: Vec<u8>,
@@ -87,6 +88,8 @@ impl<const D: usize> Links<D> {
             directed: 0,
         };
         let mut row = vec![];
+        // tiles along a surface have the same bonds
+        let mut known: HashMap<Vec<u8>, u32> = HashMap::new();
         for &t in &made.tiles {
             let first = grid.tile_slot(t as usize);
             let links = &made.links[grid.tile_sublattice(t as usize)];
@@ -98,12 +101,17 @@ impl<const D: usize> Links<D> {
                 }
             }
             made.directed += row.iter().map(|b| u64::from(b.count_ones())).sum::<u64>();
-            if row.iter().all(|b| *b == 0xff) {
-                made.begin.push(WHOLE);
-            } else {
-                made.begin.push(made.bits.len() as u32);
-                made.bits.extend_from_slice(&row);
-            }
+            let begin = match known.get(&row) {
+                _ if row.iter().all(|b| *b == 0xff) => WHOLE,
+                Some(begin) => *begin,
+                None => {
+                    let begin = made.bits.len() as u32;
+                    made.bits.extend_from_slice(&row);
+                    known.insert(row.clone(), begin);
+                    begin
+                }
+            };
+            made.begin.push(begin);
         }
         debug_assert!(body.volume.uniform().is_some());
         made

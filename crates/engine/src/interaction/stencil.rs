@@ -65,7 +65,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     fn view<'a>(&'a self, body: &'a Body<D>, u: FieldView<'a, D>) -> View<'a, D, W> {
         let alive = Seen(self.bonds.alive.as_ptr());
         let state = Seen(self.state.as_ptr());
-        self.view_of(body, u, alive, state)
+        self.view_of(body, u, alive, state, &self.fields[0])
     }
 
     fn view_of<'a>(
@@ -74,6 +74,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         u: FieldView<'a, D>,
         alive: Seen<u8>,
         state: Seen<u8>,
+        own: &'a [f64],
     ) -> View<'a, D, W> {
         let family = &self.bonds.family;
         View {
@@ -90,7 +91,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             reaches: &self.reaches,
             scale: &self.scale,
             u,
-            fields: [&self.fields[0], &self.fields[1]],
+            fields: [own, &self.fields[1]],
             pressure: &self.pressure,
             repulsion: self.bonds.repulsion.as_ref(),
             most_contact: self.most_contact,
@@ -109,7 +110,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         let next = Shared(self.next.as_mut_ptr());
         let next = (!self.settled).then_some(next);
         let kernel = Forces::<D, W, FULL> {
-            view: self.view_of(body, u, alive.seen(), state.seen()),
+            view: self.view_of(body, u, alive.seen(), state.seen(), &self.fields[0]),
             alive,
             state,
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
@@ -172,13 +173,11 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             }
             seen.dilate::<W, D>(body, |i| self.per_weight(body, i));
         } else if W::SHARES {
-            let mut pressure = std::mem::take(&mut self.fields[0]);
-            let kernel = Share {
-                view: self.view(body, u),
-                out: Shared(pressure.as_mut_ptr()),
-            };
-            self.bonds.blocks.run(&kernel);
-            self.fields[0] = pressure;
+            // it stays where it is: a law that panics must not leave sweeps without
+            let out = Shared(self.fields[0].as_mut_ptr());
+            let [alive, state] = [&self.bonds.alive, &self.state].map(|all| Seen(all.as_ptr()));
+            let view = self.view_of(body, u, alive, state, &[]);
+            self.bonds.blocks.run(&Share { view, out });
         }
         if W::SHARES {
             body.fill_images(&mut self.fields[0]);
@@ -269,7 +268,9 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     ) -> Option<u64> {
         self.check(body, &[u]);
         let mended = self.bonds.mend(body, u, heals, &Fused);
-        self.look();
+        if mended > 0 {
+            self.look();
+        }
         Some(mended)
     }
 

@@ -82,6 +82,18 @@ impl BondWeight {
         self.influence.knows_horizon()
     }
 
+    /// How far beyond its horizon (length) a point with one of its own has bonds, of which it holds a part of a cell: half a spacing, or nothing where ω is
+    /// 0 at the horizon.
+    pub fn fringe(&self, spacing: f64) -> f64 {
+        match self.influence.kind().0 {
+            Influence::Conical | Influence::CubicSpline => 0.0,
+            Influence::Constant
+            | Influence::Inverse
+            | Influence::Gaussian
+            | Influence::Formula(_) => 0.5 * spacing,
+        }
+    }
+
     /// ω alone, of this end and of the other.
     #[inline(always)]
     pub fn influence<L: Lane, const D: usize>(&self, xi: &[L; D], r0: L, inv_r0: L) -> [L; 2] {

@@ -13,6 +13,7 @@ use crate::interaction::history;
 use crate::message;
 use crate::spec::{HealingSpec, Spec};
 use state::Healing;
+use std::cell::Cell;
 
 /// What does not heal.
 fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {
@@ -97,21 +98,18 @@ impl<const D: usize> System<D> {
             history::stretch(e).abs() < below && healing.may[i] && healing.may[j]
         };
         let (body, u) = (&self.body, &self.u);
-        let mut any = false;
-        let mut look = |i: usize, j: usize, xi: [f64; D]| {
-            let eta = std::array::from_fn(|a| u[a][j] - u[a][i]);
-            any = any || heals(i, j, history::relative(&xi, eta));
+        // bonds of absent cracks do not heal, however near their ends are: who may is asked of those that do
+        let any = Cell::new(false);
+        let look = |i: usize, j: usize, e: f64| {
+            any.set(any.get() || heals(i, j, e));
+            false
         };
-        self.interaction.each_broken(body, &mut look);
-        self.interaction.each_broken_between(&mut look);
-        if !any {
+        self.interaction.mend(body, view(u), &look);
+        if !any.get() {
             return false;
         }
         let [before, _] = self.interaction.energy(body, view(u));
-        // broken bonds of absent cracks repel, and do not heal
-        if self.interaction.mend(body, view(u), &heals) == Some(0) {
-            return false;
-        }
+        self.interaction.mend(body, view(u), &heals);
         let [after, _] = self.interaction.energy(body, view(u));
         self.accounts.released.lost -= after - before;
         // they conduct again

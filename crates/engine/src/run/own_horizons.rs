@@ -6,7 +6,9 @@ use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::{Dimension, place};
 use crate::run::constitutive::{Shelf, generalised, is_solid, toughness};
-use crate::spec::{ContactStiffness, Criterion, FractureSpec, Influence, MaterialSpec, Spec};
+use crate::spec::{
+    ContactStiffness, Criterion, FractureSpec, Influence, LawSpec, MaterialSpec, Spec,
+};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -104,8 +106,8 @@ pub(super) fn give<const D: usize>(
     Ok(())
 }
 
-/// `15 c/δ` of the bonds of each slot, `c ∝ δ^−(D+1)` at equal moduli, from that of the materials at the horizon of the body; empty: points have no
-/// horizons of their own, or the stiffness was given.
+/// `15 c/δ` of the bonds of each slot, `c` of bonds that weigh alike, from that of the materials at the horizon of the body: `c ∝ δ^−(D+1)` at equal moduli,
+/// and of `lps_as_typed` `c = 18K/πδ⁴` in all dimensions. Empty: points have no horizons of their own, or the stiffness was given.
 pub(super) fn own_stiffness<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
@@ -116,9 +118,16 @@ pub(super) fn own_stiffness<const D: usize>(
         Some(ContactStiffness::Laws) => {}
         Some(ContactStiffness::Same(_) | ContactStiffness::Pairs(_)) | None => return vec![],
     }
-    let of = |(slot, own): (usize, &f64)| match *own > 0.0 {
-        true => of_materials[body.material_of(slot)] * (horizon / own).powi(D as i32 + 2),
-        false => 0.0,
+    let power = |material: usize| match spec.materials[material].law.linear() {
+        LawSpec::LpsAsTyped { .. } => 5,
+        _ => D as i32 + 2,
+    };
+    let of = |(slot, own): (usize, &f64)| {
+        let material = body.material_of(slot);
+        match *own > 0.0 {
+            true => of_materials[material] * (horizon / own).powi(power(material)),
+            false => 0.0,
+        }
     };
     body.horizon.iter().enumerate().map(of).collect()
 }

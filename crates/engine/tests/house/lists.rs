@@ -17,6 +17,11 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "what pmb is among the laws of law/material",
     ),
     (
+        "Thermoelastic",
+        "io/src/deck/lower/interface.rs",
+        "bonds of unlike materials follow a rule, as those of pmb",
+    ),
+    (
         "ThermoelasticSolid",
         "engine/src/run/constitutive/general.rs",
         "what lps is among the laws of law/material",

@@ -172,6 +172,31 @@ fn both_ends_of_a_bond_weigh_it_by_their_own_horizon() {
     }
 }
 
+/// Parts of cells beyond a horizon at which ω is 0 bear nothing: they are no bonds, whose damage would count.
+#[test]
+fn a_point_has_no_bonds_that_weigh_nothing() {
+    for law in [
+        LawSpec::Pmb(PmbStiffness::Young(1.0)),
+        of_families(2).remove(0),
+    ] {
+        for influence in [Influence::Conical, Influence::CubicSpline] {
+            let mut spec = with_law(solid(&[9.0, 8.0], 2.9, Some("2.9")), &law);
+            spec.bonds.influence = influence;
+            let mut sim = started(&spec);
+            let x = sim.vectors("reference");
+            let square = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum();
+            let within = |r2: f64| r2 > 0.0 && r2 <= 2.9 * 2.9;
+            let near = x.iter().flat_map(|a| x.iter().map(move |b| square(a, b)));
+            let bonds = near.filter(|r2| within(*r2)).count();
+            assert_eq!(
+                sim.info().directed_bonds,
+                bonds as u64,
+                "{law:?} {influence:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn unlike_horizons_keep_momentum_and_energy() {
     let sizes = [&[20.0][..], &[12.0, 8.0], &[12.0, 5.0, 5.0]];

@@ -312,8 +312,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// How much shorter the shortest whole bond is than in the reference: the most `1 − r²/r0²`, or 0.
     pub fn shortest(&mut self, u: FieldView<D>) -> f64 {
-        let mut room = std::mem::take(&mut self.room);
-        self.pack(u, &mut room.records);
+        let room = self.take_room(u);
         let kernel = Shortest {
             family: &self.family,
             moved: Moved {

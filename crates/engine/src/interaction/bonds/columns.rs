@@ -4,7 +4,7 @@ use super::family::Family;
 use super::law::PointLaw;
 use super::state::{Before, BondState, all_whole};
 use super::store::Store;
-use crate::body::Body;
+use crate::body::{Body, Column};
 use crate::columns::{Declaration, Dimension, On, Shape};
 use crate::interaction::history;
 use crate::law::material::Columns;
@@ -251,14 +251,17 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         archive.all("work", &mut self.work);
         archive.all("life", &mut self.life);
         archive.all("integrity", &mut self.integrity);
-        archive.part("expansion", &mut self.expansion);
+        strains(archive, body.len, &mut self.expansion);
         let records = self.room.records.len();
         let before = || Before::zeros(body.len, records);
         archive.option("before", &mut self.before, before, |before, archive| {
             archive.columns("displacement", &mut before.u);
             archive.all("records", &mut before.records);
-            archive.part("expansion", &mut before.expansion);
+            strains(archive, body.len, &mut before.expansion);
         });
+        if self.work.is_empty() && self.before.take().is_some() {
+            archive.refuse("before");
+        }
         archive.one("step", &mut self.step);
         archive.one("degraded", &mut self.degraded);
         for each in &mut self.stiffness {
@@ -292,5 +295,14 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         self.directed().flat_map(move |(group, k, l)| {
             (0..numbers).map(move |n| self.family.own(group, k, first + n, count) + l)
         })
+    }
+}
+
+/// A strain for each of so many slots, or none: kernels read them without looking.
+fn strains(archive: &mut Archive<'_>, slots: usize, strain: &mut Column) {
+    archive.part("expansion", strain);
+    if !strain.is_empty() && strain.len() != slots {
+        *strain = Column::default();
+        archive.refuse("expansion");
     }
 }

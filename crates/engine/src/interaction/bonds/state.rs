@@ -319,6 +319,16 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         });
     }
 
+    /// The room with these displacements; give it back. Of a law that panicked nobody did: it is as large as ever all the same.
+    pub fn take_room(&mut self, u: FieldView<D>) -> Room {
+        let mut room = std::mem::take(&mut self.room);
+        let layout = self.family.layout(4);
+        let records = if layout.records { layout.len() } else { 0 };
+        room.records.resize(records, 0.0);
+        self.pack(u, &mut room.records);
+        room
+    }
+
     /// What is left of a slot's energy and force states.
     pub fn integrity_at(&self, slot: usize) -> f64 {
         self.integrity.get(slot).copied().unwrap_or(1.0)

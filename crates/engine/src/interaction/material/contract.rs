@@ -117,6 +117,7 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
+        self.check(body, &[u]);
         self.each_pull(body, u, visit);
         true
     }

@@ -31,8 +31,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
 
     /// The room, filled for these displacements and a step of this length; give it back.
     pub(super) fn take_room(&mut self, u: FieldView<D>, dt: f64) -> Room {
-        let mut room = std::mem::take(&mut self.bonds.room);
-        self.bonds.pack(u, &mut room.records);
+        let mut room = self.bonds.take_room(u);
         self.fill_constants(dt, &mut room.constants);
         self.fill_constants(0.0, &mut room.still);
         room
@@ -120,16 +119,13 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
 
     /// Of the groups that are marked; no marks: of all.
     fn settle_only(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room, only: &[u8]) {
-        let none = Store::zeros(self.bonds.family.layout(0));
-        let mut point = std::mem::replace(&mut self.bonds.point, none);
         for pass in 0..self.bonds.law.passes {
-            let out = point.shared();
+            let out = self.bonds.point.shared();
             let mut view = self.bonds.view(u, room);
             view.point = out.seen();
             self.law.sums(&self.bonds.blocks, view, pass, out, only);
-            point.fill_images(&body.images);
+            self.bonds.point.fill_images(&body.images);
         }
-        self.bonds.point = point;
     }
 
     /// Forces on points that have settled.

@@ -7,6 +7,7 @@ use crate::interaction::bonds::family::{Family, Slots};
 use crate::interaction::bonds::view::{BondView, grown};
 use crate::interaction::{BondForce, PointEnergiesMut};
 use crate::law::material::part_of;
+use std::collections::HashMap;
 
 impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     /// Energies under a homogeneous displacement gradient.
@@ -81,20 +82,25 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         let law = self.asked(self.bonds.view(u, &room));
         let original = body.originals();
         let family = &self.bonds.family;
-        // of the group that was last: the force states of both ends, and the own ones
-        let (mut last, mut pulls, mut owns) = (None, vec![], vec![]);
+        // force states of both ends, and the own ones where they are told, of groups some of whose points are still to come: ids need not be in their order
+        let mut open: HashMap<usize, ([Vec<f64>; 2], usize)> = HashMap::new();
+        let mut free: Vec<[Vec<f64>; 2]> = vec![];
         for &s in &body.slots {
             let Some((group, l)) = family.find(s as usize) else {
                 continue;
             };
-            if last != Some(group) {
-                law.bond_forces(group, false, &mut pulls);
-                law.bond_forces(group, true, &mut owns);
-                last = Some(group);
-            }
+            let (all, left) = open.entry(group).or_insert_with(|| {
+                let mut all = free.pop().unwrap_or_default();
+                law.bond_forces(group, false, &mut all[0]);
+                if self.bonds.law.potential {
+                    law.bond_forces(group, true, &mut all[1]);
+                }
+                (all, family.points_of(group..group + 1).count())
+            });
             for k in (0..family.bonds(group)).filter(|k| family.is_bond(group, *k, l)) {
-                let states =
-                    [&pulls, &owns].map(|all| std::array::from_fn(|a| all[(k * D + a) * TILE + l]));
+                let of = |all: &[f64], a: usize| all.get((k * D + a) * TILE + l).copied();
+                let states = [&all[0], &all[1]]
+                    .map(|all| std::array::from_fn(|a| of(all, a).unwrap_or(0.0)));
                 let bond = self.pull_of(&law.bonds, body, [group, k, l], states);
                 if bond.force != [0.0; D] {
                     visit(BondForce {
@@ -103,6 +109,10 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
                         ..bond
                     });
                 }
+            }
+            *left -= 1;
+            if *left == 0 {
+                free.extend(open.remove(&group).map(|(all, _)| all));
             }
         }
         self.bonds.room = room;

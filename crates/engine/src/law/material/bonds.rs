@@ -62,7 +62,8 @@ impl<L: BondLaw<K>, const K: usize, const D: usize> Material<D> for Bonds<L, K> 
     ) -> Constants<N, K> {
         let half = match self.rule {
             // each end has its own
-            InterfaceRule::Parallel => own,
+            _ if !L::RULED => own,
+            InterfaceRule::Parallel => N::constant(0.5) * (own + *other),
             InterfaceRule::Series => (N::constant(2.0) * own * *other).div(own + *other),
             InterfaceRule::Minimum => own.least(*other),
         };
@@ -109,7 +110,7 @@ impl<L: BondLaw<K>, const K: usize> Shelved for Bonds<L, K> {
 
     fn meeting(self, rule: InterfaceRule) -> Self {
         let mut unlike = self.materials.windows(2).map(|m| m[0].0 != m[1].0);
-        match unlike.any(|is| is) {
+        match L::RULED && unlike.any(|is| is) {
             true => Bonds { rule, ..self },
             false => self,
         }

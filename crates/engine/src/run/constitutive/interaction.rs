@@ -328,7 +328,7 @@ impl ConstitutiveModel {
         repulsion: Option<Repulsion>,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         let own = |i: usize| body.horizon[i];
-        let half = 0.5 * self.spacing;
+        let half = self.bond_weight().fringe(self.spacing);
         let over = self.bond_weight().stiffnesses(body);
         let constants = (0..body.len).map(|i| match own(i) > 0.0 {
             true => [c * over[i], 0.5 + own(i) / self.spacing],

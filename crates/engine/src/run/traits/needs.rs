@@ -198,10 +198,9 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
         m.fracture
             .is_some_and(|f| matches!(f.criterion, Criterion::Energy(_)))
     };
-    let mut pieces = spec.body.pieces().iter();
-    if (spec.bonds.own_horizon.is_some() || pieces.any(|p| p.own_horizon.is_some()))
-        && spec.materials.iter().any(energy)
-    {
+    // of several bodies each is asked alone
+    let alone = spec.body.pieces().is_empty();
+    if alone && spec.bonds.own_horizon.is_some() && spec.materials.iter().any(energy) {
         let why = ", and what a fracture energy means follows the horizon of each point";
         let instead = "give critical_stretch, or leave own_horizon out";
         all.push(Need::new(

@@ -457,7 +457,7 @@ fn own_horizons<const D: usize>(
     horizon: f64,
     weight: BondWeight,
 ) -> Result<(HorizonList, BondWeight), BuildError> {
-    let half = 0.5 * body.spacing;
+    let half = weight.fringe(body.spacing);
     let own = |i: usize| body.horizon[i];
     let reach = |i: usize, j: usize| own(i).max(own(j)) + half;
     let list = HorizonList::within(body, horizon + half, reach)?;
