@@ -120,7 +120,13 @@ pub(super) fn own_stiffness<const D: usize>(
     }
     let power = |material: usize| match spec.materials[material].law.linear() {
         LawSpec::LpsAsTyped { .. } => 5,
-        _ => D as i32 + 2,
+        LawSpec::Pmb(_)
+        | LawSpec::Lps(_)
+        | LawSpec::EamLike { .. }
+        | LawSpec::Springs(_)
+        | LawSpec::Atoms(_)
+        | LawSpec::Micromoduli(_)
+        | LawSpec::Named(_) => D as i32 + 2,
     };
     let of = |(slot, own): (usize, &f64)| {
         let material = body.material_of(slot);
