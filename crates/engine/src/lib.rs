@@ -4,6 +4,7 @@
 //! answers with [`observe::Snapshot`]s. Lengths, masses and times are in whatever consistent unit system the
 //! spec uses; the engine itself is free of units.
 
+mod array;
 pub mod body;
 pub mod columns;
 pub mod condition;

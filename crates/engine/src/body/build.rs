@@ -1,6 +1,6 @@
 //! Bodies from lattice sites and from clouds.
 
-use super::{Body, Grid, Identity, Layout, Values};
+use super::{Body, Exchange, Grid, Identity, Layout, Values};
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
 use crate::space::AXES;
@@ -30,8 +30,8 @@ impl<const D: usize> Body<D> {
                 high[a] = high[a].max(q[a].div_euclid(4));
             }
         }
-        let halo: [usize; D] = std::array::from_fn(|a| if periodic[a] { reach } else { 0 });
-        let extent: [usize; D] = std::array::from_fn(|a| (high[a] - low[a] + 1) as usize);
+        let halo: [usize; D] = crate::array::from_fn(|a| if periodic[a] { reach } else { 0 });
+        let extent: [usize; D] = crate::array::from_fn(|a| (high[a] - low[a] + 1) as usize);
         for a in 0..D {
             if periodic[a] && extent[a] < reach {
                 return Err(BuildError::conflict(
@@ -44,8 +44,8 @@ impl<const D: usize> Body<D> {
                 .help("make the body longer along this axis, or the horizon shorter"));
             }
         }
-        let cells: [usize; D] = std::array::from_fn(|a| extent[a] + 2 * halo[a]);
-        let low: [i32; D] = std::array::from_fn(|a| low[a] - halo[a] as i32);
+        let cells: [usize; D] = crate::array::from_fn(|a| extent[a] + 2 * halo[a]);
+        let low: [i32; D] = crate::array::from_fn(|a| low[a] - halo[a] as i32);
         let count: usize = cells.iter().product();
         let stride = count.div_ceil(TILE) * TILE;
         let mut grid = Grid {
@@ -69,9 +69,10 @@ impl<const D: usize> Body<D> {
         grid.owned = vec![0; grid.tiles()];
         let mut slots = Vec::with_capacity(quarters.len());
         for q in quarters {
-            let cell: [i64; D] = std::array::from_fn(|a| (q[a].div_euclid(4) - grid.low[a]) as i64);
+            let cell: [i64; D] =
+                crate::array::from_fn(|a| (q[a].div_euclid(4) - grid.low[a]) as i64);
             let rest: [i32; 3] =
-                std::array::from_fn(|a| if a < D { q[a].rem_euclid(4) } else { 0 });
+                crate::array::from_fn(|a| if a < D { q[a].rem_euclid(4) } else { 0 });
             let Some(b) = basis.iter().position(|s| *s == rest) else {
                 return Err(BuildError::invalid(
                     "body",
@@ -90,13 +91,9 @@ impl<const D: usize> Body<D> {
             slots.push(slot as u32);
         }
         grid.present = grid.owned.clone();
-        let images = if periodic.contains(&true) {
-            images(&mut grid, extent)
-        } else {
-            vec![]
-        };
+        let exchange = images(&mut grid, extent);
         let edges = lattice.kind.edges();
-        let period = std::array::from_fn(|a| {
+        let period = crate::array::from_fn(|a| {
             periodic[a].then(|| extent[a] as f64 * edges[a] * lattice.spacing)
         });
         let spacing = lattice.spacing * lattice.kind.site_volume().powf(1.0 / D as f64);
@@ -113,7 +110,7 @@ impl<const D: usize> Body<D> {
             material: vec![],
             horizon: vec![],
             mark: vec![],
-            images,
+            exchange,
         })
     }
 
@@ -157,7 +154,7 @@ impl<const D: usize> Body<D> {
         let mut slots = vec![0u32; n];
         // absent slots of the last tile repeat the last point; their bonds are dead
         let mut x: [Vec<f64>; D] =
-            std::array::from_fn(|a| vec![position[*order.last().unwrap_or(&0) as usize][a]; len]);
+            crate::array::from_fn(|a| vec![position[*order.last().unwrap_or(&0) as usize][a]; len]);
         for (slot, &id) in order.iter().enumerate() {
             slots[id as usize] = slot as u32;
             for a in 0..D {
@@ -177,7 +174,7 @@ impl<const D: usize> Body<D> {
             material: vec![],
             horizon: vec![],
             mark: mark.to_vec(),
-            images: vec![],
+            exchange: Exchange::default(),
         })
     }
 }
@@ -199,15 +196,18 @@ impl<const D: usize> Body<D> {
     }
 }
 
-/// Image slots of a periodic grid: every halo cell copies the cell one period away.
-fn images<const D: usize>(grid: &mut Grid<D>, extent: [usize; D]) -> Vec<(u32, u32)> {
-    let mut images = vec![];
+/// Periodic images: every halo cell copies the cell one period away.
+fn images<const D: usize>(grid: &mut Grid<D>, extent: [usize; D]) -> Exchange {
+    let mut images = Exchange::default();
+    if grid.halo == [0; D] {
+        return images;
+    }
     let count: usize = grid.cells.iter().product();
     for b in 0..grid.basis() {
         for i in 0..count {
             let copy = grid.guard + b * grid.stride + i;
             let (c, _) = grid.cell(copy);
-            let from: [i64; D] = std::array::from_fn(|a| {
+            let from: [i64; D] = crate::array::from_fn(|a| {
                 let h = grid.halo[a] as i64;
                 (c[a] - h).rem_euclid(extent[a] as i64) + h
             });
@@ -217,7 +217,7 @@ fn images<const D: usize>(grid: &mut Grid<D>, extent: [usize; D]) -> Vec<(u32, u
                 if grid.is_owned(original) {
                     let k = copy - grid.guard;
                     grid.present[k / TILE] |= 1 << (k % TILE);
-                    images.push((copy as u32, original as u32));
+                    images.push(copy, original);
                 }
             }
         }

@@ -122,7 +122,7 @@ pub fn zeros<const D: usize>(slots: usize) -> Field<D> {
 
 /// A vector field whose components all are `value`.
 pub fn filled<const D: usize>(slots: usize, value: f64) -> Field<D> {
-    std::array::from_fn(|a| Column::new(slots, value, line(a)))
+    crate::array::from_fn(|a| Column::new(slots, value, line(a)))
 }
 
 /// The line on which column `n` of those that a sweep reads together begins.

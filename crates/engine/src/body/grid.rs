@@ -67,7 +67,7 @@ impl<const D: usize> Grid<D> {
     pub fn cell(&self, slot: usize) -> ([i64; D], usize) {
         let i = slot - self.guard;
         let (b, mut i) = (i / self.stride, i % self.stride);
-        let c = std::array::from_fn(|a| {
+        let c = crate::array::from_fn(|a| {
             let n = self.cells[a];
             let c = if a + 1 < D { i % n } else { i };
             i /= n;
@@ -107,7 +107,7 @@ impl<const D: usize> Grid<D> {
     /// The slot `d` cells and `to − from` sublattices from `slot`, if a point or image is there.
     pub fn neighbour(&self, slot: usize, d: [i32; D], to: usize) -> Option<usize> {
         let (c, _) = self.cell(slot);
-        let j = self.slot(std::array::from_fn(|a| c[a] + d[a] as i64), to)?;
+        let j = self.slot(crate::array::from_fn(|a| c[a] + d[a] as i64), to)?;
         self.is_present(j).then_some(j)
     }
 
@@ -115,7 +115,7 @@ impl<const D: usize> Grid<D> {
     pub fn quarter(&self, slot: usize) -> [i32; 3] {
         let (c, b) = self.cell(slot);
         let q = self.lattice.kind.basis()[b];
-        std::array::from_fn(|a| {
+        crate::array::from_fn(|a| {
             if a < D {
                 4 * (c[a] as i32 + self.low[a]) + q[a]
             } else {

@@ -4,12 +4,14 @@
 //! slots away); in a cloud they are the points in an order that keeps neighbours close in memory.
 
 pub mod build;
+pub mod exchange;
 pub mod field;
 pub mod grid;
 mod points;
 pub mod several;
 pub mod values;
 
+pub use exchange::Exchange;
 pub use field::{Column, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 pub use grid::Grid;
 pub use several::Piece;
@@ -54,8 +56,8 @@ pub struct Body<const D: usize> {
     pub(crate) horizon: Vec<f64>,
     /// Mark per point, in order of id; empty: all 0.
     pub(crate) mark: Vec<i32>,
-    /// `(copy, original)` slots of periodic images.
-    pub(crate) images: Vec<(u32, u32)>,
+    /// Which slots are copies of others.
+    pub(crate) exchange: Exchange,
 }
 
 /// Which body it is: the number of slots and who is in them. Copies of a body are the same one.
@@ -91,6 +93,11 @@ impl<const D: usize> Body<D> {
         &self.slots
     }
 
+    /// Which slots are copies of others, and how they are filled.
+    pub fn exchange(&self) -> &Exchange {
+        &self.exchange
+    }
+
     /// Number of slots, guards included: the length of its fields.
     pub fn len(&self) -> usize {
         self.len
@@ -101,15 +108,13 @@ impl<const D: usize> Body<D> {
         self.len == 0
     }
 
-    /// Gives each point its material, and their periodic images theirs.
+    /// Gives each point its material, and their copies theirs.
     pub(crate) fn give_materials(&mut self, of_points: impl Iterator<Item = u8>) {
         self.material = vec![0; self.len];
         for (m, s) in of_points.zip(&self.slots) {
             self.material[*s as usize] = m;
         }
-        for &(copy, original) in &self.images {
-            self.material[copy as usize] = self.material[original as usize];
-        }
+        self.exchange.fill(&mut self.material);
     }
 
     /// Gives each slot its material.
@@ -139,7 +144,7 @@ impl<const D: usize> Body<D> {
     pub fn position(&self, slot: usize) -> Point {
         match &self.layout {
             Layout::Grid(g) => g.position(slot),
-            Layout::Cloud(x) => std::array::from_fn(|a| if a < D { x[a][slot] } else { 0.0 }),
+            Layout::Cloud(x) => crate::array::from_fn(|a| if a < D { x[a][slot] } else { 0.0 }),
             Layout::Several(pieces) => {
                 let p = &pieces[several::piece_of(pieces, slot)];
                 p.body.position(slot - p.first)
@@ -169,28 +174,10 @@ impl<const D: usize> Body<D> {
         self.material.get(slot).map_or(0, |&m| m as usize)
     }
 
-    /// Refresh the periodic images of a field.
-    pub fn fill_images(&self, field: &mut [f64]) {
-        for &(copy, original) in &self.images {
-            field[copy as usize] = field[original as usize];
-        }
-    }
-
-    /// The slot that a slot is, or is an image of.
-    pub fn originals(&self) -> impl Fn(usize) -> usize + use<D> {
-        let of: std::collections::HashMap<u32, u32> = self.images.iter().copied().collect();
-        move |slot| of.get(&(slot as u32)).map_or(slot, |o| *o as usize)
-    }
-
     /// A displacement field at rest: 0 on points, far away on absent sites.
     pub fn at_rest(&self) -> Field<D> {
         let mut u: Field<D> = field::filled(self.len, FAR * self.spacing);
-        for c in &mut u {
-            for &s in &self.slots {
-                c[s as usize] = 0.0;
-            }
-            self.fill_images(c);
-        }
+        self.set_vectors(&mut u, |_, _| [0.0; D]);
         u
     }
 
@@ -215,6 +202,6 @@ impl<const D: usize> Body<D> {
             + self.density.bytes()
             + self.material.len()
             + self.mark.len() * 4
-            + self.images.len() * 8
+            + self.exchange.bytes()
     }
 }

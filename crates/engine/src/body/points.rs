@@ -27,19 +27,19 @@ impl<const D: usize> Body<D> {
 
     /// `[N]` vectors of points.
     pub(crate) fn values(&self, field: &Field<D>) -> Vec<[f64; D]> {
-        self.by_id(|i| std::array::from_fn(|a| field[a][i]))
+        self.by_id(|i| crate::array::from_fn(|a| field[a][i]))
     }
 
     /// The same, padded to three components.
     pub(crate) fn vectors(&self, field: &Field<D>) -> Vec<Point> {
-        self.by_id(|i| std::array::from_fn(|a| if a < D { field[a][i] } else { 0.0 }))
+        self.by_id(|i| crate::array::from_fn(|a| if a < D { field[a][i] } else { 0.0 }))
     }
 
     /// `[N]` forces of force densities.
     pub(crate) fn per_point(&self, f: &Field<D>) -> Vec<[f64; D]> {
         self.by_id(|i| {
             let volume = self.volume.at(i);
-            std::array::from_fn(|a| volume * f[a][i])
+            crate::array::from_fn(|a| volume * f[a][i])
         })
     }
 
@@ -47,8 +47,29 @@ impl<const D: usize> Body<D> {
     pub(crate) fn places(&self) -> Vec<[f64; D]> {
         self.by_id(|i| {
             let x = self.position(i);
-            std::array::from_fn(|a| x[a])
+            crate::array::from_fn(|a| x[a])
         })
+    }
+
+    /// What each point has, asked by its slot, where it lies and in its copies.
+    pub(crate) fn set_points<T: Copy>(&self, column: &mut [T], value: impl Fn(usize) -> T) {
+        for &s in &self.slots {
+            column[s as usize] = value(s as usize);
+        }
+        self.exchange.fill(column);
+    }
+
+    /// The same of vectors, asked by id and slot.
+    pub(crate) fn set_vectors(
+        &self,
+        field: &mut Field<D>,
+        value: impl Fn(usize, usize) -> [f64; D],
+    ) {
+        for (id, &s) in self.slots.iter().enumerate() {
+            let of = value(id, s as usize);
+            (0..D).for_each(|a| field[a][s as usize] = of[a]);
+        }
+        self.exchange.fill_field(field);
     }
 
     /// Puts vectors by id where their points lie.

@@ -1,6 +1,6 @@
 //! Several bodies as one: each keeps its own layout, its slots and its points come one after another.
 
-use super::{Body, FieldView, FieldViewMut, Identity, Layout, Values};
+use super::{Body, Exchange, FieldView, FieldViewMut, Identity, Layout, Values};
 
 /// A body among several.
 #[derive(Debug, Clone)]
@@ -38,13 +38,9 @@ impl<const D: usize> Body<D> {
             first = next;
         }
         let len = first;
-        let shifted = |p: &Piece<D>, s: u32| p.first as u32 + s;
         let mut slots = vec![];
-        let mut images = vec![];
         for p in &pieces {
-            slots.extend(p.body.slots.iter().map(|s| shifted(p, *s)));
-            let all = p.body.images.iter();
-            images.extend(all.map(|(copy, of)| (shifted(p, *copy), shifted(p, *of))));
+            slots.extend(p.body.slots.iter().map(|s| p.first as u32 + s));
         }
         let volume = join(&pieces, &slots, len, 0.0, |b| &b.volume);
         let density = join(&pieces, &slots, len, 1.0, |b| &b.density);
@@ -70,7 +66,7 @@ impl<const D: usize> Body<D> {
                 true => pieces.iter().flat_map(mark).collect(),
                 false => vec![],
             },
-            images,
+            exchange: Exchange::joined(pieces.iter().map(|p| (p.first, &p.body.exchange))),
             layout: Layout::Several(pieces),
         }
     }

@@ -66,16 +66,6 @@ pub enum Life {
     Derived,
 }
 
-/// What the neighbours of a point need of its value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Halo {
-    None,
-    /// The value itself.
-    Value,
-    /// What several copies of the point hold is added up.
-    Sum,
-}
-
 /// A column as its owner declares it.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Declaration {
@@ -85,13 +75,12 @@ pub struct Declaration {
     pub shape: Shape,
     pub dimension: Dimension,
     pub life: Life,
-    pub halo: Halo,
     /// One sentence, with the equation and its source where there is one.
     pub doc: Cow<'static, str>,
 }
 
 impl Declaration {
-    /// Of points, persistent, whose value neighbours need.
+    /// Of points, persistent.
     pub const fn of_points(
         name: &'static str,
         shape: Shape,
@@ -104,12 +93,11 @@ impl Declaration {
             shape,
             dimension,
             life: Life::Persistent,
-            halo: Halo::Value,
             doc: Cow::Borrowed(doc),
         }
     }
 
-    /// Of bonds, persistent, which their own point alone needs.
+    /// Of bonds, persistent.
     pub const fn of_bonds(
         name: &'static str,
         dimension: Dimension,
@@ -121,7 +109,6 @@ impl Declaration {
             shape: Shape::Scalar,
             dimension,
             life: Life::Persistent,
-            halo: Halo::None,
             doc: Cow::Borrowed(doc),
         }
     }
@@ -129,12 +116,6 @@ impl Declaration {
     /// The same, following from other columns.
     pub const fn derived(mut self) -> Declaration {
         self.life = Life::Derived;
-        self
-    }
-
-    /// The same, with other needs of neighbours.
-    pub const fn halo(mut self, halo: Halo) -> Declaration {
-        self.halo = halo;
         self
     }
 }

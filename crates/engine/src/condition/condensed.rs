@@ -38,7 +38,7 @@ impl<const D: usize> Condensed<D> {
         start.push(reached.len());
         let at = |p: &u32| {
             let x = &carriers.position[*p as usize];
-            std::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
+            crate::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
         };
         let condensed = Condensed {
             points: members.iter().map(at).collect(),
@@ -79,7 +79,7 @@ impl<const D: usize> Condensed<D> {
     pub fn evaluate(&mut self, density: &Program<D>, t: f64) {
         for (k, force) in self.force.iter_mut().enumerate() {
             let at = |a| self.volume[k] * density.at(a, k, &self.points[k], t);
-            *force = std::array::from_fn(at);
+            *force = crate::array::from_fn(at);
         }
     }
 

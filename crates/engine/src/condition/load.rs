@@ -111,7 +111,8 @@ impl<const D: usize> Named<D> {
         let answer = force.answer(self.point[k] as usize, seen, &mut self.memory[own]);
         if let Some(block) = self.stiffness.get_mut(k) {
             let k = &answer.stiffness;
-            *block = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (k[a][b] + k[b][a])));
+            *block =
+                crate::array::from_fn(|a| crate::array::from_fn(|b| 0.5 * (k[a][b] + k[b][a])));
         }
         answer.force
     }
@@ -206,7 +207,7 @@ impl<const D: usize> Load<D> {
         };
         let size = |f: &[f64; D]| f.iter().map(|c| c * c).sum::<f64>();
         let each = self.slots.iter().enumerate().filter_map(|(k, slot)| {
-            let at = |t: f64| std::array::from_fn(|a| density.at(a, k, &self.points[k], t));
+            let at = |t: f64| crate::array::from_fn(|a| density.at(a, k, &self.points[k], t));
             let all = (0..=times).map(|n| at(end * f64::from(n) / f64::from(times)));
             let most = all.max_by(|a, b| size(a).total_cmp(&size(b)))?;
             Some((*slot as usize, most))
@@ -301,7 +302,7 @@ impl<const D: usize> ForceField<D> for Load<D> {
             let own = match &self.kind {
                 LoadKind::Named(force) => {
                     let point =
-                        |c: &Field<D>| std::array::from_fn(|a| c.get(a).map_or(0.0, |c| c[i]));
+                        |c: &Field<D>| crate::array::from_fn(|a| c.get(a).map_or(0.0, |c| c[i]));
                     let seen = Seen {
                         reference: self.points[k],
                         displacement: point(u),

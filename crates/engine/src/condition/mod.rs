@@ -44,7 +44,7 @@ impl<const D: usize> Program<D> {
     /// `points`: reference positions.
     pub fn new(expressions: &[Option<Expression>; 3], points: &[Point]) -> Self {
         Program {
-            component: std::array::from_fn(|a| match &expressions[a] {
+            component: crate::array::from_fn(|a| match &expressions[a] {
                 None => Component::Free,
                 Some(e) if e.depends_on_time() => Component::Changing(e.clone()),
                 Some(e) => Component::Fixed(points.iter().map(|x| e.eval(x, 0.0)).collect()),
@@ -57,7 +57,9 @@ impl<const D: usize> Program<D> {
     /// Values that are the same on all points and change from outside.
     pub fn given(values: [Option<f64>; 3]) -> Self {
         Program {
-            component: std::array::from_fn(|a| values[a].map_or(Component::Free, Component::Given)),
+            component: crate::array::from_fn(|a| {
+                values[a].map_or(Component::Free, Component::Given)
+            }),
             scale: 1.0,
             weight: vec![],
         }
@@ -66,7 +68,7 @@ impl<const D: usize> Program<D> {
     /// Values of each point, set from outside.
     pub fn listed(values: &[[Option<f64>; 3]]) -> Self {
         Program {
-            component: std::array::from_fn(|a| {
+            component: crate::array::from_fn(|a| {
                 Component::Listed(values.iter().map(|v| v[a]).collect())
             }),
             scale: 1.0,

@@ -98,7 +98,7 @@ impl Kept {
 }
 
 fn wrench(force: &Point, torque: &Point) -> Wrench {
-    std::array::from_fn(|k| if k < 3 { force[k] } else { torque[k - 3] })
+    crate::array::from_fn(|k| if k < 3 { force[k] } else { torque[k - 3] })
 }
 
 /// How far a step took a body.
@@ -219,7 +219,7 @@ impl<const D: usize> Rigid<D> {
         let Motion::Kinematic { center, turn } = &self.motion else {
             return false;
         };
-        self.center = std::array::from_fn(|a| center[a].eval(&[0.0; 3], t));
+        self.center = crate::array::from_fn(|a| center[a].eval(&[0.0; 3], t));
         if let Some(turn) = turn {
             self.axes = Quaternion::about(&turn.axis, turn.angle.eval(&[0.0; 3], t)).axes();
         }
@@ -235,7 +235,7 @@ impl<const D: usize> Rigid<D> {
             return;
         }
         let rate = |e: &Expression| (e.eval(&[0.0; 3], t + dt) - e.eval(&[0.0; 3], t)) / dt;
-        self.velocity = std::array::from_fn(|a| rate(&center[a]));
+        self.velocity = crate::array::from_fn(|a| rate(&center[a]));
         if let Some(turn) = turn {
             let speed = rate(&turn.angle);
             self.turning = turn.axis.map(|c| speed * c);
@@ -273,7 +273,7 @@ impl<const D: usize> Rigid<D> {
                 self.look();
             }
         }
-        let way = length(&std::array::from_fn(|a| self.center[a] - before[a]));
+        let way = length(&crate::array::from_fn(|a| self.center[a] - before[a]));
         Path { way, angle }
     }
 
@@ -283,10 +283,10 @@ impl<const D: usize> Rigid<D> {
             return;
         };
         let [f, m, g] = &free.outside;
-        free.force = std::array::from_fn(|a| {
+        free.force = crate::array::from_fn(|a| {
             force[a] + (f[a].eval(&[0.0; 3], t) + free.mass * g[a].eval(&[0.0; 3], t))
         });
-        free.torque = std::array::from_fn(|a| torque[a] + m[a].eval(&[0.0; 3], t));
+        free.torque = crate::array::from_fn(|a| torque[a] + m[a].eval(&[0.0; 3], t));
         self.kick(dt);
     }
 
@@ -301,19 +301,19 @@ impl<const D: usize> Rigid<D> {
     /// Where a place of the shape is.
     pub fn in_space(&self, x: &Point) -> Point {
         let arm = times(&self.axes, x);
-        std::array::from_fn(|a| self.center[a] + arm[a])
+        crate::array::from_fn(|a| self.center[a] + arm[a])
     }
 
     /// The way from where it was then to where it is, of what is at `arm` from the centre now.
     pub fn way_since(&self, then: &Kept, arm: &Point) -> Point {
         let before = times(&then.axes, &transposed_times(&self.axes, arm));
-        std::array::from_fn(|a| (self.center[a] + arm[a]) - (then.center[a] + before[a]))
+        crate::array::from_fn(|a| (self.center[a] + arm[a]) - (then.center[a] + before[a]))
     }
 
     /// Velocity of what is at `arm` from the centre.
     pub fn velocity_at(&self, arm: &Point) -> Point {
         let turn = cross(&self.turning, arm);
-        std::array::from_fn(|a| self.velocity[a] + turn[a])
+        crate::array::from_fn(|a| self.velocity[a] + turn[a])
     }
 
     /// `1/m + r²/I` with the least moment of inertia: the most that a force at this distance from the centre accelerates the place where it acts
@@ -376,7 +376,7 @@ impl Free {
             }
         };
         // a rotation, not a reflection
-        let column = |k: usize| -> Point { std::array::from_fn(|r| principal[r][k]) };
+        let column = |k: usize| -> Point { crate::array::from_fn(|r| principal[r][k]) };
         let third = cross(&column(0), &column(1));
         for (row, c) in principal.iter_mut().zip(third) {
             row[2] = c;
@@ -390,7 +390,7 @@ impl Free {
                 0.0
             }
         };
-        let spin = times(&turned.axes(), &std::array::from_fn(finite));
+        let spin = times(&turned.axes(), &crate::array::from_fn(finite));
         Free {
             mass: spec.mass,
             moments,
@@ -439,7 +439,7 @@ impl Free {
 
     fn axes(&self) -> Axes {
         let turned = self.turned.axes();
-        std::array::from_fn(|r| times(&self.principal, &turned[r]))
+        crate::array::from_fn(|r| times(&self.principal, &turned[r]))
     }
 
     fn turning(&self) -> Point {
@@ -447,7 +447,7 @@ impl Free {
         let about = transposed_times(&turned, &self.spin);
         times(
             &turned,
-            &std::array::from_fn(|k| about[k] / self.moments[k]),
+            &crate::array::from_fn(|k| about[k] / self.moments[k]),
         )
     }
 }
@@ -522,7 +522,7 @@ mod tests {
             let turned = Quaternion::about(&n, size / across * time).axes();
             let exact = times(&turned, &[0.0, 0.0, 1.0]);
             let axis = times(&rigid.axes, &[0.0, 0.0, 1.0]);
-            length(&std::array::from_fn(|a| axis[a] - exact[a]))
+            length(&crate::array::from_fn(|a| axis[a] - exact[a]))
         };
         let (coarse, fine) = (end(0.05), end(0.025));
         println!("axis of a free top: {coarse:.1e} {fine:.1e}");

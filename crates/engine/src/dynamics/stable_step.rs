@@ -105,7 +105,7 @@ fn lanczos<const D: usize>(
     // every point in motion, no symmetry: a fixed low-discrepancy start
     let mut w = vec![[0.0; D]; body.points()];
     for (rank, id) in by_place(body).into_iter().enumerate() {
-        w[id] = std::array::from_fn(|a| {
+        w[id] = crate::array::from_fn(|a| {
             ((rank * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
         });
     }
@@ -210,21 +210,14 @@ impl<'a, const D: usize> Tiny<'a, D> {
         let (body, u) = (self.body, &mut self.u);
         let peak = w.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
         let small = 1e-7 * body.spacing / peak.max(f64::MIN_POSITIVE);
-        for (w, &s) in w.iter().zip(&body.slots) {
-            for a in 0..D {
-                u[a][s as usize] = small * w[a];
-            }
-        }
-        for c in u.iter_mut() {
-            body.fill_images(c);
-        }
+        body.set_vectors(u, |id, _| w[id].map(|c| small * c));
         self.interaction
             .forces(body, view(u), view_mut(&mut self.f), Sweep::Hold, None);
         let (f, rest) = (&self.f, &self.rest);
         let each = body.slots.iter().enumerate().map(|(i, &s)| {
             let s = s as usize;
             let scale = body.volume.at(s) / (small * mass(i));
-            std::array::from_fn(|a| (rest[a][s] - f[a][s]) * scale)
+            crate::array::from_fn(|a| (rest[a][s] - f[a][s]) * scale)
         });
         each.collect()
     }

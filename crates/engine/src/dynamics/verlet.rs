@@ -41,8 +41,8 @@ impl Verlet {
         limit: f64,
     ) -> Fastest {
         let kernel = Advance {
-            u: std::array::from_fn(|a| Shared(u[a].as_mut_ptr())),
-            v: std::array::from_fn(|a| Shared(v[a].as_mut_ptr())),
+            u: crate::array::from_fn(|a| Shared(u[a].as_mut_ptr())),
+            v: crate::array::from_fn(|a| Shared(v[a].as_mut_ptr())),
             f,
             density: &body.density,
             len: body.len,
@@ -84,7 +84,7 @@ impl Verlet {
     ) {
         for &s in &body.slots {
             let i = s as usize;
-            let step: [f64; D] = std::array::from_fn(|a| dt * v[a][i]);
+            let step: [f64; D] = crate::array::from_fn(|a| dt * v[a][i]);
             if step.iter().map(|d| d * d).sum::<f64>() < limit * limit {
                 for a in 0..D {
                     u[a][i] -= step[a];
@@ -115,6 +115,7 @@ struct Advance<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Advance<'_, D> {
     type Out = Fastest;
+    type Home = Self;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Fastest {

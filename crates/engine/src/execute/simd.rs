@@ -26,6 +26,9 @@ pub enum Simd {
 /// A loop over blocks of work, written once over any [`Lane`] of eight numbers; implement `block` with `#[inline(always)]`.
 pub trait Kernel: Sync {
     type Out: Send;
+    /// The type in whose module the code of this loop is made: that of the law that it is compiled for, else the loop's own. All loops in one
+    /// module were one piece of a third of this crate for one thread of the compiler.
+    type Home: ?Sized;
     /// Work that is done now and then, of which there are many (one for each law): it has no path of its own for AVX-512, and takes that
     /// of AVX2.
     const SELDOM: bool = false;
@@ -73,18 +76,21 @@ impl Simd {
     /// Where machine or build have no such path: what runs was asked for by `build`, which refuses it.
     #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: &K, b: usize) -> K::Out {
-        match self {
-            // SAFETY, both: just detected
-            #[cfg(target_arch = "x86_64")]
-            Simd::Avx512 if WIDE && !K::SELDOM && has_avx512() => {
-                from_a_line(|| unsafe { wide::run(kernel, b) })
+        #[cfg(target_arch = "x86_64")]
+        {
+            let path: Option<unsafe fn(&K, usize) -> K::Out> = match self {
+                Simd::Avx512 if WIDE && !K::SELDOM && has_avx512() => Some(K::Home::wide),
+                Simd::Avx2 | Simd::Avx512 if has_avx2() => Some(K::Home::pairs),
+                Simd::Portable | Simd::Avx2 | Simd::Avx512 => None,
+            };
+            if let Some(path) = path {
+                // SAFETY: what the processor has was just asked
+                return from_a_line(&|| unsafe { path(kernel, b) });
             }
-            #[cfg(target_arch = "x86_64")]
-            Simd::Avx2 | Simd::Avx512 if has_avx2() => {
-                from_a_line(|| unsafe { pairs::run(kernel, b) })
-            }
-            _ if PORTABLE => portable::run(kernel, b),
-            _ => panic!("{}", NEITHER),
+        }
+        match PORTABLE {
+            true => kernel.block::<Eight>(b),
+            false => panic!("{}", NEITHER),
         }
     }
 
@@ -92,15 +98,15 @@ impl Simd {
     #[cfg(test)]
     pub(crate) fn each<K: Kernel>(kernel: &K) -> Vec<K::Out> {
         #[allow(unused_mut)]
-        let mut all = vec![portable::run(kernel, 0)];
+        let mut all = vec![kernel.block::<Eight>(0)];
         #[cfg(target_arch = "x86_64")]
         {
             // SAFETY, both: just detected
             if has_avx2() {
-                all.push(unsafe { pairs::run(kernel, 0) });
+                all.push(unsafe { K::Home::pairs(kernel, 0) });
             }
             if has_avx512() {
-                all.push(unsafe { wide::run(kernel, 0) });
+                all.push(unsafe { K::Home::wide(kernel, 0) });
             }
         }
         all
@@ -112,7 +118,7 @@ impl Simd {
 /// time. Where it began was the luck of who had called whom.
 #[cfg(target_arch = "x86_64")]
 #[inline(never)]
-fn from_a_line<T>(call: impl FnOnce() -> T) -> T {
+fn from_a_line<T>(call: &dyn Fn() -> T) -> T {
     #[repr(align(64))]
     struct Line {
         _bytes: MaybeUninit<[u8; 64]>,
@@ -140,32 +146,24 @@ fn has_avx512() -> bool {
     has_avx2() && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
 }
 
-/// Kernels on eight single numbers. A module for each instruction set: the compiler makes the code of generic functions module by
-/// module, and these in parallel.
-mod portable {
-    use super::{Eight, Kernel};
-
-    pub fn run<K: Kernel>(kernel: &K, b: usize) -> K::Out {
-        kernel.block::<Eight>(b)
-    }
-}
-
+/// Loops for one instruction set each, made where the type is at home: the compiler makes the code of generic functions module by module,
+/// and these in parallel.
 #[cfg(target_arch = "x86_64")]
-mod pairs {
-    use super::{F64x4, Kernel, Pair};
-
+trait Home {
+    /// # Safety
+    /// The processor has AVX2 and FMA.
     #[target_feature(enable = "avx2,fma")]
-    pub unsafe fn run<K: Kernel>(kernel: &K, b: usize) -> K::Out {
+    unsafe fn pairs<K: Kernel>(kernel: &K, b: usize) -> K::Out {
         kernel.block::<Pair<F64x4>>(b)
     }
-}
 
-#[cfg(target_arch = "x86_64")]
-mod wide {
-    use super::{F64x8, Kernel};
-
+    /// # Safety
+    /// The processor has AVX2, FMA, AVX512F and AVX512DQ.
     #[target_feature(enable = "avx512f,avx512dq,avx2,fma")]
-    pub unsafe fn run<K: Kernel>(kernel: &K, b: usize) -> K::Out {
+    unsafe fn wide<K: Kernel>(kernel: &K, b: usize) -> K::Out {
         kernel.block::<F64x8>(b)
     }
 }
+
+#[cfg(target_arch = "x86_64")]
+impl<T: ?Sized> Home for T {}

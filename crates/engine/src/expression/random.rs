@@ -22,13 +22,13 @@ pub(super) fn random(x: [f64; 3]) -> f64 {
 /// Random numbers in `[−1, 1]` at the corners of unit cells, and between them a blend with two continuous derivatives.
 pub(super) fn noise(x: [f64; 3]) -> f64 {
     let low = x.map(f64::floor);
-    let weight: [f64; 3] = std::array::from_fn(|a| {
+    let weight: [f64; 3] = crate::array::from_fn(|a| {
         let s = x[a] - low[a];
         s * s * s * (10.0 + s * (6.0 * s - 15.0))
     });
     (0..8).fold(0.0, |sum, corner: usize| {
         let mut part = 1.0;
-        let cell = std::array::from_fn(|a| {
+        let cell = crate::array::from_fn(|a| {
             let up = corner >> a & 1;
             part *= if up == 1 { weight[a] } else { 1.0 - weight[a] };
             low[a] + up as f64

@@ -43,7 +43,7 @@ impl<'a, const D: usize> Cells<'a, D> {
             edge *= 1.5;
         }
         let count = cells(edge).map(|c| c as usize);
-        let width: [f64; D] = std::array::from_fn(|a| (extent[a] / count[a] as f64).max(edge));
+        let width: [f64; D] = crate::array::from_fn(|a| (extent[a] / count[a] as f64).max(edge));
         let mut cells = Cells {
             position,
             period: period.map(|p| p.unwrap_or(0.0)),
@@ -54,7 +54,7 @@ impl<'a, const D: usize> Cells<'a, D> {
             reach: width.map(|w| ((1.0 + 1e-6) * radius / w).ceil() as usize),
             start: vec![0; count.iter().product::<usize>() + 1],
             slot: vec![0; points],
-            x: std::array::from_fn(|_| vec![0.0; points]),
+            x: crate::array::from_fn(|_| vec![0.0; points]),
         };
         let of: Vec<u32> = (0..points)
             .map(|i| {
@@ -81,7 +81,7 @@ impl<'a, const D: usize> Cells<'a, D> {
     }
 
     fn cell(&self, i: usize) -> [usize; D] {
-        std::array::from_fn(|a| {
+        crate::array::from_fn(|a| {
             let mut x = self.position[a][i] - self.low[a];
             if self.period[a] > 0.0 {
                 x = x.rem_euclid(self.period[a]);
@@ -120,7 +120,7 @@ impl<'a, const D: usize> Cells<'a, D> {
             }
         };
         let (xs, ys, zs) = (axis(0), axis(1), axis(2));
-        let at: [f64; D] = std::array::from_fn(|a| self.position[a][i]);
+        let at: [f64; D] = crate::array::from_fn(|a| self.position[a][i]);
         let periodic = self.period.iter().any(|p| *p > 0.0);
         let stride = |a: usize| if a < D { self.count[a] } else { 1 };
         for z in zs.iter().cloned().flatten() {

@@ -89,7 +89,7 @@ impl HorizonList {
             horizon * horizon
         };
         let cells = Cells::new(
-            std::array::from_fn(|a| x[a].as_slice()),
+            crate::array::from_fn(|a| x[a].as_slice()),
             body.points(),
             body.period,
             horizon,

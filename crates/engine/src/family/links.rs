@@ -58,11 +58,13 @@ impl<const D: usize> Links<D> {
             .map(|(from, list)| {
                 list.iter()
                     .map(|o| {
-                        let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
+                        let cell: [i32; D] = crate::array::from_fn(|a| o.cell[a]);
                         Link {
                             shift: grid.shift(cell.map(i64::from), o.to as i64 - from as i64)
                                 as isize,
-                            xi: std::array::from_fn(|a| h * edges[a] * (o.quarter[a] as f64 / 4.0)),
+                            xi: crate::array::from_fn(|a| {
+                                h * edges[a] * (o.quarter[a] as f64 / 4.0)
+                            }),
                             cell,
                             to: o.to,
                         }
@@ -177,10 +179,9 @@ impl<const D: usize> Links<D> {
     /// Every undirected bond once: slots i < j (images resolved), ξ from i to j.
     pub fn each(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         let grid = body.grid();
-        let original = body.originals();
         self.each_directed(grid, |i, j, sub, k| {
             let link = &self.links[sub][k];
-            let j = original(j);
+            let j = body.exchange.original(j);
             // a bond between a point and its own image counts from one side only
             if i < j || (i == j && link.shift > 0) {
                 visit(i, j, link.xi);

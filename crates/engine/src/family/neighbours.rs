@@ -134,10 +134,11 @@ impl<const D: usize> Neighbours<D> {
                 let Some(first) = slots.first() else {
                     return ([0.0; D], 0.0);
                 };
-                let center: [f32; D] = std::array::from_fn(|a| u[a][*first as usize] as f32);
+                let center: [f32; D] = crate::array::from_fn(|a| u[a][*first as usize] as f32);
                 let mut most = 0.0;
                 for &s in slots {
-                    let d: [f64; D] = std::array::from_fn(|a| u[a][s as usize] - center[a] as f64);
+                    let d: [f64; D] =
+                        crate::array::from_fn(|a| u[a][s as usize] - center[a] as f64);
                     most = f64::max(most, d.iter().map(|c| c * c).sum());
                 }
                 // rounded up
@@ -167,9 +168,9 @@ impl<const D: usize> Neighbours<D> {
             }
             let (p, q) = (body.position(i as usize), body.position(j as usize));
             let y: [f64; D] =
-                std::array::from_fn(|a| q[a] - p[a] + (u[a][j as usize] - u[a][i as usize]));
+                crate::array::from_fn(|a| q[a] - p[a] + (u[a][j as usize] - u[a][i as usize]));
             let back = periods(body, &y);
-            let y: [f64; D] = std::array::from_fn(|a| y[a] - back[a]);
+            let y: [f64; D] = crate::array::from_fn(|a| y[a] - back[a]);
             if y.iter().map(|c| c * c).sum::<f64>() < reach * reach {
                 found.push((i as u64) << 32 | j as u64);
             }
@@ -223,15 +224,18 @@ impl<const D: usize> Neighbours<D> {
 
 /// The whole periods in a vector between two points: what is left without them leads to the nearest image.
 pub fn periods<const D: usize>(body: &Body<D>, y: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|a| body.period[a].map_or(0.0, |p| p * (y[a] / p).round()))
+    crate::array::from_fn(|a| body.period[a].map_or(0.0, |p| p * (y[a] / p).round()))
 }
 
 /// From i to j in the reference, to the image of j that is nearest now: with `u_j − u_i` the way between them.
 pub fn base<const D: usize>(body: &Body<D>, u: FieldView<D>, [i, j]: [usize; 2]) -> [f64; D] {
     let (p, q) = (body.position(i), body.position(j));
-    let xi: [f64; D] = std::array::from_fn(|a| q[a] - p[a]);
-    let now = periods(body, &std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i])));
-    std::array::from_fn(|a| xi[a] - now[a])
+    let xi: [f64; D] = crate::array::from_fn(|a| q[a] - p[a]);
+    let now = periods(
+        body,
+        &crate::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i])),
+    );
+    crate::array::from_fn(|a| xi[a] - now[a])
 }
 
 #[cfg(test)]

@@ -151,7 +151,7 @@ fn lattice<const D: usize>(body: &Body<D>, spacing: f64) -> Result<Vec<Point>, B
     let mut nodes = std::collections::BTreeSet::new();
     for x in &places {
         // a point on the border of cells is in all of them
-        let at: [[i64; 2]; D] = std::array::from_fn(|a| {
+        let at: [[i64; 2]; D] = crate::array::from_fn(|a| {
             let s = (x[a] - first[a]) / step[a];
             [-1e-6, 1e-6].map(|e| {
                 let n = (s + e).round() as i64;
@@ -163,12 +163,12 @@ fn lattice<const D: usize>(body: &Body<D>, spacing: f64) -> Result<Vec<Point>, B
         });
         for corner in 0..1usize << D {
             // z slowest
-            let n: [i64; D] = std::array::from_fn(|a| at[D - 1 - a][corner >> a & 1]);
+            let n: [i64; D] = crate::array::from_fn(|a| at[D - 1 - a][corner >> a & 1]);
             nodes.insert(n);
         }
     }
     let place = |n: &[i64; D]| {
-        std::array::from_fn(|a| match a < D {
+        crate::array::from_fn(|a| match a < D {
             true => first[a] + n[D - 1 - a] as f64 * step[a],
             false => 0.0,
         })
@@ -194,7 +194,7 @@ fn weights<const D: usize>(
     }
     let mut cells: HashMap<[i64; D], Vec<(u32, [i16; 3], [f64; D])>> = HashMap::new();
     for (n, x) in nodes.iter().enumerate() {
-        let images: [Vec<i16>; D] = std::array::from_fn(|a| match body.period[a] {
+        let images: [Vec<i16>; D] = crate::array::from_fn(|a| match body.period[a] {
             None => vec![0],
             Some(p) => {
                 let from = ((low[a] - x[a]) / p).ceil() as i16;
@@ -209,8 +209,9 @@ fn weights<const D: usize>(
                 image[a] = images[a][m % images[a].len()];
                 m /= images[a].len();
             }
-            let y: [f64; D] =
-                std::array::from_fn(|a| x[a] + f64::from(image[a]) * body.period[a].unwrap_or(0.0));
+            let y: [f64; D] = crate::array::from_fn(|a| {
+                x[a] + f64::from(image[a]) * body.period[a].unwrap_or(0.0)
+            });
             let cell = cells.entry(cell(&y)).or_default();
             cell.push((n as u32, image, y));
         }
@@ -218,12 +219,12 @@ fn weights<const D: usize>(
     let mut rows: Vec<Vec<Seen>> = vec![vec![]; points.len()];
     for_each_piece(&mut rows, |first, piece| {
         for (row, x) in piece.iter_mut().zip(&points[first..]) {
-            let x: [f64; D] = std::array::from_fn(|a| x[a]);
+            let x: [f64; D] = crate::array::from_fn(|a| x[a]);
             let home = cell(&x);
             let mut near = vec![];
             for n in 0..3usize.pow(D as u32) {
                 let mut rest = n;
-                let other: [i64; D] = std::array::from_fn(|a| {
+                let other: [i64; D] = crate::array::from_fn(|a| {
                     let off = rest % 3;
                     rest /= 3;
                     home[a] + off as i64 - 1

@@ -23,7 +23,7 @@ impl<const D: usize> OffsetSet<D> {
         let reach = bonds.iter().flatten().filter_map(longest).max();
         let mut set = OffsetSet {
             reach: reach.unwrap_or(0) as i64,
-            period: std::array::from_fn(|a| {
+            period: crate::array::from_fn(|a| {
                 (grid.halo[a] > 0).then(|| (grid.cells[a] - 2 * grid.halo[a]) as i64)
             }),
             basis: grid.basis(),

@@ -90,7 +90,7 @@ impl Stencil {
             ),
         };
         let dimension = kind.dimension();
-        let span: [i32; 3] = std::array::from_fn(|a| {
+        let span: [i32; 3] = crate::array::from_fn(|a| {
             if a < dimension {
                 ((limit as f64 / squares[a] as f64).sqrt() / 4.0).floor() as i32 + 1
             } else {
@@ -109,7 +109,7 @@ impl Stencil {
                         for x in -span[0]..=span[0] {
                             let cell = [x, y, z];
                             let quarter: [i32; 3] =
-                                std::array::from_fn(|a| 4 * cell[a] + site[a] - from[a]);
+                                crate::array::from_fn(|a| 4 * cell[a] + site[a] - from[a]);
                             let squared: i64 = (0..3)
                                 .map(|a| squares[a] * (quarter[a] as i64).pow(2))
                                 .sum();

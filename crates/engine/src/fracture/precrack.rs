@@ -101,7 +101,7 @@ impl<const D: usize> Crack<D> {
         }
         let t = t.map(|c| c / length);
         let bound = |pick: fn(f64, f64) -> f64, open: f64| {
-            std::array::from_fn(|a| if a < 2 { pick(from[a], to[a]) } else { open })
+            crate::array::from_fn(|a| if a < 2 { pick(from[a], to[a]) } else { open })
         };
         Ok(Crack {
             point: cut(from),
@@ -132,8 +132,8 @@ impl<const D: usize> Crack<D> {
         Ok(Crack {
             point: cut(center),
             normal: cut(&n),
-            low: std::array::from_fn(|a| center[a] - half(a)),
-            high: std::array::from_fn(|a| center[a] + half(a)),
+            low: crate::array::from_fn(|a| center[a] - half(a)),
+            high: crate::array::from_fn(|a| center[a] + half(a)),
             outline: Outline::Disk { radius },
             shifts: vec![],
         })
@@ -147,9 +147,9 @@ impl<const D: usize> Crack<D> {
             )]);
         }
         let low: [f64; 3] =
-            std::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MAX, f64::min));
+            crate::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MAX, f64::min));
         let high: [f64; 3] =
-            std::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MIN, f64::max));
+            crate::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MIN, f64::max));
         let size = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
         let area = area(corners);
         let n = match unit(area) {
@@ -196,7 +196,7 @@ impl<const D: usize> Crack<D> {
             .map(of)
             .collect::<Result<Vec<Self>, _>>()?;
         let bound = |pick: fn(f64, f64) -> f64, side: fn(&Self) -> &[f64; D], from: f64| {
-            std::array::from_fn(|a| triangles.iter().map(|c| side(c)[a]).fold(from, pick))
+            crate::array::from_fn(|a| triangles.iter().map(|c| side(c)[a]).fold(from, pick))
         };
         Ok(Crack {
             point: [0.0; D],
@@ -214,14 +214,14 @@ impl<const D: usize> Crack<D> {
     /// Does the bond from `a` to `b` cross the crack? The same for `b` to `a`.
     pub fn crosses(&self, a: &[f64; D], b: &[f64; D]) -> bool {
         self.shifts.iter().any(|s| {
-            let shifted = |x: &[f64; D]| std::array::from_fn(|k| x[k] + s[k]);
+            let shifted = |x: &[f64; D]| crate::array::from_fn(|k| x[k] + s[k]);
             self.crosses_once(&shifted(a), &shifted(b))
         })
     }
 
     /// Is `x` on the crack, to `within` (length)? Of surfaces that is not known: no.
     pub fn carries(&self, x: &[f64; D], within: f64) -> bool {
-        let beside = |way: f64| std::array::from_fn(|k| x[k] + way * within * self.normal[k]);
+        let beside = |way: f64| crate::array::from_fn(|k| x[k] + way * within * self.normal[k]);
         !matches!(self.outline, Outline::Surface { .. })
             && self.crosses(&beside(-1.0), &beside(1.0))
     }
@@ -239,7 +239,7 @@ impl<const D: usize> Crack<D> {
         }
         if let Outline::Surface { triangles, tree } = &self.outline {
             let bound = |pick: fn(f64, f64) -> f64, by: f64| -> [f64; 3] {
-                std::array::from_fn(|k| if k < D { pick(a[k], b[k]) + by } else { 0.0 })
+                crate::array::from_fn(|k| if k < D { pick(a[k], b[k]) + by } else { 0.0 })
             };
             let (low, high) = (bound(f64::min, -tiny), bound(f64::max, tiny));
             return tree.any(&low, &high, &mut |n| triangles[n].crosses_once(a, b));
@@ -258,7 +258,7 @@ impl<const D: usize> Crack<D> {
             (b, a, db, da)
         };
         let t = d0 / (d0 - d1);
-        let x: [f64; D] = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
+        let x: [f64; D] = crate::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
         match &self.outline {
             Outline::Whole | Outline::Surface { .. } => true,
             Outline::Segment { along, length } => {
@@ -324,7 +324,7 @@ fn fits<const D: usize>(shape: &CrackShape) -> Result<(), BuildError> {
 
 /// The components that D dimensions have.
 fn cut<const D: usize>(x: &[f64; 3]) -> [f64; D] {
-    std::array::from_fn(|a| x[a])
+    crate::array::from_fn(|a| x[a])
 }
 
 /// Is `x` inside the polygon (even–odd rule) or within `tiny` of its rim?
@@ -396,7 +396,7 @@ fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
 }
 
 fn sub<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|k| a[k] - b[k])
+    crate::array::from_fn(|k| a[k] - b[k])
 }
 
 #[cfg(test)]

@@ -183,8 +183,8 @@ fn the_direction_of_a_bond_does_not_matter() {
     for crack in &cracks {
         let mut hits = 0;
         for _ in 0..2000 {
-            let a: [f64; 3] = std::array::from_fn(|_| random.next());
-            let b: [f64; 3] = std::array::from_fn(|_| random.next());
+            let a: [f64; 3] = crate::array::from_fn(|_| random.next());
+            let b: [f64; 3] = crate::array::from_fn(|_| random.next());
             assert_eq!(crack.crosses(&a, &b), crack.crosses(&b, &a));
             hits += u32::from(crack.crosses(&a, &b));
         }

@@ -194,10 +194,10 @@ impl<const D: usize> Cohesion<D> {
     pub fn each_pull(&self, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
         let mut bases = self.bases.iter();
         for (i, row) in self.neighbours.rows() {
-            let ui: [f64; D] = std::array::from_fn(|a| u[a][i]);
+            let ui: [f64; D] = crate::array::from_fn(|a| u[a][i]);
             for (&j, base) in row.iter().zip(&mut bases) {
                 let j = j as usize;
-                let y: [f64; D] = std::array::from_fn(|a| base[a] + (u[a][j] - ui[a]));
+                let y: [f64; D] = crate::array::from_fn(|a| base[a] + (u[a][j] - ui[a]));
                 let r = y.iter().map(|c| c * c).sum::<f64>().sqrt();
                 let [a, b] = [i, j].map(|s| self.kind[s] as usize);
                 let Adhesion { strength, range } = self.table[a * self.kinds + b];

@@ -180,7 +180,7 @@ impl<const D: usize> Contact<D> {
             for &j in row {
                 let j = j as usize;
                 let q = body.position(j);
-                let xi: [f64; D] = std::array::from_fn(|a| q[a] - p[a]);
+                let xi: [f64; D] = crate::array::from_fn(|a| q[a] - p[a]);
                 let then = periods(body, &xi);
                 let square: f64 = (0..D).map(|a| (xi[a] - then[a]).powi(2)).sum();
                 let materials = self.materials(body, [i, j]);
@@ -225,7 +225,7 @@ impl<const D: usize> Contact<D> {
         xi: [f64; D],
     ) -> Option<Touch<D>> {
         let length = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
+        let y: [f64; D] = crate::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
         let materials = self.materials(body, [i, j]);
         let (r, d) = (length(&y), self.repulsion.distance(length(&xi), materials));
         (r < d).then(|| Touch {
@@ -347,10 +347,10 @@ impl<const D: usize> Contact<D> {
     ) {
         let mut pairs = self.pairs.iter().enumerate();
         for (i, row) in self.neighbours.rows() {
-            let ui: [f64; D] = std::array::from_fn(|a| u[a][i]);
+            let ui: [f64; D] = crate::array::from_fn(|a| u[a][i]);
             for (&j, (n, pair)) in row.iter().zip(&mut pairs) {
                 let j = j as usize;
-                let y: [f64; D] = std::array::from_fn(|a| pair.base[a] + (u[a][j] - ui[a]));
+                let y: [f64; D] = crate::array::from_fn(|a| pair.base[a] + (u[a][j] - ui[a]));
                 visit(n, [i, j], y, pair);
             }
         }

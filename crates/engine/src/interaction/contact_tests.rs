@@ -14,7 +14,7 @@ fn rule() -> Repulsion {
 /// Distance and vector in the reference (`u` 0) or now, to the nearest image.
 fn apart<const D: usize>(body: &Body<D>, u: &Field<D>, i: usize, j: usize) -> ([f64; D], f64) {
     let (p, q) = (body.position(i), body.position(j));
-    let y = std::array::from_fn(|a| {
+    let y = crate::array::from_fn(|a| {
         let d = (q[a] + u[a][j]) - (p[a] + u[a][i]);
         d - body.period[a].map_or(0.0, |l| l * (d / l).round())
     });
@@ -100,7 +100,7 @@ fn approach<const D: usize>(
     let noise: Vec<[f64; D]> = body
         .slots
         .iter()
-        .map(|_| std::array::from_fn(|_| 0.1 * random.next()))
+        .map(|_| crate::array::from_fn(|_| 0.1 * random.next()))
         .collect();
     (0..40)
         .map(|n| {
@@ -288,7 +288,7 @@ fn families_of_stencils_know_their_members() {
         let mut quarters = vec![];
         for c in sites(cells, |_| true) {
             for b in basis {
-                quarters.push(std::array::from_fn(|a| c[a] + b[a]));
+                quarters.push(crate::array::from_fn(|a| c[a] + b[a]));
             }
         }
         let (body, law) = lattice::<D>(kind, &quarters, 0.3, m, periodic);

@@ -117,14 +117,12 @@ pub trait Interaction<const D: usize>: Send + Sync {
         gradient: &[[f64; D]; D],
         out: &mut PointEnergiesMut,
     ) {
-        // images of a grid have displacements of their own
+        // copies have displacements of their own
         let mut u = body.at_rest();
-        let images = body.images.iter().map(|(copy, _)| copy);
-        for &s in body.slots.iter().chain(images) {
-            let moved = along(gradient, &body.position(s as usize));
-            for a in 0..D {
-                u[a][s as usize] = moved[a];
-            }
+        let points = body.slots.iter().map(|s| *s as usize);
+        for s in points.chain(body.exchange.pairs().map(|(copy, _)| copy)) {
+            let moved = along(gradient, &body.position(s));
+            (0..D).for_each(|a| u[a][s] = moved[a]);
         }
         self.observe(body, view(&u), out);
     }

@@ -54,7 +54,7 @@ pub fn length<const D: usize>(x: &[f64; D]) -> f64 {
 /// What of a way lies in a face of normal n (of length 1).
 pub fn along<const D: usize>(normal: &[f64; D], way: &[f64; D]) -> [f64; D] {
     let across: f64 = (0..D).map(|a| way[a] * normal[a]).sum();
-    std::array::from_fn(|a| way[a] - across * normal[a])
+    crate::array::from_fn(|a| way[a] - across * normal[a])
 }
 
 /// The velocity of sliding along a face of normal n (of length 1); none where it is the round-off of speeds whose difference it is: what rolls
@@ -89,7 +89,7 @@ pub fn slipped<const D: usize>(
         short => length(before) / short,
     };
     let path = along(normal, path);
-    let way: [f64; D] = std::array::from_fn(|a| kept * turned[a] + path[a]);
+    let way: [f64; D] = crate::array::from_fn(|a| kept * turned[a] + path[a]);
     let long = length(&way);
     match long > most {
         true => (way.map(|c| c * most / long), most / long),
@@ -102,8 +102,8 @@ pub fn slipped<const D: usize>(
 pub fn follows<const D: usize>(normal: &[f64; D], way: &[f64; D], kept: f64) -> [[f64; D]; D] {
     let long = length(way);
     let slips = kept < 1.0 && long > 0.0;
-    std::array::from_fn(|a| {
-        std::array::from_fn(|b| {
+    crate::array::from_fn(|a| {
+        crate::array::from_fn(|b| {
             let one = if a == b { 1.0 } else { 0.0 };
             let slip = if slips {
                 way[a] * way[b] / (long * long)

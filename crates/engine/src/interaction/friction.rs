@@ -237,12 +237,12 @@ impl<const D: usize> Friction<D> {
             let [turn, turned] = together.map_or([[0.0; D]; 2], |t| {
                 t.turns.map(|omega| {
                     let moved = cross(&omega, &full(&y));
-                    std::array::from_fn(|a| moved[a])
+                    crate::array::from_fn(|a| moved[a])
                 })
             });
-            let straight: [f64; D] = std::array::from_fn(|a| v[a][j] - v[a][i]);
-            let relative = std::array::from_fn(|a| straight[a] - turn[a]);
-            let speeds = length(&turn) + length::<D>(&std::array::from_fn(|a| v[a][i]));
+            let straight: [f64; D] = crate::array::from_fn(|a| v[a][j] - v[a][i]);
+            let relative = crate::array::from_fn(|a| straight[a] - turn[a]);
+            let speeds = length(&turn) + length::<D>(&crate::array::from_fn(|a| v[a][i]));
             let w = sliding(&normal, &relative, speeds);
             let most = law.at(length(&w)) * depth / TANGENTIAL;
             let sticks = before.is_some_and(|s| s.way != [0.0; D]);
@@ -252,7 +252,7 @@ impl<const D: usize> Friction<D> {
                 | Evaluation::StepEnd { .. }
                 | Evaluation::Trial { .. } => {
                     let path = match then {
-                        Some(from) => std::array::from_fn(|a| {
+                        Some(from) => crate::array::from_fn(|a| {
                             (u[a][j] - from[a][j]) - (u[a][i] - from[a][i]) - turned[a]
                         }),
                         None => w.map(|c| at.ended() * c),

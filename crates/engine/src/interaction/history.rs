@@ -134,8 +134,8 @@ pub fn crossed<const D: usize>(
     xi: [f64; D],
     to: Option<[f64; D]>,
 ) -> bool {
-    let other = |to: [f64; D]| crosses(std::array::from_fn(|a| to[a] - xi[a]), to);
-    crosses(from, std::array::from_fn(|a| from[a] + xi[a])) || to.is_some_and(other)
+    let other = |to: [f64; D]| crosses(crate::array::from_fn(|a| to[a] - xi[a]), to);
+    crosses(from, crate::array::from_fn(|a| from[a] + xi[a])) || to.is_some_and(other)
 }
 
 /// `s` of `e`.
@@ -199,7 +199,7 @@ pub fn next_critical<L: Lane>(
         [t] => (L::splat(t.s00), L::splat(t.alpha)),
         many => {
             let pick = |field: fn(&Toughness) -> f64| {
-                let t: [f64; TILE] = std::array::from_fn(|l| field(&many[material(l)]));
+                let t: [f64; TILE] = crate::array::from_fn(|l| field(&many[material(l)]));
                 // SAFETY: a number per lane
                 unsafe { L::load(t.as_ptr()) }
             };

@@ -151,6 +151,7 @@ struct Forces<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Forces<'_, D> {
     type Out = ();
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
         for tile in self.view.tiles.block(block) {
@@ -172,6 +173,7 @@ struct Energies<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Energies<'_, D> {
     type Out = [f64; 1];
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 1] {
         let mut sum = 0.0;
@@ -212,7 +214,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         }
         let kernel = Forces {
             view: self.view(body, u),
-            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
         };
         run_blocks(self.simd, &kernel, self.links.blocks());
         Tally::default()
@@ -239,13 +241,12 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         let grid = body.grid();
-        let original = body.originals();
         self.links.each_directed(grid, |i, j, sub, k| {
             let factor = self.factor(grid, i, k);
             let stiffness = self.stiffness[sub][k].map(|row| row.map(|c| factor * c));
             visit(BondTangent::direct(
                 i,
-                original(j),
+                body.exchange.original(j),
                 self.links.links[sub][k].xi,
                 stiffness,
             ))

@@ -110,7 +110,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         let kernel = Forces::<D, W, FULL> {
             view: self.view_of(self.moved(), alive.seen(), fields),
             alive,
-            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             next,
             toughness: &self.bonds.toughness,
             spares: self.spares,
@@ -183,6 +183,10 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
             seen.dilate::<W, D>(body, |i| self.per_weight(body, i));
         } else if W::SHARES {
             self.share();
+        }
+        if W::SHARES {
+            let pressures = &mut self.fields;
+            body.exchange.fill_numbers(pressures, 1, |slot, _| 2 * slot);
         }
         let motion = sweep.motion();
         let total = if self.bonds.critical.is_empty() {

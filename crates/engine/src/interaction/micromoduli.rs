@@ -114,6 +114,7 @@ struct Forces<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Forces<'_, D> {
     type Out = f64;
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> f64 {
         for row in rows(block, self.law.slots.len()) {
@@ -137,6 +138,7 @@ struct Energies<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Energies<'_, D> {
     type Out = f64;
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> f64 {
         let mut sum = 0.0;
@@ -177,7 +179,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         let kernel = Forces {
             law: self,
             u,
-            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
         };
         for_each_block(self.simd, &kernel, &mut sums);
         self.sums = sums;

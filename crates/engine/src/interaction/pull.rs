@@ -31,8 +31,8 @@ impl<const D: usize> Pull<D> {
         let n = y.map(|c| c / r);
         for (i, j, way) in [(i, j, 1.0), (j, i, -1.0)] {
             let volume = body.volume.at(j);
-            let block = std::array::from_fn(|a| {
-                std::array::from_fn(|b| {
+            let block = crate::array::from_fn(|a| {
+                crate::array::from_fn(|b| {
                     let along = (self.slope - pull) * n[a] * n[b];
                     volume * (along + if a == b { pull } else { 0.0 })
                 })

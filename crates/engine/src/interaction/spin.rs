@@ -85,7 +85,7 @@ impl<const D: usize> Known<D> {
         for partner in self.partners.iter().filter(|p| p.torn != now) {
             let k = partner.slot as usize;
             let d = |a: usize| partner.xi[a] + (u[a][k] - u[a][i]) - centre[a];
-            visit(k, std::array::from_fn(d));
+            visit(k, crate::array::from_fn(d));
         }
     }
 
@@ -113,9 +113,9 @@ impl<const D: usize> Known<D> {
                 inertia[a][a] += m * square;
                 (0..3).for_each(|b| inertia[a][b] -= m * d[a] * d[b]);
             }
-            let rate = full::<D>(&std::array::from_fn(|a| v[a][k]));
+            let rate = full::<D>(&crate::array::from_fn(|a| v[a][k]));
             let way = from.map_or([0.0; 3], |from| {
-                full::<D>(&std::array::from_fn(|a| u[a][k] - from[a][k]))
+                full::<D>(&crate::array::from_fn(|a| u[a][k] - from[a][k]))
             });
             for (sum, moved) in momenta.iter_mut().zip([rate, way]) {
                 let turned = cross(&d, &moved);

@@ -113,7 +113,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             view: self.view_of(body, u, alive.seen(), state.seen(), &self.fields[0]),
             alive,
             state,
-            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             critical: &self.bonds.critical,
             next,
             toughness: &self.bonds.toughness,
@@ -180,7 +180,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             self.bonds.blocks.run(&Share { view, out });
         }
         if W::SHARES {
-            body.fill_images(&mut self.fields[0]);
+            body.exchange.fill(&mut self.fields[0]);
         }
         let motion = sweep.motion();
         let total = if self.bonds.critical.is_empty() {
@@ -197,7 +197,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             };
             self.bonds.blocks.run(&kernel);
             self.bonds.critical = critical;
-            body.fill_images(&mut self.bonds.critical);
+            body.exchange.fill(&mut self.bonds.critical);
             self.least_critical = total.least_critical;
             self.settled = self.bonds.toughness.iter().all(|t| t.alpha == 0.0);
         }
@@ -352,7 +352,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         self.bonds.archive(body, archive, &Fused);
         if archive.loads() {
             if !self.bonds.critical.is_empty() {
-                body.fill_images(&mut self.bonds.critical);
+                body.exchange.fill(&mut self.bonds.critical);
             }
             self.look_critical(body);
             self.look();

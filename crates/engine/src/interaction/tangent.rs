@@ -50,7 +50,7 @@ pub(super) struct Stretched<const D: usize> {
 
 impl<const D: usize> Stretched<D> {
     pub fn new(xi: [f64; D], eta: [f64; D]) -> Self {
-        let y: [f64; D] = std::array::from_fn(|a| xi[a] + eta[a]);
+        let y: [f64; D] = crate::array::from_fn(|a| xi[a] + eta[a]);
         let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
         let (r0, r) = (square(&xi).sqrt(), square(&y).sqrt());
         let longer: f64 = (0..D).map(|a| (xi[a] + y[a]) * eta[a]).sum();
@@ -130,14 +130,14 @@ impl<const D: usize> BondTangent<D> {
         let force = self.force();
         let half = |a: usize| 0.5 * (force.force[a] + (own - other) * self.pull[0][a]);
         BondForce {
-            own: Some(std::array::from_fn(half)),
+            own: Some(crate::array::from_fn(half)),
             ..force
         }
     }
 
     /// The same of a linear law, whose bonds store as much at either end.
     pub(super) fn linear_force(&self, u: FieldView<D>) -> BondForce<D> {
-        let eta: [f64; D] = std::array::from_fn(|a| u[a][self.j] - u[a][self.i]);
+        let eta: [f64; D] = crate::array::from_fn(|a| u[a][self.j] - u[a][self.i]);
         let force = self
             .stiffness
             .map(|row| row.iter().zip(&eta).map(|(c, e)| c * e).sum());
@@ -231,8 +231,8 @@ impl<const D: usize> BondTangent<D> {
 
 /// `tension 1 + more n⊗n`
 fn central<const D: usize>(tension: f64, more: f64, n: &[f64; D]) -> [[f64; D]; D] {
-    std::array::from_fn(|a| {
-        std::array::from_fn(|b| more * n[a] * n[b] + if a == b { tension } else { 0.0 })
+    crate::array::from_fn(|a| {
+        crate::array::from_fn(|b| more * n[a] * n[b] + if a == b { tension } else { 0.0 })
     })
 }
 

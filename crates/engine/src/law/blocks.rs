@@ -60,7 +60,7 @@ impl Quadratic {
     /// Every pair of the particles, which are at `at`, once; a comes before b.
     pub fn visit<const D: usize>(&self, at: &[[f64; D]], visit: &mut dyn FnMut(PairTangent<D>)) {
         // the slope of ξ of a pair by the place of its first
-        let from = |a: usize, b: usize| std::array::from_fn::<f64, D, _>(|c| at[a][c] - at[b][c]);
+        let from = |a: usize, b: usize| crate::array::from_fn::<f64, D, _>(|c| at[a][c] - at[b][c]);
         let others = |a: usize| (0..at.len()).filter(move |b| *b != a);
         for b in 1..at.len() {
             for a in 0..b {

@@ -35,19 +35,19 @@ impl<const N: usize> Jet<N> {
 impl<const N: usize> Add for Jet<N> {
     type Output = Self;
     fn add(self, o: Self) -> Self {
-        Jet(std::array::from_fn(|n| self.0[n] + o.0[n]))
+        Jet(crate::array::from_fn(|n| self.0[n] + o.0[n]))
     }
 }
 impl<const N: usize> Sub for Jet<N> {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
-        Jet(std::array::from_fn(|n| self.0[n] - o.0[n]))
+        Jet(crate::array::from_fn(|n| self.0[n] - o.0[n]))
     }
 }
 impl<const N: usize> Mul for Jet<N> {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
-        Jet(std::array::from_fn(|n| {
+        Jet(crate::array::from_fn(|n| {
             (0..=n).map(|k| self.0[k] * o.0[n - k]).sum()
         }))
     }

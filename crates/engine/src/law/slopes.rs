@@ -220,8 +220,8 @@ impl<const C: usize> Curved<C> {
         Curved {
             value,
             slope: s.map(|s| first * s),
-            curvature: std::array::from_fn(|m| {
-                std::array::from_fn(|n| first * self.curvature[m][n] + second * s[m] * s[n])
+            curvature: crate::array::from_fn(|m| {
+                crate::array::from_fn(|n| first * self.curvature[m][n] + second * s[m] * s[n])
             }),
         }
     }
@@ -236,9 +236,9 @@ impl<const C: usize> Add for Curved<C> {
     fn add(self, o: Self) -> Self {
         Curved {
             value: self.value + o.value,
-            slope: std::array::from_fn(|n| self.slope[n] + o.slope[n]),
-            curvature: std::array::from_fn(|m| {
-                std::array::from_fn(|n| self.curvature[m][n] + o.curvature[m][n])
+            slope: crate::array::from_fn(|n| self.slope[n] + o.slope[n]),
+            curvature: crate::array::from_fn(|m| {
+                crate::array::from_fn(|n| self.curvature[m][n] + o.curvature[m][n])
             }),
         }
     }
@@ -257,9 +257,9 @@ impl<const C: usize> Mul for Curved<C> {
         let (a, b) = (self.slope, o.slope);
         Curved {
             value: self.value * o.value,
-            slope: std::array::from_fn(|n| self.value.mul_add(b[n], a[n] * o.value)),
-            curvature: std::array::from_fn(|m| {
-                std::array::from_fn(|n| {
+            slope: crate::array::from_fn(|n| self.value.mul_add(b[n], a[n] * o.value)),
+            curvature: crate::array::from_fn(|m| {
+                crate::array::from_fn(|n| {
                     let own = self.curvature[m][n].mul_add(o.value, self.value * o.curvature[m][n]);
                     a[m].mul_add(b[n], a[n].mul_add(b[m], own))
                 })

@@ -32,7 +32,7 @@ pub fn gradient(state: &mut dyn State) -> Vec<[f64; 9]> {
     let fit = shape.iter().zip(&moved);
     fit.map(|(k, m)| match inverse(k, d) {
         None => [0.0; 9],
-        Some(k) => std::array::from_fn(|ab| {
+        Some(k) => crate::array::from_fn(|ab| {
             let (a, b) = (ab / 3, ab % 3);
             (0..3).map(|c| m[3 * a + c] * k[3 * c + b]).sum()
         }),
@@ -61,7 +61,7 @@ fn inverse(k: &[f64; 9], d: usize) -> Option<[f64; 9]> {
     if !(determinant > FLAT) {
         return None;
     }
-    Some(std::array::from_fn(|ab| {
+    Some(crate::array::from_fn(|ab| {
         let (a, b) = (ab / 3, ab % 3);
         match a < d && b < d {
             true => minor(b, a) / determinant / mean,

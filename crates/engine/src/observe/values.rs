@@ -86,7 +86,8 @@ impl Values {
         match shape {
             Shape::Scalar => Values::Scalars(stored.to_vec()),
             Shape::Vector => {
-                let of = |row: &[f64]| std::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0));
+                let of =
+                    |row: &[f64]| crate::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0));
                 Values::Vectors(rows.map(of).collect())
             }
             Shape::Symmetric => {

@@ -117,14 +117,14 @@ impl Dimension {
 impl Mul for Dimension {
     type Output = Dimension;
     fn mul(self, other: Dimension) -> Dimension {
-        Dimension(std::array::from_fn(|n| self.0[n] + other.0[n]))
+        Dimension(crate::array::from_fn(|n| self.0[n] + other.0[n]))
     }
 }
 
 impl Div for Dimension {
     type Output = Dimension;
     fn div(self, other: Dimension) -> Dimension {
-        Dimension(std::array::from_fn(|n| self.0[n] - other.0[n]))
+        Dimension(crate::array::from_fn(|n| self.0[n] - other.0[n]))
     }
 }
 

@@ -132,7 +132,7 @@ impl<const D: usize> System<D> {
                 RunError::Density {
                     step,
                     id: self.body.number(slot),
-                    position: std::array::from_fn(|a| {
+                    position: crate::array::from_fn(|a| {
                         x[a] + if a < D { self.u[a][slot] } else { 0.0 }
                     }),
                     density,

@@ -165,7 +165,7 @@ pub(super) fn step_of_speeds<const D: usize>(
     let mass = |s: usize| system.body.volume.at(s) * system.body.density.at(s);
     let total: f64 = slots().map(mass).sum();
     let mean: [f64; D] =
-        std::array::from_fn(|a| slots().map(|s| mass(s) * system.v[a][s]).sum::<f64>() / total);
+        crate::array::from_fn(|a| slots().map(|s| mass(s) * system.v[a][s]).sum::<f64>() / total);
     let square = |s: usize| {
         (0..D)
             .map(|a| (system.v[a][s] - mean[a]).powi(2))

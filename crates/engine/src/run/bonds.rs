@@ -38,7 +38,7 @@ pub(super) fn scale<const D: usize>(
                     }
                     at[s as usize] = value;
                 }
-                body.fill_images(&mut at);
+                body.exchange.fill(&mut at);
                 let scaled =
                     |i: usize, j: usize, _| pair(mean(spec.interactions.interface, at[i], at[j]));
                 interaction.scale_bonds(body, &scaled).map_err(named)?;
@@ -54,12 +54,12 @@ pub(super) fn scale<const D: usize>(
                 let scaled = |i: usize, j: usize, _| {
                     let [x, y]: [[f64; D]; 2] = [i, j].map(|s| {
                         let x = body.position(s);
-                        std::array::from_fn(|a| x[a])
+                        crate::array::from_fn(|a| x[a])
                     });
                     let y = match listed(body, [i, j]) {
                         true => {
-                            let back = periods(body, &std::array::from_fn(|a| y[a] - x[a]));
-                            std::array::from_fn(|a| y[a] - back[a])
+                            let back = periods(body, &crate::array::from_fn(|a| y[a] - x[a]));
+                            crate::array::from_fn(|a| y[a] - back[a])
                         }
                         false => y,
                     };

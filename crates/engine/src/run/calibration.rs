@@ -37,7 +37,7 @@ pub(super) fn cloud_moments<const D: usize>(
 /// Unit vectors along all axes and diagonals.
 fn directions<const D: usize>() -> Vec<[f64; D]> {
     let all = (0..3usize.pow(D as u32)).map(|n| -> [f64; D] {
-        std::array::from_fn(|a| (n / 3usize.pow(a as u32) % 3) as f64 - 1.0)
+        crate::array::from_fn(|a| (n / 3usize.pow(a as u32) % 3) as f64 - 1.0)
     });
     all.filter_map(|d| {
         let length = d.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -64,9 +64,9 @@ fn family<const D: usize>(
     };
     for (_, j) in list.partners(row) {
         let y = body.position(j);
-        let xi: [f64; D] = std::array::from_fn(|a| y[a] - x[a]);
+        let xi: [f64; D] = crate::array::from_fn(|a| y[a] - x[a]);
         let back = periods(body, &xi);
-        let xi: [f64; D] = std::array::from_fn(|a| xi[a] - back[a]);
+        let xi: [f64; D] = crate::array::from_fn(|a| xi[a] - back[a]);
         let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
         let w = weight.at(&xi, r0, 1.0 / r0) * body.volume.at(j);
         sum.first += w * r0;

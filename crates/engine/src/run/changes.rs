@@ -39,7 +39,7 @@ impl<const D: usize> System<D> {
             .iter()
             .map(|s| {
                 let x = self.body.position(*s as usize);
-                std::array::from_fn(|a| x[a])
+                crate::array::from_fn(|a| x[a])
             })
             .collect();
         // bonds know their ends by where they are in the reference, up to round-off

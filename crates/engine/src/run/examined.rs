@@ -33,9 +33,7 @@ impl<const D: usize> Examined for Model<D> {
         } = &mut self.system;
         let mut u = body.at_rest();
         body.scatter(&mut u, displacement);
-        for c in &mut u {
-            body.fill_images(c);
-        }
+        body.exchange.fill_field(&mut u);
         let mut f = zeros(body.len);
         interaction.forces(body, view(&u), view_mut(&mut f), Sweep::Hold, None);
         body.vectors(&f)
@@ -73,7 +71,7 @@ impl<const D: usize> Examined for Model<D> {
         let prescribed = next.map_or(&self.system.prescribed, |next| &next.prescribed);
         let support = self.system.held_by(prescribed);
         let body = self.system.linear_now();
-        let padded = |x: &[f64; D]| std::array::from_fn(|a| if a < D { x[a] } else { 0.0 });
+        let padded = |x: &[f64; D]| crate::array::from_fn(|a| if a < D { x[a] } else { 0.0 });
         let shape = |m: &Mode<D>| ModeShape {
             square: m.square,
             frequency: m.frequency(),

@@ -194,10 +194,10 @@ impl Faces {
             let p = (*period.get(a)?)?;
             Some((4.0 * p / (edges[a] * lattice.spacing)).round() as i32)
         };
-        let period: [Option<i32>; 3] = std::array::from_fn(quarters);
+        let period: [Option<i32>; 3] = crate::array::from_fn(quarters);
         let set: Vec<Site> = members.iter().map(|n| sites[*n]).collect();
         // what is further away than a cell does not matter
-        let bounds: [(i32, i32); D] = std::array::from_fn(|a| {
+        let bounds: [(i32, i32); D] = crate::array::from_fn(|a| {
             let ends = set.iter().map(|s| s[a]);
             ends.fold((i32::MAX, i32::MIN), |(l, h), x| (l.min(x), h.max(x)))
         });
@@ -208,7 +208,7 @@ impl Faces {
             })
         };
         let wrapped = |q: Site| -> Site {
-            std::array::from_fn(|a| period[a].map_or(q[a], |p| q[a].rem_euclid(p)))
+            crate::array::from_fn(|a| period[a].map_or(q[a], |p| q[a].rem_euclid(p)))
         };
         let body: HashMap<Site, f64> = { sites.iter().zip(points) }
             .filter(|(q, _)| near(q))

@@ -34,7 +34,7 @@ pub(super) fn between<const D: usize>(
     let of: Vec<usize> = (body.slots.iter())
         .map(|s| body.piece_of(*s as usize))
         .collect();
-    let x: [Vec<f64>; D] = std::array::from_fn(|a| {
+    let x: [Vec<f64>; D] = crate::array::from_fn(|a| {
         let all = body.slots.iter();
         all.map(|s| body.position(*s as usize)[a]).collect()
     });
@@ -45,7 +45,7 @@ pub(super) fn between<const D: usize>(
         .fold(f64::INFINITY, |m, p| m.min(0.49 * p));
     let reach = reach.min(half);
     let cells = Cells::new(
-        std::array::from_fn(|a| x[a].as_slice()),
+        crate::array::from_fn(|a| x[a].as_slice()),
         of.len(),
         body.period,
         reach,

@@ -157,13 +157,13 @@ fn near<const D: usize>(all: &Body<D>, bodies: [usize; 2], reach: f64) -> Vec<u3
         .map(|s| (*s, all.piece_of(*s as usize)))
         .filter(|(_, piece)| bodies.contains(piece))
         .collect();
-    let x: [Vec<f64>; D] = std::array::from_fn(|a| {
+    let x: [Vec<f64>; D] = crate::array::from_fn(|a| {
         of.iter()
             .map(|(s, _)| all.position(*s as usize)[a])
             .collect()
     });
     let cells = Cells::new(
-        std::array::from_fn(|a| x[a].as_slice()),
+        crate::array::from_fn(|a| x[a].as_slice()),
         of.len(),
         all.period,
         reach,

@@ -62,17 +62,17 @@ impl<const D: usize> State for View<'_, D> {
 
     fn displacement(&self, id: usize) -> Point {
         let s = self.slot(id);
-        full(&std::array::from_fn::<_, D, _>(|a| self.system.u[a][s]))
+        full(&crate::array::from_fn::<_, D, _>(|a| self.system.u[a][s]))
     }
 
     fn velocity(&self, id: usize) -> Point {
         let s = self.slot(id);
-        full(&std::array::from_fn::<_, D, _>(|a| self.system.v[a][s]))
+        full(&crate::array::from_fn::<_, D, _>(|a| self.system.v[a][s]))
     }
 
     fn force_density(&self, id: usize) -> Point {
         let s = self.slot(id);
-        full(&std::array::from_fn::<_, D, _>(|a| self.system.f[a][s]))
+        full(&crate::array::from_fn::<_, D, _>(|a| self.system.f[a][s]))
     }
 
     fn volume(&self, id: usize) -> f64 {
@@ -85,7 +85,7 @@ impl<const D: usize> State for View<'_, D> {
 
     fn kinetic_energy_density(&self, id: usize) -> f64 {
         let system = &*self.system;
-        let v = |id: usize| std::array::from_fn::<_, D, _>(|a| system.v[a][self.slot(id)]);
+        let v = |id: usize| crate::array::from_fn::<_, D, _>(|a| system.v[a][self.slot(id)]);
         let own = v(id);
         match &system.inertia {
             None => 0.5 * self.density(id) * full(&own).iter().map(|c| c * c).sum::<f64>(),

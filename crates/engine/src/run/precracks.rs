@@ -59,7 +59,10 @@ fn along_points<const D: usize>(
     let on = |slot: &&u32| {
         let slot = **slot as usize;
         let x = body.position(slot);
-        shape.carries(&std::array::from_fn(|a| x[a]), 1e-6 * body.spacing_at(slot))
+        shape.carries(
+            &crate::array::from_fn(|a| x[a]),
+            1e-6 * body.spacing_at(slot),
+        )
     };
     let count = body.slots.iter().filter(on).count();
     // a crack may meet a point or two

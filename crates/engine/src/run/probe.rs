@@ -39,21 +39,21 @@ pub(super) fn bonds<const D: usize>(
                 _ => BLOCK,
             };
             let extent: [usize; D] =
-                std::array::from_fn(|a| (grid.cells[a] - 2 * grid.halo[a]).min(block));
+                crate::array::from_fn(|a| (grid.cells[a] - 2 * grid.halo[a]).min(block));
             let basis = grid.lattice.kind.basis();
             let mut quarters = vec![];
             for i in 0..extent.iter().product::<usize>() {
                 let mut rest = i;
-                let cell: [usize; D] = std::array::from_fn(|a| {
+                let cell: [usize; D] = crate::array::from_fn(|a| {
                     let c = rest % extent[a];
                     rest /= extent[a];
                     c
                 });
                 quarters.extend(basis.iter().map(|b| -> [i32; 3] {
-                    std::array::from_fn(|a| if a < D { 4 * cell[a] as i32 + b[a] } else { 0 })
+                    crate::array::from_fn(|a| if a < D { 4 * cell[a] as i32 + b[a] } else { 0 })
                 }));
             }
-            let periodic = std::array::from_fn(|a| body.period[a].is_some());
+            let periodic = crate::array::from_fn(|a| body.period[a].is_some());
             let mut block = Body::<D>::on_lattice(
                 grid.lattice,
                 &quarters,

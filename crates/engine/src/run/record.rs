@@ -33,7 +33,8 @@ pub(super) fn count_families<const D: usize>(system: &System<D>) -> Families {
 
 /// Energy densities of bonds under a homogeneous displacement gradient.
 pub(super) fn strained<const D: usize>(system: &System<D>, strain: [[f64; 3]; 3]) -> Vec<f64> {
-    let gradient: [[f64; D]; D] = std::array::from_fn(|a| std::array::from_fn(|b| strain[a][b]));
+    let gradient: [[f64; D]; D] =
+        crate::array::from_fn(|a| crate::array::from_fn(|b| strain[a][b]));
     let mut out = PointEnergies::default();
     system.interaction.observe_gradient(
         &system.body,

@@ -80,7 +80,7 @@ fn bulk_family<const D: usize>(
             1.0
         };
         let edges = grid.lattice.kind.edges();
-        let xi: [f64; 3] = std::array::from_fn(|a| {
+        let xi: [f64; 3] = crate::array::from_fn(|a| {
             0.25 * grid.lattice.spacing * edges[a] * f64::from(o.quarter[a])
         });
         let omega = mean_influence(spec.bonds.influence, &xi, r0, horizon);
@@ -170,7 +170,7 @@ fn on_lattice<const D: usize>(
         ));
     }
     let (stencil, horizon) = stencil_of(spec, kind, spacing)?;
-    let periodic: [bool; D] = std::array::from_fn(|a| spec.space.periodic[a].is_some());
+    let periodic: [bool; D] = crate::array::from_fn(|a| spec.space.periodic[a].is_some());
     let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.space.section);
     let body = Body::<D>::on_lattice(lattice, quarters, stencil.reach, periodic, volume)?;
     periods_fit(spec, &body)?;
@@ -273,7 +273,7 @@ fn of_cloud<const D: usize>(spec: &Spec, cloud: &Cloud) -> Result<Reference<D>, 
     let mean =
         cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.space.section;
     let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
-    let period = std::array::from_fn(|a| spec.space.periodic[a]);
+    let period = crate::array::from_fn(|a| spec.space.periodic[a]);
     let body = Body::<D>::from_cloud(&cloud.position, &cloud.volume, &cloud.mark, spacing, period)?;
     Ok(Reference {
         body,

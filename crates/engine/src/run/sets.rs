@@ -51,7 +51,7 @@ pub(super) fn sets<const D: usize>(
             let belongs = member(spec, body, &set.name, &set.members, 0, carriers.spacing)?;
             let at = |p: &usize| {
                 let x = &carriers.position[*p];
-                std::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
+                crate::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
             };
             let points = (0..carriers.points()).filter(|p| belongs(*p, &at(p)));
             loaded = points.map(|p| p as u32).collect();

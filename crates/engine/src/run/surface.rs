@@ -21,13 +21,11 @@ impl<'a, const D: usize> Factors<'a, D> {
         for (slot, r) in body.slots.iter().zip(&surface.row) {
             row[*slot as usize] = *r;
         }
-        for &(copy, original) in &body.images {
-            row[copy as usize] = row[original as usize];
-        }
+        body.exchange.fill(&mut row);
         let of_row = |bonds: &Vec<([i32; 3], SurfaceFactor)>| {
             let bonds = bonds.iter();
             bonds
-                .map(|(o, x)| (std::array::from_fn(|a| o[a]), *x))
+                .map(|(o, x)| (crate::array::from_fn(|a| o[a]), *x))
                 .collect()
         };
         Factors {
@@ -85,10 +83,7 @@ pub(super) fn scale<const D: usize>(
         .map_err(|e| e.at("surface"))?;
     if surface.ends_at_points() {
         let mut volume = vec![0.0; body.len];
-        for slot in &body.slots {
-            volume[*slot as usize] = cell * factors.part(*slot as usize);
-        }
-        body.fill_images(&mut volume);
+        body.set_points(&mut volume, |slot| cell * factors.part(slot));
         body.volume = Values::PerSlot(volume);
     }
     Ok(())
@@ -115,7 +110,7 @@ pub(super) fn of_block<const D: usize>(
     }
     let of = |slot: u32| {
         let (c, _) = small.cell(slot as usize);
-        let there = std::array::from_fn(|a| {
+        let there = crate::array::from_fn(|a| {
             let c = c[a] - small.halo[a] as i64;
             let (n, m) = (own(whole, a), own(small, a));
             whole.halo[a] as i64 + if 2 * c < m { c } else { n - m + c }

@@ -117,7 +117,7 @@ fn push_alone<const D: usize>(system: &mut System<D>, all: &mut [Loaded<D>]) {
     for way in [1.0, -1.0] {
         for a in 0..D {
             all.iter().for_each(|p| u[a][p.slot] = way * small);
-            system.body.fill_images(&mut u[a]);
+            system.body.exchange.fill(&mut u[a]);
             system
                 .interaction
                 .forces(&system.body, view(&u), view_mut(&mut f), Sweep::Hold, None);
@@ -125,11 +125,11 @@ fn push_alone<const D: usize>(system: &mut System<D>, all: &mut [Loaded<D>]) {
                 (0..D).for_each(|b| k[b][a] -= way * f[b][p.slot] / (2.0 * small));
             }
             all.iter().for_each(|p| u[a][p.slot] = 0.0);
-            system.body.fill_images(&mut u[a]);
+            system.body.exchange.fill(&mut u[a]);
         }
     }
     for (p, k) in all.iter_mut().zip(stiffness) {
-        let even = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (k[a][b] + k[b][a])));
+        let even = crate::array::from_fn(|a| crate::array::from_fn(|b| 0.5 * (k[a][b] + k[b][a])));
         if let (flexibility, true) = inverse(even) {
             p.goes = times(&flexibility, &p.force);
         }

@@ -54,7 +54,7 @@ impl Sites<'_> {
     /// The site so many quarters along each axis.
     fn moved(&self, q: Site, by: Site) -> Site {
         let low = |a: usize| self.period[a].map(|p| (q[a] + by[a]).rem_euclid(p));
-        std::array::from_fn(|a| low(a).unwrap_or(q[a] + by[a]))
+        crate::array::from_fn(|a| low(a).unwrap_or(q[a] + by[a]))
     }
 
     fn along(&self, q: Site, axis: usize, cells: i32) -> Site {

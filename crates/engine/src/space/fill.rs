@@ -79,7 +79,7 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
         let mut found = 0usize;
         for i in 0..n.pow(dimension as u32) {
             let mut rest = i;
-            let q = std::array::from_fn(|a| {
+            let q = crate::array::from_fn(|a| {
                 if a >= dimension {
                     return 0;
                 }
@@ -157,9 +157,9 @@ fn empty(lattice: &Lattice, low: Point, high: Point) -> BuildError {
     let extent: Vec<String> = (0..dimension)
         .map(|a| format!("{} from {} to {}", AXES[a], low[a], high[a]))
         .collect();
-    let middle: Point = std::array::from_fn(|a| (low[a] + high[a]) / 2.0);
+    let middle: Point = crate::array::from_fn(|a| (low[a] + high[a]) / 2.0);
     let edges = lattice.kind.edges();
-    let base: [f64; 3] = std::array::from_fn(|a| {
+    let base: [f64; 3] = crate::array::from_fn(|a| {
         if a < dimension {
             ((middle[a] - lattice.origin[a]) / (lattice.spacing * edges[a])).floor()
         } else {
@@ -170,7 +170,7 @@ fn empty(lattice: &Lattice, low: Point, high: Point) -> BuildError {
     for corner in 0..27 {
         let shift = [corner % 3 - 1, corner / 3 % 3 - 1, corner / 9 - 1];
         for b in lattice.kind.basis() {
-            let q = std::array::from_fn(|a| {
+            let q = crate::array::from_fn(|a| {
                 if a < dimension {
                     4 * (base[a] as i32 + shift[a]) + b[a]
                 } else {

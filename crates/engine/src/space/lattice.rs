@@ -142,7 +142,7 @@ impl Lattice {
         ends: Ends,
     ) -> [f64; 3] {
         let edges = kind.edges();
-        std::array::from_fn(|a| {
+        crate::array::from_fn(|a| {
             let length = high[a] - low[a];
             if a >= kind.dimension() || !length.is_finite() {
                 return 0.0;
@@ -175,7 +175,7 @@ impl Lattice {
     /// The site nearest to a place, in quarters as [`Lattice::position`] takes them.
     pub fn quarter(&self, x: &[f64; 3]) -> [i32; 3] {
         let e = self.kind.edges();
-        std::array::from_fn(|a| match a < self.kind.dimension() {
+        crate::array::from_fn(|a| match a < self.kind.dimension() {
             true => (4.0 * (x[a] - self.origin[a]) / (self.spacing * e[a])).round() as i32,
             false => 0,
         })

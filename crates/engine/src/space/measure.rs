@@ -67,7 +67,7 @@ pub fn measure(region: &Region, dimension: usize, period: [Option<f64>; 3]) -> O
             let part = (0.5 + (*n as f64 + 1.0) * step[a]).fract();
             low[a] + (high[a] - low[a]) * part
         };
-        region.contains(&std::array::from_fn(place))
+        region.contains(&crate::array::from_fn(place))
     });
     fine(whole * inside.count() as f64 / LOOKS as f64)
 }

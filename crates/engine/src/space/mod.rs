@@ -27,7 +27,7 @@ pub fn cross(a: &Point, b: &Point) -> Point {
 
 /// A place or vector of D axes, with 0 along the others.
 pub fn full<const D: usize>(x: &[f64; D]) -> Point {
-    std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0))
+    crate::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0))
 }
 
 pub fn length(a: &Point) -> f64 {

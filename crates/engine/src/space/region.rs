@@ -101,8 +101,8 @@ impl Region {
                 ([INF; 3], [-INF; 3]),
                 |(from, to), (low, high)| {
                     (
-                        std::array::from_fn(|a| from[a].min(low[a])),
-                        std::array::from_fn(|a| to[a].max(high[a])),
+                        crate::array::from_fn(|a| from[a].min(low[a])),
+                        crate::array::from_fn(|a| to[a].max(high[a])),
                     )
                 },
             ),
@@ -111,8 +111,8 @@ impl Region {
                 ([-INF; 3], [INF; 3]),
                 |(from, to), (low, high)| {
                     (
-                        std::array::from_fn(|a| from[a].max(low[a])),
-                        std::array::from_fn(|a| to[a].min(high[a])),
+                        crate::array::from_fn(|a| from[a].max(low[a])),
+                        crate::array::from_fn(|a| to[a].min(high[a])),
                     )
                 },
             ),

@@ -55,13 +55,13 @@ impl RigidShape {
                 (r - radius, out)
             }
             RigidShape::Box { half } => {
-                let beyond: Point = std::array::from_fn(|a| x[a].abs() - half[a]);
+                let beyond: Point = crate::array::from_fn(|a| x[a].abs() - half[a]);
                 let (far, out) = corner(&beyond);
-                (far, std::array::from_fn(|a| out[a].copysign(x[a])))
+                (far, crate::array::from_fn(|a| out[a].copysign(x[a])))
             }
             RigidShape::Cylinder { radius, half, axis } => {
                 let along = dot(x, axis);
-                let across: Point = std::array::from_fn(|a| x[a] - along * axis[a]);
+                let across: Point = crate::array::from_fn(|a| x[a] - along * axis[a]);
                 let rho = dot(&across, &across).sqrt();
                 let (far, out) = corner(&[rho - radius, along.abs() - half]);
                 // a point on the axis is as near to the mantle on every side
@@ -73,7 +73,7 @@ impl RigidShape {
                 let up = out[1].copysign(along);
                 (
                     far,
-                    std::array::from_fn(|a| out[0] * round[a] + up * axis[a]),
+                    crate::array::from_fn(|a| out[0] * round[a] + up * axis[a]),
                 )
             }
             RigidShape::Plane { normal } => (dot(x, normal), *normal),
@@ -115,17 +115,17 @@ impl RigidShape {
             RigidShape::Box { half } => diagonal(half.map(|h| h * h / 3.0)),
             RigidShape::Cylinder { radius, half, axis } => {
                 let (round, long) = (0.25 * radius * radius, half * half / 3.0);
-                std::array::from_fn(|a| {
+                crate::array::from_fn(|a| {
                     let each = |b: usize| (long - round) * axis[a] * axis[b];
-                    std::array::from_fn(|b| each(b) + if a == b { round } else { 0.0 })
+                    crate::array::from_fn(|b| each(b) + if a == b { round } else { 0.0 })
                 })
             }
             RigidShape::Plane { .. } => diagonal([f64::INFINITY; 3]),
             RigidShape::Solid(solid) => solid.second_moments(),
         };
         let all = second[0][0] + second[1][1] + second[2][2];
-        std::array::from_fn(|a| {
-            std::array::from_fn(|b| match (a == b, dimension) {
+        crate::array::from_fn(|a| {
+            crate::array::from_fn(|b| match (a == b, dimension) {
                 (true, 2) if a == 2 => second[0][0] + second[1][1],
                 (true, _) => all - second[a][a],
                 (false, _) => -second[a][b],
@@ -140,13 +140,13 @@ fn aside(axis: &Point) -> Point {
     let mut e = [0.0; 3];
     e[least] = 1.0;
     let along = dot(&e, axis);
-    let way: Point = std::array::from_fn(|a| e[a] - along * axis[a]);
+    let way: Point = crate::array::from_fn(|a| e[a] - along * axis[a]);
     let size = length(&way);
     way.map(|c| c / size)
 }
 
 fn diagonal(x: Point) -> [Point; 3] {
-    std::array::from_fn(|a| std::array::from_fn(|b| if a == b { x[a] } else { 0.0 }))
+    crate::array::from_fn(|a| crate::array::from_fn(|b| if a == b { x[a] } else { 0.0 }))
 }
 
 /// Signed distance from a corner of which the coordinates are so far beyond, and its direction: outside to the corner, inside to the nearest
@@ -154,7 +154,7 @@ fn diagonal(x: Point) -> [Point; 3] {
 fn corner<const N: usize>(beyond: &[f64; N]) -> (f64, [f64; N]) {
     let most = (1..N).fold(0, |m, a| if beyond[a] > beyond[m] { a } else { m });
     if (0..N).filter(|a| beyond[*a] > 0.0).count() <= 1 {
-        let face = std::array::from_fn(|a| f64::from(u8::from(a == most)));
+        let face = crate::array::from_fn(|a| f64::from(u8::from(a == most)));
         return (beyond[most], face);
     }
     let outside = beyond.map(|b| b.max(0.0));

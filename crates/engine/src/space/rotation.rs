@@ -8,12 +8,12 @@ pub type Axes = [Point; 3];
 
 /// From axes of the shape to space.
 pub fn times(m: &Axes, x: &Point) -> Point {
-    std::array::from_fn(|r| m[r][0] * x[0] + m[r][1] * x[1] + m[r][2] * x[2])
+    crate::array::from_fn(|r| m[r][0] * x[0] + m[r][1] * x[1] + m[r][2] * x[2])
 }
 
 /// From space to axes of the shape.
 pub fn transposed_times(m: &Axes, x: &Point) -> Point {
-    std::array::from_fn(|c| m[0][c] * x[0] + m[1][c] * x[1] + m[2][c] * x[2])
+    crate::array::from_fn(|c| m[0][c] * x[0] + m[1][c] * x[1] + m[2][c] * x[2])
 }
 
 /// A turn: cos(φ/2), and sin(φ/2) along its axis.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 /// A box as triangles, edges of lengths `2 half`.
 fn of_box(half: Point) -> Vec<[Point; 3]> {
     let at = |n: usize| -> Point {
-        std::array::from_fn(|a| if n >> a & 1 == 1 { half[a] } else { -half[a] })
+        crate::array::from_fn(|a| if n >> a & 1 == 1 { half[a] } else { -half[a] })
     };
     // corners of the faces, counter-clockwise from outside
     let faces = [
@@ -39,7 +39,7 @@ fn of_sphere(times: usize) -> Vec<[Point; 3]> {
     }
     for _ in 0..times {
         let middle = |a: &Point, b: &Point| -> Point {
-            let x: Point = std::array::from_fn(|k| a[k] + b[k]);
+            let x: Point = crate::array::from_fn(|k| a[k] + b[k]);
             x.map(|c| c / length(&x))
         };
         all = all
@@ -84,7 +84,7 @@ fn a_box_of_triangles_is_the_box() {
     }
     let (mut inside, mut outside) = (0, 0);
     for _ in 0..4000 {
-        let x: Point = std::array::from_fn(|_| 2.0 * next());
+        let x: Point = crate::array::from_fn(|_| 2.0 * next());
         let ((d, n), (e, m)) = (exact.distance(&x), shape.distance(&x));
         *(if d < 0.0 { &mut inside } else { &mut outside }) += 1;
         assert!((d - e).abs() < 1e-14, "{x:?}: {d} {e}");
@@ -105,7 +105,7 @@ fn a_sphere_of_triangles_comes_to_the_sphere_at_second_order() {
         let inertia = (shape.inertia(3)[0][0] - exact.inertia(3)[0][0]).abs();
         let (mut next, mut worst) = (numbers(), 0.0f64);
         for _ in 0..400 {
-            let x: Point = std::array::from_fn(|_| 1.5 * next());
+            let x: Point = crate::array::from_fn(|_| 1.5 * next());
             worst = worst.max((shape.distance(&x).0 - exact.distance(&x).0).abs());
         }
         let now = [volume, inertia, worst];
@@ -127,7 +127,7 @@ fn the_tree_finds_what_all_triangles_have() {
     let all = of_sphere(4);
     let (made, mut next) = (solid(&all), numbers());
     for _ in 0..300 {
-        let x: Point = std::array::from_fn(|_| 1.5 * next());
+        let x: Point = crate::array::from_fn(|_| 1.5 * next());
         let each = (0..all.len()).map(|n| {
             let to = sub(&x, &nearest(&made.triangles.corners(n), &x).0);
             length(&to)

@@ -29,7 +29,8 @@ impl<const D: usize> Carriers<D> {
         spacing: f64,
         loaded: &[bool],
     ) -> Carriers<D> {
-        let unit = std::array::from_fn(|a| std::array::from_fn(|b| f64::from(u8::from(a == b))));
+        let unit =
+            crate::array::from_fn(|a| crate::array::from_fn(|b| f64::from(u8::from(a == b))));
         let mut start = vec![0];
         let mut target = vec![];
         for (p, loaded) in (0u32..).zip(loaded) {

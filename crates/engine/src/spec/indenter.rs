@@ -81,7 +81,7 @@ impl IndenterSpec {
 impl FreeSpec {
     /// A mass that nothing but points pushes.
     pub fn new(mass: f64, center: Point, velocity: Point) -> FreeSpec {
-        let zero = || std::array::from_fn(|_| Expression::constant(0.0));
+        let zero = || crate::array::from_fn(|_| Expression::constant(0.0));
         FreeSpec {
             mass,
             inertia: None,

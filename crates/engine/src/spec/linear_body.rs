@@ -100,7 +100,7 @@ impl AnyLinearBody {
 
     /// Period per axis.
     pub fn period(&self) -> [Option<f64>; 3] {
-        let padded = |p: &[Option<f64>]| std::array::from_fn(|a| p.get(a).copied().flatten());
+        let padded = |p: &[Option<f64>]| crate::array::from_fn(|a| p.get(a).copied().flatten());
         match self {
             Self::One(b) => padded(&b.period),
             Self::Two(b) => padded(&b.period),
@@ -196,7 +196,7 @@ impl<const D: usize> LinearBody<D> {
 
     /// From `i` to `j`: the nearest image where axes are periodic (length).
     pub fn xi(&self, i: usize, j: usize) -> [f64; D] {
-        std::array::from_fn(|a| {
+        crate::array::from_fn(|a| {
             let x = self.position[j][a] - self.position[i][a];
             self.period[a].map_or(x, |p| x - p * (x / p).round())
         })

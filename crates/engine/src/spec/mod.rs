@@ -124,7 +124,7 @@ impl Spec {
     /// # Panics
     /// If D is not 1, 2 or 3, or its lists do not belong to each other ([`LinearBody::check`]).
     pub fn of_linear<const D: usize>(body: &LinearBody<D>) -> Spec {
-        let pad = |x: &[f64; D]| std::array::from_fn(|a| if a < D { x[a] } else { 0.0 });
+        let pad = |x: &[f64; D]| crate::array::from_fn(|a| if a < D { x[a] } else { 0.0 });
         let cloud = Cloud {
             position: body.position.iter().map(pad).collect(),
             volume: body.volume.clone(),

@@ -126,7 +126,7 @@ impl<'a> Archive<'a> {
     /// An array as long as the model says.
     pub fn all<T: Word>(&mut self, name: &str, x: &mut [T]) {
         self.try_to(|archive| {
-            match archive.header::<T>(name, x.len())? {
+            match archive.header(name, x.len(), T::BYTES)? {
                 None => return archive.put(x),
                 Some(length) if length == x.len() as u64 => {}
                 Some(length) => {
@@ -149,7 +149,7 @@ impl<'a> Archive<'a> {
     /// An array as long as the state says.
     pub fn list<T: Word>(&mut self, name: &str, x: &mut Vec<T>) {
         self.try_to(|archive| {
-            let Some(length) = archive.header::<T>(name, x.len())? else {
+            let Some(length) = archive.header(name, x.len(), T::BYTES)? else {
                 return archive.put(x);
             };
             x.clear();
@@ -284,14 +284,19 @@ impl<'a> Archive<'a> {
     }
 
     /// Name, bytes of an element, and number of elements: written, or compared with what stands there, whose number is answered.
-    fn header<T: Word>(&mut self, name: &str, length: usize) -> Result<Option<u64>, StateError> {
+    fn header(
+        &mut self,
+        name: &str,
+        length: usize,
+        each: usize,
+    ) -> Result<Option<u64>, StateError> {
         let name = format!("{}{name}", self.path);
         assert!(name.len() <= NAME, "{name}: names are at most {NAME} bytes");
         match &mut self.way {
             Way::Save(to) => {
                 let mut head = vec![name.len() as u8];
                 head.extend_from_slice(name.as_bytes());
-                head.extend_from_slice(&(T::BYTES as u32).to_le_bytes());
+                head.extend_from_slice(&(each as u32).to_le_bytes());
                 head.extend_from_slice(&(length as u64).to_le_bytes());
                 to.write_all(&head).map_err(StateError::Stream)?;
                 Ok(None)
@@ -309,10 +314,10 @@ impl<'a> Archive<'a> {
                     });
                 }
                 let bytes = u32::take(rest);
-                if bytes as usize != T::BYTES {
+                if bytes as usize != each {
                     return Err(StateError::Size {
                         name,
-                        expected: format!("{} bytes for each number", T::BYTES),
+                        expected: format!("{} bytes for each number", each),
                         found: bytes.to_string(),
                     });
                 }

@@ -80,7 +80,7 @@ impl<T: Word, const N: usize> Word for [T; N] {
     }
 
     fn take(from: &[u8]) -> Self {
-        std::array::from_fn(|n| T::take(&from[n * T::BYTES..]))
+        crate::array::from_fn(|n| T::take(&from[n * T::BYTES..]))
     }
 }
 

@@ -65,7 +65,7 @@ pub fn linear_body_touching<const D: usize>(
         .collect();
     let at = |s: u32| {
         let x = body.position(s as usize);
-        std::array::from_fn(|a| x[a])
+        crate::array::from_fn(|a| x[a])
     };
     let per_point =
         |v: &crate::body::Values| body.slots.iter().map(|s| v.at(*s as usize)).collect();

@@ -23,7 +23,7 @@ pub fn solve<const D: usize>(
     let mut r = vec![[0.0; D]; n];
     operator.apply(x, &mut r);
     for (r, b) in r.iter_mut().zip(b) {
-        *r = std::array::from_fn(|a| b[a] - r[a]);
+        *r = crate::array::from_fn(|a| b[a] - r[a]);
     }
     support.mask(&mut r);
     let start = norm(&r);
@@ -90,7 +90,7 @@ impl<const D: usize> Blocks<D> {
 
     fn apply(&self, r: &[[f64; D]], z: &mut [[f64; D]]) {
         for ((z, r), block) in z.iter_mut().zip(r).zip(&self.0) {
-            *z = std::array::from_fn(|a| (0..D).map(|b| block[a][b] * r[b]).sum());
+            *z = crate::array::from_fn(|a| (0..D).map(|b| block[a][b] * r[b]).sum());
         }
     }
 }
@@ -99,7 +99,7 @@ impl<const D: usize> Blocks<D> {
 fn inverse<const D: usize>(mut a: [[f64; D]; D]) -> Option<[[f64; D]; D]> {
     let largest = a.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     let mut inverse: [[f64; D]; D] =
-        std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
+        crate::array::from_fn(|i| crate::array::from_fn(|j| f64::from(i == j)));
     for k in 0..D {
         let pivot = a[k][k];
         if !(pivot > 1e-14 * largest) {

@@ -165,7 +165,7 @@ impl<const D: usize> Direct<D> {
             let mut r: Vec<[f64; D]> = b
                 .iter()
                 .zip(&product)
-                .map(|(b, p)| std::array::from_fn(|a| b[a] - p[a]))
+                .map(|(b, p)| crate::array::from_fn(|a| b[a] - p[a]))
                 .collect();
             support.mask(&mut r);
             r

@@ -110,7 +110,7 @@ impl<const D: usize> Masses<D> {
             false => {
                 let mut left = self.times(a);
                 for (left, f) in left.iter_mut().zip(force) {
-                    *left = std::array::from_fn(|k| f[k] - left[k]);
+                    *left = crate::array::from_fn(|k| f[k] - left[k]);
                 }
                 factors.solve(&left)
             }

@@ -90,7 +90,7 @@ pub fn lowest<const D: usize>(
 fn all_in_motion<const D: usize>(points: usize) -> Vec<[f64; D]> {
     (0..points)
         .map(|i| {
-            std::array::from_fn(|a| {
+            crate::array::from_fn(|a| {
                 ((i * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
             })
         })

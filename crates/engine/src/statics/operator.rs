@@ -27,7 +27,8 @@ pub fn asymmetry<const D: usize>(
 ) -> f64 {
     let n = operator.points();
     let vector = |step: f64| {
-        let at = |i: usize| std::array::from_fn(|a| ((i * D + a + 1) as f64 * step).fract() - 0.5);
+        let at =
+            |i: usize| crate::array::from_fn(|a| ((i * D + a + 1) as f64 * step).fract() - 0.5);
         let mut x: Vec<[f64; D]> = (0..n).map(at).collect();
         support.mask(&mut x);
         x
@@ -157,14 +158,7 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
             return;
         }
         let small = SMALL * body.spacing / peak;
-        for (x, &s) in x.iter().zip(&body.slots) {
-            for a in 0..D {
-                self.u[a][s as usize] = small * x[a];
-            }
-        }
-        for c in &mut self.u {
-            body.fill_images(c);
-        }
+        body.set_vectors(&mut self.u, |id, _| x[id].map(|c| small * c));
         self.interaction.forces(
             body,
             view(&self.u),
@@ -175,7 +169,7 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
         for (y, &s) in y.iter_mut().zip(&body.slots) {
             let s = s as usize;
             let scale = -body.volume.at(s) / small;
-            *y = std::array::from_fn(|a| scale * self.f[a][s]);
+            *y = crate::array::from_fn(|a| scale * self.f[a][s]);
         }
     }
 

@@ -217,7 +217,7 @@ impl<const D: usize> Rigid<D> {
     fn of(position: &[[f64; D]], members: &[usize], period: &[Option<f64>; D]) -> Self {
         let n = members.len() as f64;
         let center: [f64; D] =
-            std::array::from_fn(|a| members.iter().map(|i| position[*i][a]).sum::<f64>() / n);
+            crate::array::from_fn(|a| members.iter().map(|i| position[*i][a]).sum::<f64>() / n);
         let arm = |i: usize, a: usize| position[i][a] - center[a];
         let size = members
             .iter()
@@ -275,7 +275,7 @@ mod tests {
     ) -> Vec<&'static str> {
         // corners of a cube (square, segment)
         let position: Vec<[f64; D]> = (0..1 << D)
-            .map(|i| std::array::from_fn(|a| f64::from(i >> a & 1)))
+            .map(|i| crate::array::from_fn(|a| f64::from(i >> a & 1)))
             .collect();
         let mut support = Support::<D>::none(position.len());
         for (i, a) in held {
@@ -383,7 +383,7 @@ mod tests {
         fn held<const D: usize>(parts: usize, period: [Option<f64>; D]) -> usize {
             let per = 1usize << D;
             let position: Vec<[f64; D]> = (0..parts * per)
-                .map(|i| std::array::from_fn(|a| (i >> a & 1) as f64 + 3.0 * (i / per) as f64))
+                .map(|i| crate::array::from_fn(|a| (i >> a & 1) as f64 + 3.0 * (i / per) as f64))
                 .collect();
             let part: Vec<u32> = (0..parts * per).map(|i| (i / per) as u32).collect();
             let support = Support::just_enough(&position, &part, &period);

@@ -7,7 +7,7 @@ pub type Block<const D: usize> = [[f64; D]; D];
 
 /// The same number along every axis.
 pub fn diagonal<const D: usize>(x: f64) -> Block<D> {
-    std::array::from_fn(|a| std::array::from_fn(|b| if a == b { x } else { 0.0 }))
+    crate::array::from_fn(|a| crate::array::from_fn(|b| if a == b { x } else { 0.0 }))
 }
 
 /// Points per partial sum.

@@ -173,7 +173,7 @@ pub fn displace<const D: usize>(body: &Body<D>, amplitude: f64, seed: u64) -> Fi
             c[s as usize] = amplitude * random.next();
         }
     }
-    u.iter_mut().for_each(|c| body.fill_images(c));
+    body.exchange().fill_field(&mut u);
     u
 }
 

@@ -52,8 +52,8 @@ impl<const D: usize> Indenter<D> {
     fn sliding(&self, v: &Field<D>, touched: &Touched<D>) -> [f64; D] {
         let Near { arm, normal, .. } = &touched.near;
         let (of, i) = (self.rigid.velocity_at(&full(arm)), touched.slot as usize);
-        let relative = std::array::from_fn(|a| of[a] - v[a][i]);
-        let point: [f64; D] = std::array::from_fn(|a| v[a][i]);
+        let relative = crate::array::from_fn(|a| of[a] - v[a][i]);
+        let point: [f64; D] = crate::array::from_fn(|a| v[a][i]);
         let speeds = length(&self.rigid.velocity_at(&[0.0; 3])) + length(&point);
         sliding(normal, &relative, speeds)
     }
@@ -133,7 +133,7 @@ impl<const D: usize> Indenter<D> {
     fn way_from(&self, from: &Departure<D>, u: &Field<D>, touched: &Touched<D>) -> [f64; D] {
         let (arm, i) = (&touched.near.arm, touched.slot as usize);
         let way = self.rigid.way_since(&from.rigid, &full(arm));
-        std::array::from_fn(|a| way[a] - (u[a][i] - from.u[a][i]))
+        crate::array::from_fn(|a| way[a] - (u[a][i] - from.u[a][i]))
     }
 
     /// Half of the work of friction within a step, with the velocities of its middle.

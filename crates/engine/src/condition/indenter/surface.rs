@@ -61,7 +61,7 @@ impl Form {
         let off = (D..3).filter(|a| self != Form::Cylinder(*a));
         let aside: f64 = off.map(|a| center[a] * center[a]).sum();
         let x = body.position(i);
-        let d: [f64; D] = std::array::from_fn(|a| {
+        let d: [f64; D] = crate::array::from_fn(|a| {
             let d = x[a] + u[a][i] - center[a];
             match (self, body.period[a]) {
                 (Form::Sphere | Form::Cylinder(_), Some(p)) => d - p * (d / p).round(),
@@ -83,7 +83,7 @@ impl Form {
             Push::Out => stiffness * gap * gap,
             Push::In => -stiffness * gap * gap,
         };
-        std::array::from_fn(|a| match self {
+        crate::array::from_fn(|a| match self {
             Form::Sphere => strength / r * arm[a],
             Form::Cylinder(axis) if a == axis => 0.0,
             Form::Cylinder(_) => strength / r * arm[a],
@@ -136,10 +136,10 @@ impl Surface {
                     Form::Sphere | Form::Cylinder(_) if r == 0.0 => [0.0; D],
                     Form::Sphere => arm.map(|c| c / r),
                     Form::Cylinder(axis) => {
-                        std::array::from_fn(|a| if a == *axis { 0.0 } else { arm[a] / r })
+                        crate::array::from_fn(|a| if a == *axis { 0.0 } else { arm[a] / r })
                     }
                     Form::Plane(axis) => {
-                        std::array::from_fn(|a| if a == *axis { 1.0 } else { 0.0 })
+                        crate::array::from_fn(|a| if a == *axis { 1.0 } else { 0.0 })
                     }
                 };
                 Some(Near {
@@ -155,7 +155,7 @@ impl Surface {
             Surface::Turned(shape) => {
                 let x = body.position(i);
                 let plane = matches!(shape, RigidShape::Plane { .. });
-                let arm: [f64; D] = std::array::from_fn(|a| {
+                let arm: [f64; D] = crate::array::from_fn(|a| {
                     let d = x[a] + u[a][i] - center[a];
                     match body.period[a] {
                         Some(p) if !plane => d - p * (d / p).round(),
@@ -173,7 +173,7 @@ impl Surface {
                     arm,
                     r: 1.0,
                     gap,
-                    normal: std::array::from_fn(|a| normal[a]),
+                    normal: crate::array::from_fn(|a| normal[a]),
                 })
             }
         }

@@ -30,14 +30,14 @@ impl<const D: usize> Rigid<D> {
         free.turned = start.turned;
         if free.moments.iter().any(|i| i.is_finite()) {
             let spun = |late: f64, all: f64| -> Point {
-                std::array::from_fn(|a| start.spin[a] + part(3 + a, late, all))
+                crate::array::from_fn(|a| start.spin[a] + part(3 + a, late, all))
             };
             free.spin = spun(beta, 0.5);
             free.turn(step);
             free.spin = spun(gamma, 1.0);
         }
         self.look();
-        let way = length(&std::array::from_fn(|a| self.center[a] - center[a]));
+        let way = length(&crate::array::from_fn(|a| self.center[a] - center[a]));
         let both = self.axes.as_flattened().iter().zip(axes.as_flattened());
         let square: f64 = both.map(|(x, y)| (x - y) * (x - y)).sum();
         // 2√2 sin(θ/2) is what axes differ by

@@ -4,7 +4,7 @@
 //! into every loop, eight times each, they would be the larger part of the program and of the time to compile it.
 
 use super::{Lane, Piece, TILE};
-use std::array::from_fn;
+use crate::array::from_fn;
 use std::ops::{Add, Mul, Sub};
 
 #[derive(Clone, Copy)]

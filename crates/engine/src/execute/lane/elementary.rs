@@ -150,6 +150,7 @@ mod tests {
 
     impl Kernel for Both {
         type Out = Vec<u64>;
+        type Home = Self;
         #[inline(always)]
         fn block<L: Lane>(&self, _: usize) -> Vec<u64> {
             let mut bits = vec![];

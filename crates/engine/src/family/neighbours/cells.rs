@@ -40,7 +40,7 @@ impl<const D: usize> Cells<D> {
         });
         // a little wider than the reach, for the round-off of points far out; nothing is gained by cells without points
         let edge = reach.max(body.spacing) * (1.0 + 1e-6);
-        let mut count: [usize; D] = std::array::from_fn(|a| match body.period[a] {
+        let mut count: [usize; D] = crate::array::from_fn(|a| match body.period[a] {
             Some(p) => ((p / edge) as usize).max(1),
             None => ((high[a] - low[a]) / edge).min(1e9) as usize + 3,
         });
@@ -55,10 +55,10 @@ impl<const D: usize> Cells<D> {
         Cells {
             reach,
             count,
-            length: std::array::from_fn(|a| body.period[a].unwrap_or(count[a] as f64 * edge)),
+            length: crate::array::from_fn(|a| body.period[a].unwrap_or(count[a] as f64 * edge)),
             start: vec![0; count.iter().product::<usize>() + 1],
             order: vec![0; body.points()],
-            place: std::array::from_fn(|_| vec![0; body.points() + LANES]),
+            place: crate::array::from_fn(|_| vec![0; body.points() + LANES]),
         }
     }
 
@@ -81,7 +81,7 @@ impl<const D: usize> Cells<D> {
     pub fn sort(&mut self, body: &Body<D>, u: FieldView<D>) {
         let inverse = self.length.map(|l| FULL / l);
         let place = |slot: usize, x: [f64; D]| -> [u32; D] {
-            std::array::from_fn(|a| wind((x[a] + u[a][slot]) * inverse[a]))
+            crate::array::from_fn(|a| wind((x[a] + u[a][slot]) * inverse[a]))
         };
         let (count, units) = (self.count, self.units());
         let cell = |p: &[u32; D]| {
@@ -115,7 +115,7 @@ impl<const D: usize> Cells<D> {
     /// Every pair of points that are closer than the reach on the rings, once, except between cells that `skip`.
     pub fn each_near(&self, skip: impl Fn(usize, usize) -> bool, mut visit: impl FnMut(u32, u32)) {
         let units = self.units();
-        let unit: [f64; D] = std::array::from_fn(|a| self.length[a] / units[a] as f64);
+        let unit: [f64; D] = crate::array::from_fn(|a| self.length[a] / units[a] as f64);
         // each coordinate is cut off to its unit, so that differences are less than one unit off; squares are relative to
         // the reach, in single precision
         let off = unit.iter().map(|u| u * u).sum::<f64>().sqrt();
@@ -132,7 +132,7 @@ impl<const D: usize> Cells<D> {
                         return;
                     }
                     for p in own.clone() {
-                        let x: [u8; D] = std::array::from_fn(|a| self.place[a][p]);
+                        let x: [u8; D] = crate::array::from_fn(|a| self.place[a][p]);
                         let from = if other == cell { p + 1 } else { theirs.start };
                         for q in (from..theirs.end).step_by(LANES) {
                             let mut near = self.near(x, q, unit, limit);
@@ -225,7 +225,7 @@ fn each_of<const D: usize>(body: &Body<D>, start: usize, visit: &mut impl FnMut(
             for &slot in &body.slots {
                 visit(
                     start + slot as usize,
-                    std::array::from_fn(|a| x[a][slot as usize]),
+                    crate::array::from_fn(|a| x[a][slot as usize]),
                 );
             }
             return;

@@ -10,6 +10,24 @@
 //! up its own last lines. Mixed, atoms stand and are listed as if they were of one kind, and their fourth number says which.
 //!
 //! Families of the reference are the same list, made once and held.
+//!
+//! # The order of sums
+//!
+//! An atom's neighbours are added in the order of its lines. That is a function of where atoms were when the list was made, and of ids alone, not of threads,
+//! lists before it, or how atoms lie in memory: neighbours come by cells (x first, then y, then z), in a cell the atoms of the box by id, then images by cell and
+//! id of what they copy; kind by kind where lines are. Tiles stand in the same order, and totals are added block by block.
+//!
+//! It is not the order of the cells of *now*. While the list holds, atoms pass from cell to cell; to sort every line again in every step would cost what the list
+//! saves. Nor would an order by ids alone free sums from the last list: which image of an atom stands in the box (`base`), and so how distances are
+//! rounded, is of then, too. So displacements of then are state: a checkpoint has them in place of the list, which is made of them again. Of a
+//! list that is held the bonds that are left are state.
+//!
+//! Atoms on many ranks have the same order if
+//! - all make their lists in the same step: the farthest of all atoms decides, not that of a rank;
+//! - cells are those of the whole body: the extent along free axes, and the number of atoms, are of all;
+//! - atoms that come from other ranks are numbered among the own ones, by cell and id, before images: what is an image says the box, not who keeps the atom;
+//! - fourth numbers are copied where [`NearList::copy_to_ghosts`] is called, between the passes of a potential, from those who computed them;
+//! - a rank has whole blocks of tiles, or what its atoms add to totals is added in the order of all tiles ([`Exchange`](crate::body::Exchange)).
 
 mod build;
 mod cells;
@@ -17,7 +35,7 @@ mod ghosts;
 #[cfg(test)]
 mod tests;
 
-use crate::body::{Body, FieldView};
+use crate::body::{Body, FieldView, view};
 use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
@@ -121,6 +139,8 @@ pub struct NearList<const D: usize> {
     base: Vec<[f64; 4]>,
     /// `[own][4]`: positions when the list was made.
     then: Vec<[f64; 4]>,
+    /// `[D][slots]`: displacements then, unless it is held.
+    made_at: [Vec<f64>; D],
     ghosts: Vec<Ghost<D>>,
     /// `[own in whole tiles, ghosts, nowhere][4]`: positions; the fourth number is the user's, or the kind where lines are mixed.
     position: Vec<[f64; 4]>,
@@ -166,6 +186,7 @@ impl<const D: usize> NearList<D> {
             kind: vec![],
             base: vec![],
             then: vec![],
+            made_at: crate::array::from_fn(|_| vec![]),
             ghosts: vec![],
             position: vec![],
             blocks: vec![Block::default(); blocks],
@@ -201,39 +222,21 @@ impl<const D: usize> NearList<D> {
         (self.valid && self.place(u, simd, &mut position)).then_some(position)
     }
 
-    /// The list as it is, since the order of its atoms is that of the places where it was made: of a body with so many slots.
-    pub fn archive(&mut self, slots: usize, archive: &mut Archive<'_>) {
-        archive.list("order", &mut self.order);
-        archive.list("kinds", &mut self.kind);
-        archive.list("base", &mut self.base);
-        archive.list("made_at", &mut self.then);
-        archive.list("ghosts", &mut self.ghosts);
-        archive.list("positions", &mut self.position);
-        archive.parts("blocks", &mut self.blocks);
-        archive.one("valid", &mut self.valid);
-        archive.one("builds", &mut self.builds);
-        if archive.loads() && !self.is_sound(slots) {
-            archive.refuse("list");
+    /// Where atoms were when the list was made, of which it is made again, the same to the last bit; of families of the reference who is left.
+    pub fn archive(&mut self, body: &Body<D>, simd: Simd, archive: &mut Archive<'_>) {
+        if self.held {
+            let all = self.position.len();
+            for block in &mut self.blocks {
+                block.archive_lines(all, archive);
+            }
+        } else {
+            archive.columns("made_at", &mut self.made_at);
+            if archive.loads() {
+                let then = self.made_at.clone();
+                self.build(body, view(&then), simd);
+            }
         }
-    }
-
-    /// Kernels look at nothing again: does everything name what is there?
-    fn is_sound(&self, slots: usize) -> bool {
-        let (own, all) = (self.order.len(), self.position.len());
-        let tiles = |b: usize| own.div_ceil(TILE).saturating_sub(b * BLOCK).min(BLOCK);
-        let mut blocks = self.blocks.iter().enumerate();
-        own.div_ceil(TILE) <= self.blocks.len() * BLOCK
-            && { self.order.iter() }.all(|s| *s == NOBODY || (*s as usize) < slots)
-            && self.base.len() == own
-            && self.then.len() == own
-            && all == self.first_ghost() + self.ghosts.len() + 1
-            && self.ghosts.iter().all(|g| (g.of as usize) < own)
-            && (self.kind.len() == all || self.kind.is_empty() && self.reaches.kinds == 1)
-            && self
-                .kind
-                .iter()
-                .all(|k| usize::from(*k) < self.reaches.kinds)
-            && blocks.all(|(b, block)| block.is_sound(tiles(b), self.groups(), all))
+        archive.all("positions", &mut self.position);
     }
 
     /// Write positions; does the list hold for them?
@@ -360,6 +363,7 @@ impl<const D: usize> NearList<D> {
         self.blocks.iter().map(Block::bytes).sum::<usize>()
             + 32 * (self.base.capacity() + self.then.capacity() + self.position.capacity())
             + 4 * self.order.capacity()
+            + 8 * self.made_at.iter().map(Vec::capacity).sum::<usize>()
             + self.kind.capacity()
             + size_of::<Ghost<D>>() * self.ghosts.capacity()
     }
@@ -386,6 +390,7 @@ struct Place<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Place<'_, D> {
     type Out = f64;
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> f64 {
         let mut far: f64 = 0.0;

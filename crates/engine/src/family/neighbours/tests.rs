@@ -103,7 +103,7 @@ fn a_walk_never_loses_a_pair() {
     }
     let mut random = Random(9);
     let cloud: Vec<[f64; 3]> = (0..300)
-        .map(|_| std::array::from_fn(|_| 0.035 * random.next()))
+        .map(|_| crate::array::from_fn(|_| 0.035 * random.next()))
         .collect();
     let volume = vec![1e-6; cloud.len()];
     for period in [[None; 3], [Some(0.07), None, Some(0.07)], [Some(0.07); 3]] {

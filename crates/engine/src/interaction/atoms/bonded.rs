@@ -173,7 +173,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
             first: &self.first,
             of: &self.of,
             force: &self.force,
-            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
         };
         run_blocks(self.simd, &gather, body.points().div_ceil(BLOCK));
         tally
@@ -234,7 +234,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
             sum.add(&of, &first.pulls, |m, n| second[m][n], 1.0);
             sum.visit(&at[..term.count], &mut |pair| {
                 let ends = [pair.a, pair.b].map(|n| term.slots[n as usize] as usize);
-                let turned = std::array::from_fn(|a| std::array::from_fn(|b| pair.block[b][a]));
+                let turned = crate::array::from_fn(|a| crate::array::from_fn(|b| pair.block[b][a]));
                 for ([i, j], y, block) in [
                     (ends, pair.y, pair.block),
                     ([ends[1], ends[0]], pair.y.map(|y| -y), turned),
@@ -271,7 +271,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
             let mut sorted = *term;
             (sorted.slots[0], sorted.slots[1]) = (i as u32, j as u32);
             let (at, _) = kernel::places(body, view(&rest), &sorted);
-            let xi = std::array::from_fn(|a| at[1][a] - at[0][a]);
+            let xi = crate::array::from_fn(|a| at[1][a] - at[0][a]);
             visit(i, j, xi, BondStatus::Whole);
         }
     }

@@ -238,7 +238,7 @@ impl<const D: usize> Breaking<D> {
     /// ξ of an own atom and a listed one.
     fn xi(&self, own: usize, other: usize) -> [f64; D] {
         let (x, z) = (&self.reference[own], &self.reference[other]);
-        std::array::from_fn(|a| z[a] - x[a])
+        crate::array::from_fn(|a| z[a] - x[a])
     }
 
     /// The place of the same bond from its other end.
@@ -252,7 +252,7 @@ impl<const D: usize> Breaking<D> {
         let near = 1e-12 * size(&xi);
         self.bonds(list.home(other)?).find_map(|(back, n)| {
             let of = self.xi(list.home(other)?, n);
-            let sum: [f64; D] = std::array::from_fn(|a| of[a] + xi[a]);
+            let sum: [f64; D] = crate::array::from_fn(|a| of[a] + xi[a]);
             (list.home(n)? == own && size(&sum) < near).then_some(back)
         })
     }
@@ -449,7 +449,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
             let own = self.own[slot as usize] as usize;
             for (place, other) in self.bonds(own).filter(|(place, _)| !self.is_whole(*place)) {
                 let xi = self.xi(own, other);
-                let eta = std::array::from_fn(|a| position[other][a] - position[own][a] - xi[a]);
+                let eta = crate::array::from_fn(|a| position[other][a] - position[own][a] - xi[a]);
                 let partner = self.inner.list().original(other);
                 let e = history::relative(&xi, eta);
                 if partner.is_some_and(|j| heals(slot as usize, j, e)) {
@@ -492,7 +492,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         self.each_place(body, |i, j, xi, place| {
             let [from, to] = [i, j].map(|slot| {
                 let x = body.position(slot);
-                std::array::from_fn(|a| x[a])
+                crate::array::from_fn(|a| x[a])
             });
             if self.is_whole(place) && crossed(crosses, from, xi, Some(to)) {
                 places.push(place);

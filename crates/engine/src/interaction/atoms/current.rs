@@ -95,7 +95,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
                 let x = at[tile.number * TILE + l];
                 for (n, line) in tile.lines().iter().enumerate() {
                     let z = at[line[l] as usize];
-                    let y: [f64; D] = std::array::from_fn(|a| z[a] - x[a]);
+                    let y: [f64; D] = crate::array::from_fn(|a| z[a] - x[a]);
                     let q: f64 = y.iter().map(|c| c * c).sum();
                     let kind = self.list.kind(line[l] as usize);
                     let Some(potential) = self.potential.of(own, kind) else {
@@ -278,7 +278,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         }
         let kernel = Forces {
             view: self.view(&self.list, self.list.positions().as_ptr()),
-            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             volume: &body.volume,
         };
         run_blocks(self.simd, &kernel, self.list.blocks());
@@ -391,7 +391,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         self.ready(body, u);
         let list = &self.list;
         let sums = self.sums(true, list, list.positions(), Shared::NULL, &body.volume);
-        Some(std::array::from_fn(|n| sums[n + 1]))
+        Some(crate::array::from_fn(|n| sums[n + 1]))
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -403,7 +403,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     }
 
     fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
-        self.list.archive(body.len, archive);
+        self.list.archive(body, self.simd, archive);
     }
 
     fn bytes(&self) -> usize {

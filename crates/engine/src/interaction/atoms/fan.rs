@@ -174,7 +174,7 @@ impl<F: Fan> FanAtoms<F> {
                 let x = at[t * TILE + l];
                 for line in lines {
                     let z = at[line[l] as usize];
-                    let y: [f64; 3] = std::array::from_fn(|a| z[a] - x[a]);
+                    let y: [f64; 3] = crate::array::from_fn(|a| z[a] - x[a]);
                     let square = y.iter().map(|c| c * c).sum::<f64>();
                     let j = self.list.original(line[l] as usize);
                     if let Some(j) = j.filter(|_| square < limit) {
@@ -269,7 +269,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
             }
             None => Shared::NULL,
         };
-        let f: [Shared; 3] = std::array::from_fn(|a| Shared(f[a].as_mut_ptr()));
+        let f: [Shared; 3] = crate::array::from_fn(|a| Shared(f[a].as_mut_ptr()));
         let ends = self.back.ends();
         let (list, volume) = (&self.list, &body.volume);
         self.centres(list, list.positions(), Some(ends), f, energy, volume);
@@ -370,7 +370,8 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
             let kind = u32::from(self.kinds[slot]);
             tangents(&self.fan, kind, near, &mut |pair| {
                 let (i, j) = (of(pair.a), of(pair.b));
-                let transposed = std::array::from_fn(|a| std::array::from_fn(|b| pair.block[b][a]));
+                let transposed =
+                    crate::array::from_fn(|a| crate::array::from_fn(|b| pair.block[b][a]));
                 for (i, j, y, block) in [
                     (i, j, pair.y, pair.block),
                     (j, i, pair.y.map(|y| -y), transposed),
@@ -404,7 +405,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         self.ready(body, u);
         let list = &self.list;
         let sums = self.energies(list, list.positions(), Shared::NULL, &body.volume);
-        Some(std::array::from_fn(|n| sums[n + 1]))
+        Some(crate::array::from_fn(|n| sums[n + 1]))
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -416,7 +417,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     }
 
     fn archive(&mut self, body: &Body<3>, archive: &mut Archive<'_>) {
-        self.list.archive(body.len, archive);
+        self.list.archive(body, self.simd, archive);
         if archive.loads() {
             self.back = Back::of(&self.list, self.simd);
         }

@@ -96,7 +96,7 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
             slope,
         };
         let tally = find_fault(&self.faults, self.simd, &kernel);
-        body.fill_images(&mut self.slope);
+        body.exchange.fill(&mut self.slope);
         tally
     }
 }
@@ -104,10 +104,7 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
 /// Materials of all slots, images too.
 fn kinds_of<const D: usize>(body: &Body<D>) -> Column {
     let mut kind = Column::new(body.len, 0.0, field::line(4));
-    for slot in &body.slots {
-        kind[*slot as usize] = body.material_of(*slot as usize) as f64;
-    }
-    body.fill_images(&mut kind);
+    body.set_points(&mut kind, |slot| body.material_of(slot) as f64);
     kind
 }
 
@@ -145,7 +142,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         }
         let kernel = Forces {
             view: self.view(body, u),
-            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             scale: 2.0 / self.volume,
             next: self.next,
         };
@@ -181,12 +178,11 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         let slope = |s: usize| self.slope.get(s).copied().unwrap_or(0.0);
         let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
         let grid = body.grid();
-        let original = body.originals();
         self.links.each_directed(grid, |i, j, sub, k| {
             let xi = self.links.links[sub][k].xi;
-            let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
+            let y: [f64; D] = crate::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
             let q: f64 = y.iter().map(|c| c * c).sum();
-            let j = original(j);
+            let j = body.exchange.original(j);
             let [own, other] = [i, j].map(|s| self.kind(s));
             let limit = self.limits[own * self.potential.kinds() + other];
             let Some(potential) = self.potential.of(own, other).filter(|_| q < limit) else {

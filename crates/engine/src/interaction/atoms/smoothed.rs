@@ -84,7 +84,7 @@ impl<const D: usize> Smoothed<D> {
         for (moved, (slot, _)) in moved.iter().zip(points) {
             (0..D).for_each(|a| of_atoms[a][*slot as usize] = moved[a]);
         }
-        of_atoms.iter_mut().for_each(|c| self.atoms.fill_images(c));
+        self.atoms.exchange.fill_field(&mut of_atoms);
     }
 
     fn carried(&self, u: FieldView<D>) -> Field<D> {
@@ -331,7 +331,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
             for (h, block) in row.into_iter().filter(|(h, _)| *h as usize != g) {
                 let h = h as usize;
                 let xi = between(body, g, h);
-                let y = std::array::from_fn(|a| xi[a] + u[a][h] - u[a][g]);
+                let y = crate::array::from_fn(|a| xi[a] + u[a][h] - u[a][g]);
                 visit(BondTangent::direct(g, h, y, block));
             }
         }
@@ -393,7 +393,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         let (atoms, points) = (&self.atoms, &self.carried.points);
         let at = |slot: usize| -> [f64; D] {
             let x = atoms.position(slot);
-            std::array::from_fn(|a| x[a] + moved[a][slot])
+            crate::array::from_fn(|a| x[a] + moved[a][slot])
         };
         let period = |a: usize| body.period[a];
         // partner, its image, the force and the part of the own state
@@ -404,7 +404,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         for bond in &bonds {
             let (from, to) = (at(bond.i), at(bond.j));
             // the image of the atom that pulls
-            let off: [i32; 3] = std::array::from_fn(|a| match a < D {
+            let off: [i32; 3] = crate::array::from_fn(|a| match a < D {
                 true => {
                     let whole = |p: f64| ((bond.y[a] + from[a] - to[a]) / p).round() as i32;
                     period(a).map_or(0, whole)
@@ -418,7 +418,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
                 (bond.i, [0; 3], [0.0; D], state.map(|c| -c)),
             ] {
                 for seen in &points[place[end] as usize].1 {
-                    let image = std::array::from_fn(|a| off[a] + i32::from(seen.image[a]));
+                    let image = crate::array::from_fn(|a| off[a] + i32::from(seen.image[a]));
                     let sum = pulls.entry((seen.node, image)).or_insert([[0.0; D]; 2]);
                     for a in 0..D {
                         sum[0][a] += seen.weight * force[a];
@@ -433,7 +433,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
                 let g = seen.node as usize;
                 let scale = seen.weight * atoms.volume.at(*slot as usize) / body.volume.at(g);
                 for ((h, image), [force, state]) in pulls {
-                    let image = std::array::from_fn(|a| image[a] - i32::from(seen.image[a]));
+                    let image = crate::array::from_fn(|a| image[a] - i32::from(seen.image[a]));
                     let sum = all[g].entry((*h, image)).or_insert([[0.0; D]; 2]);
                     for a in 0..D {
                         sum[0][a] += scale * force[a];
@@ -444,7 +444,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         }
         let node = |slot: usize| -> [f64; D] {
             let x = body.position(slot);
-            std::array::from_fn(|a| x[a] + u[a][slot])
+            crate::array::from_fn(|a| x[a] + u[a][slot])
         };
         for (g, pulls) in all.into_iter().enumerate() {
             for ((h, image), [force, state]) in pulls {
@@ -456,7 +456,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
                 visit(BondForce {
                     i: g,
                     j: h as usize,
-                    y: std::array::from_fn(|a| {
+                    y: crate::array::from_fn(|a| {
                         to[a] - from[a] + f64::from(image[a]) * period(a).unwrap_or(0.0)
                     }),
                     force,
@@ -495,7 +495,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
 /// From one node to the nearest image of another in the reference.
 fn between<const D: usize>(body: &Body<D>, g: usize, h: usize) -> [f64; D] {
     let (x, y) = (body.position(g), body.position(h));
-    std::array::from_fn(|a| {
+    crate::array::from_fn(|a| {
         let d = y[a] - x[a];
         d - body.period[a].map_or(0.0, |p| p * (d / p).round())
     })

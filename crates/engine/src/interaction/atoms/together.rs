@@ -298,7 +298,8 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
         }
         archive.one("broken", &mut self.broken);
         if let Some(union) = &mut self.union {
-            archive.within("union", |archive| union.list.archive(body.len, archive));
+            let (list, simd) = (&mut union.list, union.simd);
+            archive.within("union", |archive| list.archive(body, simd, archive));
         }
     }
 

@@ -129,7 +129,7 @@ fn each_bond<const D: usize>(
             for (line, others) in family[begin..end].iter().enumerate() {
                 let other = others[lane] as usize;
                 if let Some(j) = list.original(other) {
-                    let xi = std::array::from_fn(|a| at[other][a] - x[a]);
+                    let xi = crate::array::from_fn(|a| at[other][a] - x[a]);
                     visit(*slot as usize, j, xi, (begin + line) * TILE + lane);
                 }
             }
@@ -140,6 +140,6 @@ fn each_bond<const D: usize>(
 /// Do two bonds lead to the same image?
 fn alike<const D: usize>(a: &[f64; D], b: &[f64; D]) -> bool {
     let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
-    let off: [f64; D] = std::array::from_fn(|k| a[k] - b[k]);
+    let off: [f64; D] = crate::array::from_fn(|k| a[k] - b[k]);
     square(&off) < 1e-12 * square(a)
 }

@@ -46,6 +46,7 @@ pub struct Test<'a, const D: usize, F> {
 
 impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
     type Out = ();
+    type Home = Self;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
@@ -123,7 +124,7 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                 };
                 let next = match &self.criteria.measure {
                     Measure::Work(limit) => {
-                        let of: [f64; TILE] = std::array::from_fn(|l| limit[material(l)]);
+                        let of: [f64; TILE] = crate::array::from_fn(|l| limit[material(l)]);
                         L::load(of.as_ptr())
                     }
                     Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => {
@@ -214,6 +215,7 @@ pub struct Shortest<'a, const D: usize, F> {
 
 impl<const D: usize, F: Family<D>> Kernel for Shortest<'_, D, F> {
     type Out = [f64; 2];
+    type Home = Self;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
@@ -282,18 +284,12 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             let Some(n) = self.past_of(PLASTIC_STRAIN) else {
                 return;
             };
-            for &slot in &body.slots {
-                let of = limit[body.material_of(slot as usize)];
-                self.damage[slot as usize] = self.past.get(n, slot as usize) / of;
-            }
+            body.set_points(&mut self.damage, |slot| {
+                self.past.get(n, slot) / limit[body.material_of(slot)]
+            });
         } else if let Some(n) = self.law.failure {
-            for &slot in &body.slots {
-                self.damage[slot as usize] = self.past.get(n, slot as usize);
-            }
-        } else {
-            return;
+            body.set_points(&mut self.damage, |slot| self.past.get(n, slot));
         }
-        body.fill_images(&mut self.damage);
     }
 
     /// After integrities have changed.
@@ -301,13 +297,13 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         if self.integrity.is_empty() {
             return;
         }
-        body.fill_images(&mut self.integrity);
+        body.exchange.fill(&mut self.integrity);
         self.degraded = self.integrity.iter().any(|x| *x < 1.0);
     }
 
     pub fn next_critical(&mut self, body: &Body<D>) {
         std::mem::swap(&mut self.critical, &mut self.next);
-        body.fill_images(&mut self.critical);
+        body.exchange.fill(&mut self.critical);
     }
 
     /// How much shorter the shortest whole bond is than in the reference: the most `1 − r²/r0²`, or 0.

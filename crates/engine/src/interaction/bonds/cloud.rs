@@ -2,7 +2,7 @@
 
 use super::family::{Family, Moved, Reference, Slots};
 use super::store::{Layout, Rows};
-use crate::body::Body;
+use crate::body::{Body, Exchange};
 use crate::execute::blocks::Seen;
 use crate::execute::lane::{self, Lane, TILE};
 use crate::family::horizon::HorizonList;
@@ -310,7 +310,7 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         // SAFETY: a number per lane
         unsafe { L::load(all.as_ptr()) }
     }
-    fn fill_images(&self, _: &[(u32, u32)], _: &mut [f64], _: usize) {}
+    fn fill_memory(&self, _: &Exchange, _: &mut [f64], _: usize) {}
 
     fn find(&self, slot: usize) -> Option<(usize, usize)> {
         (slot < self.slots).then(|| {

@@ -209,7 +209,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             }
             let known = history::write_critical(body, &mut self.critical, name, values);
             if known {
-                body.fill_images(&mut self.critical);
+                body.exchange.fill(&mut self.critical);
             }
             return known;
         };

@@ -1,7 +1,7 @@
 //! What a family is to the sweeps of a law: groups of eight points, whose bonds are walked together.
 
 use super::store::Rows;
-use crate::body::{Body, FieldView};
+use crate::body::{Body, Exchange, FieldView};
 use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::{Lane, TILE};
 use crate::law::material::{Kin, Numbers, Partner};
@@ -105,8 +105,8 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
         n: usize,
         count: usize,
     ) -> L;
-    /// Copies what bonds of original points remember to those of their images.
-    fn fill_images(&self, images: &[(u32, u32)], memory: &mut [f64], count: usize);
+    /// Fills what the bonds of copies remember, `count` numbers each.
+    fn fill_memory(&self, exchange: &Exchange, memory: &mut [f64], count: usize);
 
     /// One bond in the reference, whole or not.
     fn plain(&self, group: usize, k: usize, l: usize) -> Reference<f64, D> {
@@ -171,9 +171,9 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
         let Some((group, l)) = self.find(i) else {
             return false;
         };
-        let original = body.originals();
-        (0..self.bonds(group))
-            .any(|k| original(self.ends(group, k).slot(l)) == j && self.is_bond(group, k, l))
+        (0..self.bonds(group)).any(|k| {
+            body.exchange.original(self.ends(group, k).slot(l)) == j && self.is_bond(group, k, l)
+        })
     }
 
     /// Group and place in it of a slot; `None`: no point.

@@ -15,7 +15,6 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         heals: &dyn Fn(usize, usize, f64) -> bool,
         law: &dyn PointLaw<D>,
     ) -> u64 {
-        let original = body.originals();
         let mut mended = vec![];
         for (group, k, l) in self
             .lost(|_| true)
@@ -23,9 +22,9 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         {
             let i = self.family.rows(group).slot(l);
             let end = self.family.ends(group, k).slot(l);
-            let eta = std::array::from_fn(|a| u[a][end] - u[a][i]);
+            let eta = crate::array::from_fn(|a| u[a][end] - u[a][i]);
             let xi = self.family.bond(group, k, l).0;
-            if heals(i, original(end), history::relative(&xi, eta)) {
+            if heals(i, body.exchange.original(end), history::relative(&xi, eta)) {
                 mended.push((self.family.byte(group, k), l));
             }
         }

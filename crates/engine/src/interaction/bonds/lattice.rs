@@ -2,7 +2,7 @@
 
 use super::family::{Family, Moved, Reference, Slots};
 use super::store::{Layout, Rows};
-use crate::body::{Body, Grid};
+use crate::body::{Body, Exchange, Grid};
 use crate::execute::blocks::Seen;
 use crate::execute::lane::{Lane, TILE, prefetch};
 use crate::family::links::Links;
@@ -288,21 +288,15 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
             L::select(L::dead(0xff >> inside), L::load(next), near)
         }
     }
-    fn fill_images(&self, images: &[(u32, u32)], memory: &mut [f64], count: usize) {
-        for &(copy, original) in images {
-            for k in 0..self.width {
-                for n in 0..count {
-                    let [to, from] =
-                        [copy, original].map(|s| self.place_of(s as usize, k, n, count));
-                    memory[to] = memory[from];
-                }
-            }
-        }
+    fn fill_memory(&self, exchange: &Exchange, memory: &mut [f64], count: usize) {
+        // all numbers of a slot, as if they were of its first bond
+        let at = |slot, n| self.place_of(slot, 0, n, count);
+        exchange.fill_numbers(memory, self.width * count, at);
     }
 
     fn joins(&self, _: &Body<D>, i: usize, j: usize) -> bool {
         let ((ci, bi), (cj, bj)) = (self.grid.cell(i), self.grid.cell(j));
-        let cell = std::array::from_fn(|a| cj[a] - ci[a]);
+        let cell = crate::array::from_fn(|a| cj[a] - ci[a]);
         self.pairs.contains(cell, bi, bj)
     }
 

@@ -19,6 +19,7 @@ pub struct Pack<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Pack<'_, D> {
     type Out = ();
+    type Home = Self;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {

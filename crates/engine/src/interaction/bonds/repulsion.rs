@@ -79,7 +79,7 @@ impl<const D: usize> Pushed<'_, D> {
                 F::displacement::<f64>(moved, ends.from(l)),
             )
         };
-        let eta: [f64; D] = std::array::from_fn(|a| uj[a] - u[a]);
+        let eta: [f64; D] = crate::array::from_fn(|a| uj[a] - u[a]);
         let square: f64 = xi.iter().map(|x| x * x).sum();
         let e = relative_square_stretch(eta, xi, 2.0 / square);
         let materials = [i, j].map(|s| self.body.material_of(s));
@@ -91,7 +91,7 @@ impl<const D: usize> Pushed<'_, D> {
         }
         let stiffness = self.repulsion.between(materials, [i, j]) * self.body.volume.at(j);
         Some(Push {
-            y: std::array::from_fn(|a| xi[a] + eta[a]),
+            y: crate::array::from_fn(|a| xi[a] + eta[a]),
             pull: stiffness * (r - d) / r,
             energy: 0.25 * stiffness * (r - d) * (r - d),
         })

@@ -183,7 +183,7 @@ pub fn placed<const D: usize, F: Family<D>>(
             all.set(n, slot, *x);
         }
     }
-    all.fill_images(&body.images);
+    all.fill(&body.exchange);
     Ok(all)
 }
 

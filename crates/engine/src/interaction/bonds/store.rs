@@ -1,5 +1,6 @@
 //! Where numbers of points lie: a column for each, or records of four for gathers.
 
+use crate::body::Exchange;
 use crate::execute::blocks::{Seen, Shared};
 
 /// Columns begin so far apart that a sweep's loads do not compete for the same cache lines (see [`crate::body::field`]).
@@ -105,14 +106,10 @@ impl Store {
         }
     }
 
-    /// Copies `(copy, original)` of all numbers.
-    pub fn fill_images(&mut self, images: &[(u32, u32)]) {
-        for n in 0..self.layout.numbers {
-            for &(copy, original) in images {
-                let x = self.get(n, original as usize);
-                self.set(n, copy as usize, x);
-            }
-        }
+    /// Fills the copies of all numbers.
+    pub fn fill(&mut self, exchange: &Exchange) {
+        let layout = self.layout;
+        exchange.fill_numbers(&mut self.data, layout.numbers, |slot, n| layout.at(n, slot));
     }
 
     pub fn bytes(&self) -> usize {

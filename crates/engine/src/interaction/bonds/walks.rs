@@ -60,10 +60,9 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// [`each_directed`](crate::interaction::Interaction::each_directed)
     pub fn each_directed(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        let original = body.originals();
         for (group, k, l) in self.directed() {
             let i = self.family.rows(group).slot(l);
-            let j = original(self.family.ends(group, k).slot(l));
+            let j = body.exchange.original(self.family.ends(group, k).slot(l));
             visit(i, j, self.family.bond(group, k, l).0);
         }
     }
@@ -92,11 +91,10 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         body: &Body<D>,
         visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
     ) {
-        let original = body.originals();
         for (group, k, l) in bonds {
             let i = self.family.rows(group).slot(l);
             let end = self.family.ends(group, k).slot(l);
-            let j = original(end);
+            let j = body.exchange.original(end);
             // a bond between a point and its own image counts from one side only
             if i < j || (i == j && end > i) {
                 let status = BondStatus::of(self.is_whole(group, k, l));
@@ -117,11 +115,10 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         torn: impl Fn(usize) -> bool,
         visit: &mut dyn FnMut(usize, usize, [f64; D]),
     ) {
-        let original = body.originals();
         for (group, k, l) in self.lost(torn) {
             let i = self.family.rows(group).slot(l);
             let end = self.family.ends(group, k).slot(l);
-            let j = original(end);
+            let j = body.exchange.original(end);
             if i < j || (i == j && end > i) {
                 visit(i, j, self.family.bond(group, k, l).0);
             }
@@ -164,7 +161,6 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// The same with what bonds to a point count for.
     pub fn damage_of(&self, body: &Body<D>, counts: impl Fn(usize) -> f64, out: &mut [f64]) {
-        let original = body.originals();
         out.fill(0.0);
         for (group, l, i) in self.family.points() {
             // most groups have lost nothing
@@ -174,7 +170,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             }
             let [mut family, mut whole] = [0.0; 2];
             for k in (0..bits.len()).filter(|k| self.is_counted(group, *k, l)) {
-                let one = counts(original(self.family.ends(group, k).slot(l)));
+                let one = counts(body.exchange.original(self.family.ends(group, k).slot(l)));
                 family += one;
                 if bits[k] >> l & 1 == 1 {
                     whole += one;
@@ -194,17 +190,16 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         twice: impl Fn(usize, usize) -> bool,
         law: &dyn PointLaw<D>,
     ) -> u64 {
-        let original = body.originals();
         let mut cut = vec![];
         for (group, k, l) in self.counted().filter(|b| self.is_whole(b.0, b.1, b.2)) {
             let (xi, _) = self.family.bond(group, k, l);
             let at = |slot: usize| -> [f64; D] {
                 let x = body.position(slot);
-                std::array::from_fn(|a| x[a])
+                crate::array::from_fn(|a| x[a])
             };
             let from = at(self.family.rows(group).slot(l));
             let end = self.family.ends(group, k).slot(l);
-            let j = original(end);
+            let j = body.exchange.original(end);
             if history::crossed(crosses, from, xi, twice(end, j).then(|| at(j))) {
                 cut.push((self.family.byte(group, k), 1u8 << l));
             }
@@ -265,12 +260,12 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         }
     }
 
-    /// What bonds of originals remember, to those of their images.
+    /// What bonds of originals remember, to those of their copies.
     pub fn fill_memory(&mut self, body: &Body<D>) {
         let count = self.law.memory;
-        if count > 0 && !body.images.is_empty() {
+        if count > 0 {
             self.family
-                .fill_images(&body.images, &mut self.memory, count);
+                .fill_memory(&body.exchange, &mut self.memory, count);
         }
     }
 }

@@ -12,10 +12,10 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     /// Points in whose reference family is a crack, with the least damage that is one to each material.
     fn near_cracks(&self, body: &Body<D>) -> Vec<bool> {
         let mut of = vec![[0.0f64; 2]; body.len];
-        let original = body.originals();
         for (group, k, l) in self.pairs() {
             let i = self.family.rows(group).slot(l);
-            let volume = body.volume.at(original(self.family.ends(group, k).slot(l)));
+            let j = body.exchange.original(self.family.ends(group, k).slot(l));
+            let volume = body.volume.at(j);
             of[i][0] += volume;
             if !self.is_whole(group, k, l) {
                 of[i][1] += volume;
@@ -30,7 +30,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         let cracked = near.clone();
         for (group, k, l) in self.pairs() {
             let i = self.family.rows(group).slot(l);
-            let j = original(self.family.ends(group, k).slot(l));
+            let j = body.exchange.original(self.family.ends(group, k).slot(l));
             near[i] = near[i] || cracked[j];
         }
         near
@@ -43,12 +43,11 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         }
         let mut all = vec![];
         let near = self.near_cracks(body);
-        let original = body.originals();
         for (group, k, l) in self.pairs().filter(|b| self.is_whole(b.0, b.1, b.2)) {
             let [i, end] = [self.family.rows(group), self.family.ends(group, k)].map(|s| s.slot(l));
-            let j = original(end);
+            let j = body.exchange.original(end);
             let r = self.family.plain(group, k, l);
-            let mut eta: [f64; D] = std::array::from_fn(|a| u[a][end] - u[a][i]);
+            let mut eta: [f64; D] = crate::array::from_fn(|a| u[a][end] - u[a][i]);
             if !self.expansion.is_empty() {
                 let strain = 0.5 * (self.expansion[i] + self.expansion[end]);
                 for a in 0..D {

@@ -53,7 +53,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
                 k,
                 BondFactors::ONE,
                 xi,
-                std::array::from_fn(|a| u[a][j] - u[a][i]),
+                crate::array::from_fn(|a| u[a][j] - u[a][i]),
                 fields,
             );
             if view.paired && W::SHARES {

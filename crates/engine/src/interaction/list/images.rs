@@ -36,8 +36,8 @@ impl Images {
             let x = |slot: usize| &family.reference[4 * slot..][..4];
             let (xi, _) = view.constant(i, j);
             // periods from j to the image that i sees
-            let shift: [f64; D] = std::array::from_fn(|a| xi[a] - (x(j)[a] - x(i)[a]));
-            let turns = std::array::from_fn(|a| (shift[a] * family.inv_period[a]).round() as i64);
+            let shift: [f64; D] = crate::array::from_fn(|a| xi[a] - (x(j)[a] - x(i)[a]));
+            let turns = crate::array::from_fn(|a| (shift[a] * family.inv_period[a]).round() as i64);
             if turns == [0; D] {
                 return;
             }

@@ -329,7 +329,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         } else {
             // SAFETY: rows are slots, one per lane
             let q: [f64; TILE] =
-                std::array::from_fn(|l| unsafe { self.pressure[*rows.add(l) as usize] });
+                crate::array::from_fn(|l| unsafe { self.pressure[*rows.add(l) as usize] });
             // SAFETY: a number per lane
             unsafe { L::load(q.as_ptr()) }
         }

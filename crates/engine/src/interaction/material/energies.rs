@@ -25,6 +25,7 @@ pub struct Energies<'a, const D: usize, F> {
 
 impl<const D: usize, F: Family<D>> Kernel for Energies<'_, D, F> {
     type Out = [f64; 2];
+    type Home = Self;
     const SELDOM: bool = true;
 
     #[inline(always)]

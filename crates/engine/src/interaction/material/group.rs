@@ -72,6 +72,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> GroupEnergy<'_, D, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for GroupEnergy<'_, D, F, M> {
     type Out = [f64; TILE];
+    type Home = M;
     const SELDOM: bool = true;
 
     #[inline(always)]
@@ -137,6 +138,7 @@ pub struct GroupForces<'a, const D: usize, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for GroupForces<'_, D, F, M> {
     type Out = [f64; TILE];
+    type Home = M;
     const SELDOM: bool = true;
 
     #[inline(always)]

@@ -15,7 +15,7 @@ use crate::interaction::bonds::repulsion::Pushed;
 use crate::interaction::bonds::state::Blocks;
 use crate::interaction::bonds::store::OwnRows;
 use crate::interaction::bonds::view::BondView;
-use crate::law::material::Material;
+use crate::law::material::{Material, Numbers};
 
 /// What bonds need of a law: one call for each sweep, or for each group where sweeps are rare. Groups are those of the family of the bonds.
 pub trait LawSweeps<const D: usize, F>: PlainLaw<D> + LawSlopes<D> {
@@ -86,6 +86,11 @@ impl<M> Compiled<M> {
     }
 }
 
+/// Numbers that a point and a bond of the law remember.
+const fn numbers<const D: usize, M: Material<D>>() -> usize {
+    <M::Past<f64> as Numbers<f64>>::COUNT + <M::Memory<f64> as Numbers<f64>>::COUNT
+}
+
 impl<const D: usize, F: Family<D>, M: Material<D>> LawSweeps<D, F> for Compiled<M> {
     fn sums(&self, blocks: &Blocks, view: BondView<D, F>, pass: usize, out: OwnRows, only: &[u8]) {
         let view = self.sees(view);
@@ -116,6 +121,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> LawSweeps<D, F> for Compiled<
         volume: &Values,
         only: &[u8],
     ) -> Tally {
+        let nothing = const { numbers::<D, M>() == 0 };
+        if nothing {
+            return Tally::default();
+        }
         blocks.tally(&Remember {
             view: self.sees(view),
             past,

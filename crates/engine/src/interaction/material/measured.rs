@@ -34,6 +34,7 @@ pub struct Work<'a, const D: usize, F> {
 
 impl<const D: usize, F: Family<D>> Kernel for Work<'_, D, F> {
     type Out = ();
+    type Home = Self;
     const SELDOM: bool = true;
 
     #[inline(always)]
@@ -85,6 +86,7 @@ pub struct Limits<'a, const D: usize> {
 
 impl<const D: usize, F: Family<D>> Kernel for VonMises<'_, D, F> {
     type Out = ();
+    type Home = Self;
     const SELDOM: bool = true;
 
     #[inline(always)]
@@ -117,7 +119,7 @@ impl<const D: usize, F: Family<D>> Kernel for VonMises<'_, D, F> {
                     }
                 }
                 let per = |of: &dyn Fn(usize) -> f64| -> [f64; TILE] {
-                    std::array::from_fn(|l| of(self.limits.body.material_of(at.rows.slot(l))))
+                    crate::array::from_fn(|l| of(self.limits.body.material_of(at.rows.slot(l))))
                 };
                 if D == 2 && !self.limits.across.is_empty() {
                     let across = if self.says_across {

@@ -16,12 +16,13 @@ mod tear;
 mod view;
 mod watch;
 
-use super::bonds::BondState;
 use super::bonds::family::Family;
 use super::bonds::law::LawProperties;
 use super::bonds::state::{BondParts, placed};
 use super::bonds::store::Store;
+use super::bonds::{BondState, CloudFamily, LatticeFamily};
 use crate::law::material::{Material, Numbers};
+use crate::space::Point;
 use law::LawSweeps;
 use plain::Compiled;
 
@@ -31,24 +32,86 @@ pub struct MaterialInteraction<const D: usize, F> {
     law: Box<dyn LawSweeps<D, F>>,
 }
 
+/// A law that is not yet on a family.
+pub trait AnyLaw<const D: usize>: Sync {
+    fn properties(&self) -> LawProperties<D>;
+    /// [`Material::OF_FAMILY`]
+    fn of_family(&self) -> bool;
+    /// [`Material::OF_BONDS`]
+    fn of_bonds(&self) -> bool;
+    /// Are its constants those of places?
+    fn is_placed(&self) -> bool;
+
+    /// Constants at a place, number by number.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn constants_at(&self, material: usize, place: &Point, out: &mut [f64]) -> Result<(), String>;
+
+    fn on_lattice(self: Box<Self>) -> Box<dyn LawSweeps<D, LatticeFamily<D>>>;
+
+    fn on_cloud(self: Box<Self>) -> Box<dyn LawSweeps<D, CloudFamily<D>>>;
+}
+
+/// What bonds need of a law.
+pub fn compiled<const D: usize, M: Material<D>>(law: M) -> Box<dyn AnyLaw<D>> {
+    Box::new(Compiled(law))
+}
+
+impl<const D: usize, M: Material<D>> AnyLaw<D> for Compiled<M> {
+    fn properties(&self) -> LawProperties<D> {
+        LawProperties::of(&self.0)
+    }
+
+    fn of_family(&self) -> bool {
+        M::OF_FAMILY
+    }
+
+    fn of_bonds(&self) -> bool {
+        M::OF_BONDS
+    }
+
+    fn is_placed(&self) -> bool {
+        M::PLACED && self.0.varies()
+    }
+
+    fn constants_at(&self, material: usize, place: &Point, out: &mut [f64]) -> Result<(), String> {
+        let constants = self.0.constants_at(material, place)?;
+        for (n, x) in out.iter_mut().enumerate() {
+            *x = constants.get(n);
+        }
+        Ok(())
+    }
+
+    fn on_lattice(self: Box<Self>) -> Box<dyn LawSweeps<D, LatticeFamily<D>>> {
+        self
+    }
+
+    fn on_cloud(self: Box<Self>) -> Box<dyn LawSweeps<D, CloudFamily<D>>> {
+        self
+    }
+}
+
 impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
+    /// The law is put on the family by `on`.
+    ///
     /// # Errors
     /// The slot whose place has no constants, and why.
-    pub fn new<M: Material<D>>(parts: BondParts<D, F>, law: M) -> Result<Self, (usize, String)> {
-        let of = LawProperties::of(&law);
-        let placed = match M::PLACED && law.varies() {
+    pub fn new(
+        parts: BondParts<D, F>,
+        law: Box<dyn AnyLaw<D>>,
+        on: fn(Box<dyn AnyLaw<D>>) -> Box<dyn LawSweeps<D, F>>,
+    ) -> Result<Self, (usize, String)> {
+        let of = law.properties();
+        let placed = match law.is_placed() {
             false => Store::zeros(parts.family.layout(0)),
             true => placed(&parts.family, parts.body, of.constants, &|m, place, out| {
-                let constants = law.constants_at(m, place)?;
-                for (n, x) in out.iter_mut().enumerate() {
-                    *x = constants.get(n);
-                }
-                Ok(())
+                law.constants_at(m, place, out)
             })?,
         };
         Ok(MaterialInteraction {
             bonds: BondState::new(parts, of, placed),
-            law: Box::new(Compiled(law)),
+            law: on(law),
         })
     }
 }

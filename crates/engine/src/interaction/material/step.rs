@@ -124,7 +124,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             let mut view = self.bonds.view(u, room);
             view.point = out.seen();
             self.law.sums(&self.bonds.blocks, view, pass, out, only);
-            self.bonds.point.fill_images(&body.images);
+            self.bonds.point.fill(&body.exchange);
         }
     }
 
@@ -345,7 +345,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         }
         let out = Shared(self.bonds.damage.as_mut_ptr());
         if self.mises(body, u, room, out) {
-            body.fill_images(&mut self.bonds.damage);
+            body.exchange.fill(&mut self.bonds.damage);
         }
     }
 

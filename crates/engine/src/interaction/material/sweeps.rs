@@ -21,6 +21,7 @@ pub struct Sums<'a, const D: usize, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> {
     type Out = ();
+    type Home = M;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
@@ -53,6 +54,7 @@ pub struct Forces<'a, const D: usize, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Forces<'_, D, F, M> {
     type Out = ();
+    type Home = M;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
@@ -207,6 +209,7 @@ pub struct Remember<'a, const D: usize, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F, M> {
     type Out = Tally;
+    type Home = M;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Tally {

@@ -41,7 +41,7 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
         let slot = family.rows(group).slot(l);
         let bent = |(k, xi, omega, weight): (usize, [f64; D], f64, f64)| {
             let end = family.ends(group, k).slot(l);
-            let moved: [f64; D] = std::array::from_fn(|a| u[a][end] - u[a][slot]);
+            let moved: [f64; D] = crate::array::from_fn(|a| u[a][end] - u[a][slot]);
             let of = |s: usize| bonds.expansion.get(s).copied().unwrap_or(0.0);
             let strain = 0.5 * (of(slot) + of(end));
             let per_length = 1.0 / (1.0 + strain);
@@ -49,7 +49,7 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
                 k,
                 end,
                 xi,
-                eta: std::array::from_fn(|a| (moved[a] - strain * xi[a]) * per_length),
+                eta: crate::array::from_fn(|a| (moved[a] - strain * xi[a]) * per_length),
                 moved,
                 per_length,
                 omega: [omega, family.plain(group, k, l).omega_back],
@@ -141,7 +141,6 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
     }
 
     pub fn each(&self, body: &Body<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
-        let original = body.originals();
         let mut nodes: Vec<Option<Node<D>>> = (0..body.len).map(|_| None).collect();
         for &s in &body.slots {
             if let Some((group, l)) = self.bonds.family.find(s as usize) {
@@ -152,11 +151,11 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
             let i = s as usize;
             let Some(node) = &nodes[i] else { continue };
             for (b, shares) in node.bonds.iter().zip(&node.shares) {
-                let j = original(b.end);
+                let j = body.exchange.original(b.end);
                 let Some(partner) = &nodes[j] else { continue };
                 let (own, pull, force) = self.answer(node, b, (node, partner), true);
                 let (other, partner_pull, more) = self.answer(node, b, (partner, node), false);
-                let y: [f64; D] = std::array::from_fn(|a| b.xi[a] + b.moved[a]);
+                let y: [f64; D] = crate::array::from_fn(|a| b.xi[a] + b.moved[a]);
                 let square: f64 = y.iter().map(|c| c * c).sum();
                 let along: f64 = (0..D).map(|a| (force[a] + more[a]) * y[a]).sum();
                 let channels = shares.iter().enumerate().map(|(c, share)| Channel {
@@ -165,8 +164,8 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
                 });
                 visit(BondTangent {
                     tension: along / square,
-                    stiffness: std::array::from_fn(|r| {
-                        std::array::from_fn(|c| own[r][c] + other[r][c])
+                    stiffness: crate::array::from_fn(|r| {
+                        crate::array::from_fn(|c| own[r][c] + other[r][c])
                     }),
                     channels: channels.collect(),
                     ..BondTangent::direct(i, j, y, [[0.0; D]; D])

@@ -49,6 +49,7 @@ pub struct Torn<'a, const D: usize> {
 
 impl<const D: usize, F: Family<D>> Kernel for Tear<'_, D, F> {
     type Out = Tally;
+    type Home = Self;
     const SELDOM: bool = true;
 
     #[inline(always)]

@@ -80,7 +80,6 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         let room = self.take_room(u, self.bonds.step);
         self.settle(body, u, &room);
         let law = self.asked(self.bonds.view(u, &room));
-        let original = body.originals();
         let family = &self.bonds.family;
         // force states of both ends, and the own ones where they are told, of groups some of whose points are still to come: ids need not be in their order
         let mut open: HashMap<usize, ([Vec<f64>; 2], usize)> = HashMap::new();
@@ -100,12 +99,12 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             for k in (0..family.bonds(group)).filter(|k| family.is_bond(group, *k, l)) {
                 let of = |all: &[f64], a: usize| all.get((k * D + a) * TILE + l).copied();
                 let states = [&all[0], &all[1]]
-                    .map(|all| std::array::from_fn(|a| of(all, a).unwrap_or(0.0)));
+                    .map(|all| crate::array::from_fn(|a| of(all, a).unwrap_or(0.0)));
                 let bond = self.pull_of(&law.bonds, body, [group, k, l], states);
                 if bond.force != [0.0; D] {
                     visit(BondForce {
                         i: s as usize,
-                        j: original(bond.j),
+                        j: body.exchange.original(bond.j),
                         ..bond
                     });
                 }
@@ -152,7 +151,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         BondForce {
             i: rows.slot(0),
             j: ends.slot(0),
-            y: std::array::from_fn(|a| r.xi[a] + uj[a] - ui[a]),
+            y: crate::array::from_fn(|a| r.xi[a] + uj[a] - ui[a]),
             force,
             own: self.bonds.law.potential.then_some(own),
         }

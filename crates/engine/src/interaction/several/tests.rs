@@ -29,7 +29,9 @@ fn springs(body: &Body<3>, ends: [f64; 2]) -> Bonds {
         start: vec![0, 1, 2],
         partner: vec![1, 0],
         block: ends
-            .map(|c| std::array::from_fn(|a| std::array::from_fn(|b| if a == b { c } else { 0.0 })))
+            .map(|c| {
+                crate::array::from_fn(|a| crate::array::from_fn(|b| if a == b { c } else { 0.0 }))
+            })
             .to_vec(),
         carriers: None,
         mass: None,

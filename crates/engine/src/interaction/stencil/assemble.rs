@@ -61,12 +61,12 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         let edges = grid.lattice.kind.edges();
         let of = |from: usize, number: usize, o: &Offset| {
             let back: [f64; D] =
-                std::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
+                crate::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
             let r0_squared = h * h * (o.squared as f64 / 16.0);
             let r0 = r0_squared.sqrt();
             // the range is that of the body, whatever the materials
             let d = repulsion.as_ref().map_or(0.0, |c| c.distance(r0, [0, 0]));
-            let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
+            let cell: [i32; D] = crate::array::from_fn(|a| o.cell[a]);
             let k = law.constant(r0, 1.0 / r0, weight(&back.map(|x| -x), r0) * volume);
             assert!(
                 grid.holds(cell),
@@ -134,7 +134,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             reach,
             reaches,
             scale: Scale::default(),
-            fields: std::array::from_fn(|n| match n < W::FIELDS {
+            fields: crate::array::from_fn(|n| match n < W::FIELDS {
                 true => Column::new(body.len, 0.0, field::line(4 + n)),
                 false => Column::default(),
             }),

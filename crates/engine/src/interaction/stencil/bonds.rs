@@ -22,6 +22,7 @@ struct Virial<'a, const D: usize, W: Law> {
 
 impl<const D: usize, W: Law> Kernel for Virial<'_, D, W> {
     type Out = [f64; 6];
+    type Home = W;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 6] {
@@ -60,7 +61,6 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         self.update_pressures(body, u);
-        let original = body.originals();
         let family = &self.bonds.family;
         for (n, l, i) in family.points() {
             for (k, b) in self.stencil[family.sublattice(n)].iter().enumerate() {
@@ -70,11 +70,11 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 let j = b.to(i);
                 visit(BondTangent::of_law(
                     self.law,
-                    [i, original(j)],
+                    [i, body.exchange.original(j)],
                     b.k,
                     self.scale.of(n, k, l),
                     b.back.map(|x| -x),
-                    std::array::from_fn(|a| u[a][j] - u[a][i]),
+                    crate::array::from_fn(|a| u[a][j] - u[a][i]),
                     [i, j].map(|s| self.field(s)),
                 ));
             }
@@ -106,7 +106,6 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         tiles: Range<usize>,
         mut visit: impl FnMut(BondForce<D>),
     ) {
-        let original = body.originals();
         let family = &self.bonds.family;
         for (n, l, i) in family.points_of(tiles) {
             for (k, b) in self.stencil[family.sublattice(n)].iter().enumerate() {
@@ -117,9 +116,9 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                     continue;
                 }
                 let j = b.to(i);
-                let eta: [f64; D] = std::array::from_fn(|a| u[a][j] - u[a][i]);
+                let eta: [f64; D] = crate::array::from_fn(|a| u[a][j] - u[a][i]);
                 let xi = b.back.map(|x| -x);
-                let ends = [i, original(j)];
+                let ends = [i, body.exchange.original(j)];
                 let mut pull = [0.0; 2];
                 let bond = Stretched::new(xi, eta);
                 if alive {

@@ -44,10 +44,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         let column = |n: usize| Column::new(body.len, 0.0, field::line(4 + n));
         let per_slot = |n: usize, value: &dyn Fn(usize) -> f64| {
             let mut field = column(n);
-            for &s in &body.slots {
-                field[s as usize] = value(s as usize);
-            }
-            body.fill_images(&mut field);
+            body.set_points(&mut field, value);
             field
         };
         match &self.point_constants {

@@ -60,11 +60,11 @@ fn distances(form: &Form, x: &[[f64; 3]; 4]) -> Vec<f64> {
 }
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|c| a[c] - b[c])
+    crate::array::from_fn(|c| a[c] - b[c])
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|c| {
+    crate::array::from_fn(|c| {
         let (m, n) = ((c + 1) % 3, (c + 2) % 3);
         a[m] * b[n] - a[n] * b[m]
     })

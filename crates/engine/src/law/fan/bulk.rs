@@ -24,7 +24,7 @@ pub fn bulk<F: Fan>(fan: &F, stencil: &Stencil, spacing: f64, volume: f64) -> Bu
             .iter()
             .map(|o| Near {
                 kind: 0,
-                y: std::array::from_fn(|a| {
+                y: crate::array::from_fn(|a| {
                     let edge = (stencil.kind.edge_squared()[a] as f64).sqrt() * spacing;
                     0.25 * f64::from(o.quarter[a]) * edge
                 }),

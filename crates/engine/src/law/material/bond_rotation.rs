@@ -262,7 +262,7 @@ mod tests {
         let side = 2 * m + 1;
         for n in 0..side.pow(D as u32) {
             let xi: [f64; D] =
-                std::array::from_fn(|a| f64::from(n / side.pow(a as u32) % side - m));
+                crate::array::from_fn(|a| f64::from(n / side.pow(a as u32) % side - m));
             let r = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
             if r > 0.0 && r < f64::from(m) + 1e-9 {
                 all.push((xi, r, (f64::from(m) + 0.5 - r).min(1.0)));
@@ -280,7 +280,7 @@ mod tests {
         let first: f64 = family.iter().map(|(_, r, v)| r * v).sum();
         let mut least = f64::INFINITY;
         for n in 1..(PARTS + 1).pow(D as u32) {
-            let k: [f64; D] = std::array::from_fn(|a| {
+            let k: [f64; D] = crate::array::from_fn(|a| {
                 PI / PARTS as f64 * (n / (PARTS + 1).pow(a as u32) % (PARTS + 1)) as f64
             });
             let mut tensor = [[0.0; D]; D];

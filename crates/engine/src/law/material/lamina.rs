@@ -55,7 +55,7 @@ fn half<N: Number, const D: usize>(bond: &Bond<N, D>, end: &Ends<N, D>) -> N {
 }
 
 fn in_space<const D: usize>(direction: &Point) -> [f64; D] {
-    std::array::from_fn(|a| direction[a])
+    crate::array::from_fn(|a| direction[a])
 }
 
 impl<const D: usize> Material<D> for Lamina {
@@ -157,7 +157,7 @@ fn sums(family: &[Partner<3>], fibre: &Point, d: usize) -> Option<[f64; 4]> {
         false => [1.0, 0.0, 0.0],
     };
     let cross = |a: &Point, b: &Point| -> Point {
-        std::array::from_fn(|k| {
+        crate::array::from_fn(|k| {
             let [l, m] = [(k + 1) % 3, (k + 2) % 3];
             a[l] * b[m] - a[m] * b[l]
         })

@@ -341,7 +341,7 @@ pub fn eigen<const D: usize>(mut a: Matrix<f64, D>) -> ([f64; D], Matrix<f64, D>
             }
         }
     }
-    (std::array::from_fn(|k| a[k][k]), v)
+    (crate::array::from_fn(|k| a[k][k]), v)
 }
 
 #[cfg(test)]

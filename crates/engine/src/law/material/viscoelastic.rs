@@ -240,7 +240,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         let none = [0.0; 3];
         (
             ([n * n * m.solid.kappa, m.solid.beta], m.section),
-            std::array::from_fn(|b| m.branches.get(b).map_or(none, branch)),
+            crate::array::from_fn(|b| m.branches.get(b).map_or(none, branch)),
         )
     }
 

@@ -22,6 +22,6 @@ pub static OBSERVABLE: Observable = Observable {
 fn of(state: &mut dyn State) -> Option<Values> {
     Some(Values::Vectors(by_id(state, |s, i| {
         let (x, u) = (s.reference(i), s.displacement(i));
-        std::array::from_fn(|a| x[a] + u[a])
+        crate::array::from_fn(|a| x[a] + u[a])
     })))
 }

@@ -153,7 +153,7 @@ impl ConstitutiveModel {
         let modulus = |xi: [f64; D]| {
             let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
             let k = c * self.weight(&xi, r0) * volume / (r0 * r0 * r0);
-            std::array::from_fn(|a| std::array::from_fn(|b| k * xi[a] * xi[b]))
+            crate::array::from_fn(|a| crate::array::from_fn(|b| k * xi[a] * xi[b]))
         };
         Ok(Box::new(LinearInteraction::new(links, self.simd, modulus)))
     }

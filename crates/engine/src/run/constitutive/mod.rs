@@ -253,7 +253,7 @@ impl ConstitutiveModel {
         } else {
             1.0
         };
-        let full: [f64; 3] = std::array::from_fn(|a| xi.get(a).copied().unwrap_or(0.0));
+        let full: [f64; 3] = crate::array::from_fn(|a| xi.get(a).copied().unwrap_or(0.0));
         let omega = match horizon == self.horizon {
             true => mean_influence(self.influence, &full, r0, horizon),
             false => {

@@ -22,7 +22,7 @@ fn moves<const D: usize>(k: usize, arm: &[f64; D]) -> [f64; D] {
         true => axis,
         false => cross(&axis, &full(arm)),
     };
-    std::array::from_fn(|a| way[a])
+    crate::array::from_fn(|a| way[a])
 }
 
 impl<const D: usize> Problem<'_, D> {
@@ -47,7 +47,7 @@ impl<const D: usize> Problem<'_, D> {
                     let way = moves(unknown, arm);
                     // force on the point if the place goes there
                     let force: [f64; D] =
-                        std::array::from_fn(|a| (0..D).map(|b| block[a][b] * way[b]).sum());
+                        crate::array::from_fn(|a| (0..D).map(|b| block[a][b] * way[b]).sum());
                     for a in 0..D {
                         column[id[slot] as usize][a] -= force[a];
                     }

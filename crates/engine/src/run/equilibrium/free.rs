@@ -20,7 +20,7 @@ impl<const D: usize> Problem<'_, D> {
         let parts = Fragments::of(&self.system.body, self.system.interaction.as_ref()).label;
         let position: Vec<[f64; D]> = self.system.body.by_id(|i| {
             let x = self.system.body.position(i);
-            std::array::from_fn(|a| x[a] + self.system.u[a][i])
+            crate::array::from_fn(|a| x[a] + self.system.u[a][i])
         });
         let support = Support::just_enough(&position, &parts, &self.system.body.period);
         let options = Statics {

@@ -55,7 +55,7 @@ struct Trial<const D: usize> {
 /// `x + by · y`
 fn further<const D: usize>(x: &[[f64; D]], y: &[[f64; D]], by: f64) -> Vec<[f64; D]> {
     let both = x.iter().zip(y);
-    both.map(|(x, y)| std::array::from_fn(|a| x[a] + by * y[a]))
+    both.map(|(x, y)| crate::array::from_fn(|a| x[a] + by * y[a]))
         .collect()
 }
 
@@ -279,7 +279,7 @@ impl<const D: usize> Problem<'_, D> {
                     return;
                 }
                 let [i, j] = [i, j].map(|s| id[s] as usize);
-                let y: [f64; D] = std::array::from_fn(|a| xi[a] + x[j][a] - x[i][a]);
+                let y: [f64; D] = crate::array::from_fn(|a| xi[a] + x[j][a] - x[i][a]);
                 let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
                 let lengths = (square(&y) * square(&xi)).sqrt();
                 let slope = y.map(|c| c / lengths);

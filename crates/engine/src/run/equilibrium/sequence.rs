@@ -136,10 +136,11 @@ impl<const D: usize> Problem<'_, D> {
         let near = 1e-6 * system.body.spacing;
         let at = |slot: usize| -> [f64; D] {
             let x = system.body.position(slot);
-            std::array::from_fn(|a| x[a])
+            crate::array::from_fn(|a| x[a])
         };
         // from either end, through a periodic face as well
-        let along = |x: [f64; D], xi: [f64; D], by: f64| std::array::from_fn(|a| x[a] + by * xi[a]);
+        let along =
+            |x: [f64; D], xi: [f64; D], by: f64| crate::array::from_fn(|a| x[a] + by * xi[a]);
         let from = |slot: usize, xi: [f64; D], by: f64| [at(slot), along(at(slot), xi, by)];
         let ends = bonds.iter();
         let ends: Vec<[[f64; D]; 2]> = ends
@@ -173,7 +174,7 @@ impl<const D: usize> Problem<'_, D> {
         self.system.linear_forces();
         let (factor, next) = self.weakest()?;
         self.account_sequence(&before, last, factor);
-        let f: Field<D> = std::array::from_fn(|a| {
+        let f: Field<D> = crate::array::from_fn(|a| {
             let mut column = self.system.f[a].clone();
             column.iter_mut().for_each(|f| *f *= factor);
             column

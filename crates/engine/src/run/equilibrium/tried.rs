@@ -44,7 +44,7 @@ impl<const D: usize> Tried<D> {
     pub fn along(&self, step: &Onward<D>, part: f64, inertia: Option<&Inertia<D>>) -> Self {
         let further = |of: &[[f64; D]], rate: f64| {
             let both = of.iter().zip(&step.x);
-            both.map(|(x, s)| std::array::from_fn(|a| x[a] + part * (rate * s[a])))
+            both.map(|(x, s)| crate::array::from_fn(|a| x[a] + part * (rate * s[a])))
                 .collect()
         };
         let [v, a] = inertia.map_or([0.0; 2], |m| [m.velocity, m.acceleration]);
@@ -53,7 +53,7 @@ impl<const D: usize> Tried<D> {
             v: further(&self.v, v),
             a: further(&self.a, a),
             bodies: { self.bodies.iter().zip(&step.bodies) }
-                .map(|(z, s)| std::array::from_fn(|k| z[k] + part * s[k]))
+                .map(|(z, s)| crate::array::from_fn(|k| z[k] + part * s[k]))
                 .collect(),
         }
     }

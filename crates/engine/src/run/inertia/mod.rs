@@ -46,7 +46,7 @@ impl<const D: usize> System<D> {
         let volume = |i: usize| self.body.volume.at(i);
         let force = self
             .body
-            .by_id(|i| std::array::from_fn(|axis| volume(i) * self.f[axis][i]));
+            .by_id(|i| crate::array::from_fn(|axis| volume(i) * self.f[axis][i]));
         inertia.accelerate(&support, &force, &mut a);
         a
     }
@@ -80,7 +80,7 @@ impl<const D: usize> System<D> {
         let masses = &self.inertia.as_ref()?.masses;
         let mut change = self.body.values(&self.v);
         for (v, before) in change.iter_mut().zip(self.body.values(before)) {
-            *v = std::array::from_fn(|a| v[a] - before[a]);
+            *v = crate::array::from_fn(|a| v[a] - before[a]);
         }
         let mut field = zeros(self.body.len);
         for (m, &s) in masses.times(&change).iter().zip(&self.body.slots) {

@@ -270,7 +270,7 @@ impl<const D: usize> System<D> {
                 })
             };
             if held.iter().any(Option::is_some) {
-                forces.push((s, std::array::from_fn(of)));
+                forces.push((s, crate::array::from_fn(of)));
             }
         }
         forces

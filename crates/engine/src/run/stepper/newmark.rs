@@ -325,7 +325,7 @@ impl<const D: usize> NewmarkStepper<D> {
         let past = match options.alpha != 0.0 {
             true => system
                 .body
-                .by_id(|i| std::array::from_fn(|a| options.alpha * weight * volume(i) * f[a][i])),
+                .by_id(|i| crate::array::from_fn(|a| options.alpha * weight * volume(i) * f[a][i])),
             false => vec![],
         };
         let free = system.applied.free();

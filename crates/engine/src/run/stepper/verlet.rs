@@ -260,7 +260,7 @@ fn refused<const D: usize>(system: &System<D>, limit: f64) -> RunError {
         .or_else(|| slots().max_by(|a, b| far(a.1).total_cmp(&far(b.1))));
     let (id, i) = found.expect("a body has points");
     let x = system.body.position(i);
-    let position = std::array::from_fn(|a| if a < D { x[a] + system.u[a][i] } else { 0.0 });
+    let position = crate::array::from_fn(|a| if a < D { x[a] + system.u[a][i] } else { 0.0 });
     let (id, path) = (id as u64 + 1, path(i));
     if nowhere(i) || !path.is_finite() {
         return RunError::NotFinite { step, id, position };

@@ -40,9 +40,7 @@ impl<const D: usize> System<D> {
             false => vec![[0.0; 6]; self.body.len],
         });
         if bonds {
-            for c in &mut self.v {
-                self.body.fill_images(c);
-            }
+            self.body.exchange.fill_field(&mut self.v);
             self.tell_toughness();
             let room = self.body.len;
             let mut seen = watched.as_mut().map(|w| w.for_slots(room));

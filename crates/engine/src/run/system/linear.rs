@@ -56,14 +56,8 @@ impl<const D: usize> System<D> {
             false => 1.0,
         };
         let mut u = self.body.at_rest();
-        for i in slots() {
-            for a in 0..D {
-                u[a][i] = small * self.u[a][i];
-            }
-        }
-        for c in &mut u {
-            self.body.fill_images(c);
-        }
+        let made = |_, i: usize| crate::array::from_fn(|a| small * self.u[a][i]);
+        self.body.set_vectors(&mut u, made);
         (u, small)
     }
 

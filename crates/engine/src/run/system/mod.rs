@@ -79,11 +79,7 @@ impl<const D: usize> System<D> {
     }
 
     pub fn refresh_images(&mut self) {
-        if !self.body.images.is_empty() {
-            for c in &mut self.u {
-                self.body.fill_images(c);
-            }
-        }
+        self.body.exchange.fill_field(&mut self.u);
     }
 
     pub fn observed_of(&self, energies: &PointEnergies) -> Observed {

@@ -89,14 +89,12 @@ impl<const D: usize> System<D> {
             ..
         } = &mut self.transfers;
         let body = &self.body;
-        for &s in &body.slots {
-            let i = s as usize;
+        body.set_points(strain, |i| {
             let of = |(n, reference, strains): &(usize, f64, Vec<f64>)| {
                 strains[body.material_of(i)] * (all[*n].values()[place[i] as usize] - reference)
             };
-            strain[i] = grown.iter().map(of).sum();
-        }
-        body.fill_images(strain);
+            grown.iter().map(of).sum()
+        });
         self.interaction.expand(body, strain);
     }
 
@@ -115,12 +113,8 @@ impl<const D: usize> System<D> {
             return;
         }
         let mut u = self.u.clone();
-        for a in 0..D {
-            for &s in &self.body.slots {
-                u[a][s as usize] -= before * self.v[a][s as usize];
-            }
-            self.body.fill_images(&mut u[a]);
-        }
+        let then = |_, i: usize| crate::array::from_fn(|a| self.u[a][i] - before * self.v[a][i]);
+        self.body.set_vectors(&mut u, then);
         let (body, transfers) = (&self.body, &mut self.transfers);
         self.interaction.expand(body, &transfers.past);
         let past = self.interaction.energy(body, view(&u))[0];

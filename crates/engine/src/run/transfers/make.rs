@@ -374,7 +374,7 @@ fn family<const D: usize>(body: &BodySpec, spacing: f64, horizon: Horizon) -> Ve
             let stencil = Stencil::new(*kind, spacing, horizon);
             let cells = stencil.offsets()[0].iter().map(|o| o.cell);
             cells
-                .map(|c| std::array::from_fn(|a| spacing * f64::from(c[a])))
+                .map(|c| crate::array::from_fn(|a| spacing * f64::from(c[a])))
                 .collect()
         }
         BodySpec::Cloud(_) | BodySpec::Several(_) => vec![],

@@ -17,7 +17,7 @@ impl Units {
     pub fn new(lattice: &Lattice) -> Self {
         let dimension = lattice.kind.dimension();
         // unused axes have their sites at 0 whatever the origin says
-        let origin = std::array::from_fn(|a| {
+        let origin = crate::array::from_fn(|a| {
             if a < dimension {
                 lattice.origin[a]
             } else {
@@ -57,7 +57,8 @@ impl Units {
         match region {
             Region::Everything => Shape::Everything,
             Region::Block { low, high } => {
-                let ends: [(i64, i64); 3] = std::array::from_fn(|a| self.range(a, low[a], high[a]));
+                let ends: [(i64, i64); 3] =
+                    crate::array::from_fn(|a| self.range(a, low[a], high[a]));
                 Shape::Block {
                     low: ends.map(|e| e.0),
                     high: ends.map(|e| e.1),
@@ -72,7 +73,7 @@ impl Units {
             } => {
                 let (mut from, mut to) = ([i64::MIN; 3], [i64::MAX; 3]);
                 (from[*axis], to[*axis]) = self.range(*axis, *low, *high);
-                let axes = std::array::from_fn(|a| a != *axis);
+                let axes = crate::array::from_fn(|a| a != *axis);
                 self.round(axes, center, *radius, from, to)
             }
             Region::Sphere { center, radius } => {
@@ -97,7 +98,7 @@ impl Units {
     ) -> Shape {
         let used = |a: usize| if axes[a] { self.edge_squared[a] } else { 0 };
         let radius = radius / self.spacing;
-        let quarters: [f64; 3] = std::array::from_fn(|a| {
+        let quarters: [f64; 3] = crate::array::from_fn(|a| {
             if axes[a] {
                 self.quarters(a, center[a])
             } else {
@@ -119,7 +120,7 @@ impl Units {
             let d = i128::from(squared.denominator);
             let common = i128::from(common);
             Some(Shape::Round {
-                weight: std::array::from_fn(|a| i128::from(used(a)) * d),
+                weight: crate::array::from_fn(|a| i128::from(used(a)) * d),
                 scale: common / 4,
                 center: cells
                     .map(|c| i128::from(c.numerator) * (common / i128::from(c.denominator))),
@@ -129,7 +130,7 @@ impl Units {
             })
         };
         exact().unwrap_or_else(|| Shape::RoundFloat {
-            weight: std::array::from_fn(|a| used(a) as f64),
+            weight: crate::array::from_fn(|a| used(a) as f64),
             center: quarters,
             limit: 16.0 * radius * radius,
             low,
@@ -138,10 +139,10 @@ impl Units {
     }
 
     fn plane(&self, point: &[f64; 3], normal: &[f64; 3]) -> Shape {
-        let mut weight: [f64; 3] = std::array::from_fn(|a| normal[a] * self.edge[a]);
+        let mut weight: [f64; 3] = crate::array::from_fn(|a| normal[a] * self.edge[a]);
         let largest = weight.iter().fold(0.0f64, |m, w| m.max(w.abs()));
         weight = weight.map(|w| w / largest);
-        let quarters: [f64; 3] = std::array::from_fn(|a| {
+        let quarters: [f64; 3] = crate::array::from_fn(|a| {
             let q = self.quarters(a, point[a]);
             snap(q, 1).map_or(q, |f| f.value())
         });

@@ -28,7 +28,7 @@ enum Feature {
 }
 
 fn sub(a: &Point, b: &Point) -> Point {
-    std::array::from_fn(|k| a[k] - b[k])
+    crate::array::from_fn(|k| a[k] - b[k])
 }
 
 fn place(x: &Point) -> String {
@@ -135,7 +135,7 @@ impl Solid {
                 "the surface encloses no volume".into()
             });
         }
-        let centroid = std::array::from_fn(|a| first[a] + 0.25 * moment[a] / six);
+        let centroid = crate::array::from_fn(|a| first[a] + 0.25 * moment[a] / six);
         for x in &mut triangles.corner {
             *x = sub(x, &centroid);
         }
@@ -252,7 +252,7 @@ impl Solid {
 fn nearest([a, b, c]: &[Point; 3], x: &Point) -> (Point, Feature) {
     let (ab, ac, ax) = (sub(b, a), sub(c, a), sub(x, a));
     let along = |from: &Point, way: &Point, part: f64| -> Point {
-        std::array::from_fn(|k| from[k] + part * way[k])
+        crate::array::from_fn(|k| from[k] + part * way[k])
     };
     let (d1, d2) = (dot(&ab, &ax), dot(&ac, &ax));
     if d1 <= 0.0 && d2 <= 0.0 {
@@ -282,7 +282,7 @@ fn nearest([a, b, c]: &[Point; 3], x: &Point) -> (Point, Feature) {
         return (along(b, &sub(c, b), part), Feature::Edge(1));
     }
     let all = 1.0 / (va + vb + vc);
-    let at = std::array::from_fn(|k| a[k] + ab[k] * vb * all + ac[k] * vc * all);
+    let at = crate::array::from_fn(|k| a[k] + ab[k] * vb * all + ac[k] * vc * all);
     (at, Feature::Face)
 }
 

@@ -35,7 +35,7 @@ impl Tree {
         let middle: Vec<Point> = (0..count)
             .map(|n| {
                 let [a, b, c] = corners(n);
-                std::array::from_fn(|k| a[k] + b[k] + c[k])
+                crate::array::from_fn(|k| a[k] + b[k] + c[k])
             })
             .collect();
         let mut tree = Tree {

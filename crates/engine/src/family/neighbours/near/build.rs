@@ -6,7 +6,7 @@ use crate::body::{Body, FieldView};
 use crate::execute::blocks::{PerBlock, Shared, for_each_piece, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 
 /// Where atoms that are not there are (in reaches), so that no pair with them counts.
 const NOWHERE: f64 = 1e30;
@@ -18,13 +18,6 @@ pub(super) struct Block {
     lines: Vec<[u32; TILE]>,
     /// `[tile][group]`: where its lines of neighbours of each kind, or of all, end.
     ends: Vec<u32>,
-}
-
-impl Owner for Block {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.list("lines", &mut self.lines);
-        archive.list("ends", &mut self.ends);
-    }
 }
 
 impl Block {
@@ -71,16 +64,13 @@ impl Block {
         first..self.ends[(n + 1) * groups - 1] as usize
     }
 
-    /// Does it name atoms below `all` only, in so many tiles and groups?
-    pub fn is_sound(&self, tiles: usize, groups: usize, all: usize) -> bool {
-        self.ends.len() == tiles * groups
-            && self.ends.is_sorted()
-            && self.ends.last().map_or(0, |e| *e as usize) == self.lines.len()
-            && self
-                .lines
-                .as_flattened()
-                .iter()
-                .all(|n| (*n as usize) < all)
+    /// Its lines, as many as it has, which name some of `all` atoms: kernels look at nothing again.
+    pub fn archive_lines(&mut self, all: usize, archive: &mut Archive<'_>) {
+        archive.all("lines", &mut self.lines);
+        let mut named = self.lines.as_flattened().iter();
+        if archive.loads() && named.any(|n| *n as usize >= all) {
+            archive.refuse("lines");
+        }
     }
 
     pub fn bytes(&self) -> usize {
@@ -137,7 +127,7 @@ impl<const D: usize> NearList<D> {
         for_each_piece(&mut sorted.item, |_, piece| {
             piece.iter_mut().for_each(|n| *n = atom(*n as usize) as u32);
         });
-        let at = std::array::from_fn(|a| {
+        let at = crate::array::from_fn(|a| {
             let mut column = vec![0.0; sorted.item.len() + TILE];
             for_each_piece(&mut column[..sorted.item.len()], |first, piece| {
                 for (x, n) in piece.iter_mut().zip(&sorted.item[first..]) {
@@ -174,6 +164,12 @@ impl<const D: usize> NearList<D> {
         // where one is nowhere nothing can be said; the next list may know more
         self.valid = extent.finite;
         self.builds += 1;
+        if !self.held {
+            for (then, u) in self.made_at.iter_mut().zip(u) {
+                then.clear();
+                then.extend_from_slice(u);
+            }
+        }
     }
 
     /// Put own atoms in order of kinds, and those of a kind in order of cells; where kinds are mixed in order of cells alone.
@@ -245,6 +241,7 @@ struct Wrap<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Wrap<'_, D> {
     type Out = Extent<D>;
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Extent<D> {
         let mut extent = Extent::EMPTY;
@@ -358,6 +355,7 @@ impl<const D: usize> Find<'_, D> {
 
 impl<const D: usize> Kernel for Find<'_, D> {
     type Out = ();
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, b: usize) {
         // SAFETY: blocks are disjoint

@@ -92,7 +92,7 @@ impl<const D: usize> Cells<D> {
             let widest = cells.count.iter_mut().max();
             widest.into_iter().for_each(|c| *c = c.div_ceil(2));
         }
-        cells.inverse = std::array::from_fn(|a| cells.count[a] as f64 / lengths[a]);
+        cells.inverse = crate::array::from_fn(|a| cells.count[a] as f64 / lengths[a]);
         cells
     }
 

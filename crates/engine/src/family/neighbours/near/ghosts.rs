@@ -1,7 +1,6 @@
 //! Ghosts: periodic images of the atoms within reach of the box, as atoms of their own.
 
 use crate::execute::blocks::for_each_piece;
-use crate::state::words;
 use rayon::prelude::*;
 
 /// Atoms that one thread takes at a time.
@@ -15,8 +14,6 @@ pub(super) struct Ghost<const D: usize> {
     /// From there to here (length): whole periods.
     shift: [f64; D],
 }
-
-words!([const D: usize] Ghost<D> { of: u32, shift: [f64; D] });
 
 /// All ghosts of own atoms, in order of these.
 pub(super) fn find<const D: usize>(

@@ -6,7 +6,7 @@ use crate::samples::Random;
 fn gas<const D: usize>(n: usize, length: f64, periodic: bool, random: &mut Random) -> Body<D> {
     let mut x = vec![];
     for _ in 0..n {
-        x.push(std::array::from_fn(|a| match a < D {
+        x.push(crate::array::from_fn(|a| match a < D {
             true => 0.5 * length * (1.0 + random.next()),
             false => 0.0,
         }));
@@ -223,4 +223,152 @@ fn of_kinds(lines: Lines) {
             }
         }
     }
+}
+
+/// Everything that kernels read of a list.
+fn seen<const D: usize>(list: &NearList<D>) -> Vec<u64> {
+    let mut bits: Vec<u64> = { list.positions().iter().flatten() }
+        .map(|x| x.to_bits())
+        .collect();
+    for tile in (0..list.blocks()).flat_map(|b| list.tiles_of_kinds(b)) {
+        bits.push(tile.kind as u64);
+        bits.extend(list.slots(tile.number).iter().map(|s| u64::from(*s)));
+        for kind in 0..list.groups() {
+            let lines = tile.of_kind(kind);
+            bits.push(lines.len() as u64);
+            bits.extend(lines.iter().flatten().map(|n| u64::from(*n)));
+        }
+    }
+    let all = list.first_ghost() + list.ghosts.len();
+    bits.extend((0..all).map(|n| list.original(n).map_or(u64::MAX, |s| s as u64)));
+    bits
+}
+
+/// Atoms go this far, each somewhere else.
+fn wander<const D: usize>(body: &Body<D>, u: &mut crate::body::Field<D>, far: f64, seed: u64) {
+    let mut random = Random(seed);
+    for &s in &body.slots {
+        u.iter_mut()
+            .for_each(|c| c[s as usize] += far * random.next());
+    }
+}
+
+#[test]
+fn neighbours_come_by_cells_and_ids() {
+    let (n, length) = (300, 5.0);
+    let body = gas::<3>(n, length, true, &mut Random(4));
+    let (cutoff, skin) = (0.21 * length, 0.05 * length);
+    let mut list = NearList::new(&body, cutoff, skin);
+    let mut u = body.at_rest();
+    list.update(&body, view(&u), Simd::detect());
+    wander(&body, &mut u, 0.3 * length, 5);
+    assert!(list.update(&body, view(&u), Simd::detect()));
+    // the cells of a box with its margin: 11 along each axis are no more than four for each atom, and a thousand
+    let reach = cutoff + skin;
+    let span = (length + reach) + reach;
+    let count = (span / reach * 2.0).floor();
+    assert!(count.powi(3) < (4 * n + 1000) as f64);
+    let cell = |x: &[f64; 4]| -> [i64; 3] {
+        let at = |a: usize| ((x[a] + reach) * (count / span)).floor() as i64;
+        [at(2), at(1), at(0)]
+    };
+    let ids = body.ids_by_slot();
+    let at = list.positions();
+    let mut visited = 0;
+    for tile in (0..list.blocks()).flat_map(|b| list.tiles_of_kinds(b)) {
+        for l in 0..list.slots(tile.number).len() {
+            let lines = tile.lines().iter().map(|line| line[l] as usize);
+            let keys = lines.filter_map(|other| {
+                let home = list.home(other)?;
+                let id = ids[list.original(other)?];
+                Some((cell(&at[other]), home != other, cell(&at[home]), id))
+            });
+            let keys: Vec<_> = keys.collect();
+            assert!(keys.is_sorted_by(|a, b| a < b), "{keys:?}");
+            visited += keys.len();
+        }
+    }
+    assert!(visited > 10 * n, "{visited} neighbours");
+    // lists of before do not show
+    let mut other = NearList::new(&body, cutoff, skin);
+    other.update(&body, view(&u), Simd::detect());
+    assert!(seen(&other) == seen(&list));
+}
+
+/// What a list writes down.
+fn saved<const D: usize>(list: &mut NearList<D>, body: &Body<D>) -> Vec<u8> {
+    let mut bytes = vec![];
+    let mut archive = Archive::save(&mut bytes);
+    list.archive(body, Simd::detect(), &mut archive);
+    archive.done().unwrap();
+    bytes
+}
+
+#[test]
+fn a_list_is_made_again_of_where_atoms_were() {
+    for (kinds, lines) in [(1, Lines::ByKind), (3, Lines::ByKind), (3, Lines::Mixed)] {
+        let mut random = Random(6);
+        let mut body = gas::<3>(700, 6.0, true, &mut random);
+        mix(&mut body, kinds, &mut random);
+        let new = || NearList::of_kinds(&body, reaches(kinds), 0.3, lines);
+        let (mut list, mut other) = (new(), new());
+        let mut u = body.at_rest();
+        other.update(&body, view(&u), Simd::detect());
+        list.update(&body, view(&u), Simd::detect());
+        wander(&body, &mut u, 2.0, 7);
+        assert!(list.update(&body, view(&u), Simd::detect()));
+        // and so far that it still holds: half the margin
+        wander(&body, &mut u, 0.08, 8);
+        assert!(!list.update(&body, view(&u), Simd::detect()));
+        list.positions_mut()[3][3] = 0.25;
+        let bytes = saved(&mut list, &body);
+        let mut from = &*bytes;
+        let mut archive = Archive::load(&mut from);
+        other.archive(&body, Simd::detect(), &mut archive);
+        archive.done().unwrap();
+        assert!(from.is_empty() && seen(&other) == seen(&list));
+        // it goes on as the other does
+        for (far, anew) in [(0.0, false), (0.4, true)] {
+            wander(&body, &mut u, far, 9);
+            for list in [&mut list, &mut other] {
+                assert_eq!(list.update(&body, view(&u), Simd::detect()), anew);
+            }
+            assert!(seen(&other) == seen(&list));
+        }
+    }
+}
+
+#[test]
+fn a_list_that_is_held_remembers_who_is_left() {
+    let body = gas::<3>(300, 6.0, true, &mut Random(10));
+    let new = || {
+        let mut list = NearList::of_reference(&body, reaches(1), Lines::ByKind);
+        list.update(&body, view(&body.at_rest()), Simd::detect());
+        list
+    };
+    let (mut list, mut other) = (new(), new());
+    let nowhere = list.nowhere();
+    let full = seen(&list);
+    for tile in 0..list.order.len() / TILE {
+        list.lines_mut(tile)[0][tile % TILE] = nowhere;
+    }
+    let mut u = body.at_rest();
+    wander(&body, &mut u, 3.0, 11);
+    assert!(!list.update(&body, view(&u), Simd::detect()));
+    let bytes = saved(&mut list, &body);
+    let mut from = &*bytes;
+    let mut archive = Archive::load(&mut from);
+    other.archive(&body, Simd::detect(), &mut archive);
+    archive.done().unwrap();
+    assert!(from.is_empty() && seen(&other) == seen(&list) && seen(&list) != full);
+
+    // who is not there is no neighbour
+    let some = bytes.windows(4).position(|w| w == nowhere.to_le_bytes());
+    let mut damaged = bytes.clone();
+    damaged[some.unwrap()..][..4].copy_from_slice(&(nowhere + 1).to_le_bytes());
+    let mut from = &*damaged;
+    let mut archive = Archive::load(&mut from);
+    other.archive(&body, Simd::detect(), &mut archive);
+    let why = archive.done().unwrap_err().to_string();
+    assert!(why.contains("names what is not there"), "{why}");
 }

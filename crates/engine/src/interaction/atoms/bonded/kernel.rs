@@ -55,12 +55,12 @@ pub(super) fn places<const D: usize>(
     let mut at = [[0.0; D]; 4];
     let place = |slot: u32| -> [f64; D] {
         let x = body.position(slot as usize);
-        std::array::from_fn(|a| x[a] + u[a][slot as usize])
+        crate::array::from_fn(|a| x[a] + u[a][slot as usize])
     };
     for n in 1..term.count {
         // bonded neighbours are near, whatever the length of the chain
         let (before, own) = (place(term.slots[n - 1]), place(term.slots[n]));
-        let y: [f64; D] = std::array::from_fn(|a| own[a] - before[a]);
+        let y: [f64; D] = crate::array::from_fn(|a| own[a] - before[a]);
         let back = periods(body, &y);
         for a in 0..D {
             at[n][a] = at[n - 1][a] + (y[a] - back[a]);
@@ -170,6 +170,7 @@ impl<const D: usize> Evaluate<'_, D> {
 impl<const D: usize> Kernel for Evaluate<'_, D> {
     /// Energy and virial.
     type Out = [f64; 7];
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
         // one by one: the same code for every instruction set
@@ -187,6 +188,7 @@ pub(super) struct Gather<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Gather<'_, D> {
     type Out = ();
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
         let first = block * BLOCK;

@@ -26,7 +26,7 @@ fn chains() -> (Body<3>, Arc<BondedSpec>) {
         for n in 0..5 {
             let zigzag = if n % 2 == 0 { 0.0 } else { 0.8 };
             let at = [1.25 * f64::from(n), zigzag, 0.3 * f64::from(n % 3)];
-            x.push(std::array::from_fn(|a| {
+            x.push(crate::array::from_fn(|a| {
                 (start[a] + at[a] + 0.1 * random.next()).rem_euclid(length)
             }));
         }
@@ -106,7 +106,7 @@ fn forces(made: &mut BondedAtoms<3>, body: &Body<3>, u: FieldView<3>) -> Vec<[f6
     let sweep = Sweep::Hold;
     made.forces(body, u, view_mut(&mut f), sweep, None);
     let slots = body.slots.iter().map(|s| *s as usize);
-    slots.map(|s| std::array::from_fn(|a| f[a][s])).collect()
+    slots.map(|s| crate::array::from_fn(|a| f[a][s])).collect()
 }
 
 fn moved(u: &Field<3>, slot: usize, a: usize, h: f64) -> Field<3> {

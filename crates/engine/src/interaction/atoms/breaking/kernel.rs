@@ -27,6 +27,7 @@ pub(super) struct Test<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Test<'_, D> {
     type Out = ();
+    type Home = Self;
     const SELDOM: bool = true;
 
     #[inline(always)]
@@ -40,7 +41,7 @@ impl<const D: usize> Kernel for Test<'_, D> {
         // SAFETY: listed atoms have positions and a reference, and there are whole tiles of both
         let at = |of: *const f64, index: &[u32; TILE]| unsafe { L::gather4(of, index.as_ptr()) };
         for (t, lines) in self.list.tiles(block) {
-            let own = std::array::from_fn(|l| (t * TILE + l) as u32);
+            let own = crate::array::from_fn(|l| (t * TILE + l) as u32);
             let (y, x) = (at(now, &own), at(then, &own));
             let mut lowest = L::splat(f64::INFINITY);
             for (n, line) in lines.iter().enumerate() {
@@ -102,6 +103,7 @@ pub(super) struct Add<'a, const D: usize> {
 
 impl<const D: usize> Kernel for Add<'_, D> {
     type Out = ();
+    type Home = Self;
     const SELDOM: bool = true;
 
     #[inline(always)]

@@ -123,6 +123,7 @@ pub(super) struct Density<'a, const D: usize, P> {
 
 impl<const D: usize, P: Potential> Kernel for Density<'_, D, P> {
     type Out = Option<Fault>;
+    type Home = P;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Option<Fault> {
         let view = &self.view;
@@ -160,6 +161,7 @@ pub(super) struct Forces<'a, const D: usize, P> {
 
 impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
     type Out = ();
+    type Home = P;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
         let view = &self.view;
@@ -190,6 +192,7 @@ pub(super) struct Energies<'a, const D: usize, P> {
 impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
     /// Energy and, where asked for, virial.
     type Out = [f64; 7];
+    type Home = P;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
         let view = &self.view;

@@ -88,7 +88,7 @@ impl Back {
             NONE => [0.0; 4],
             back => of(back),
         };
-        std::array::from_fn(|a| other[a] - own[a])
+        crate::array::from_fn(|a| other[a] - own[a])
     }
 
     pub fn bytes(&self) -> usize {
@@ -114,6 +114,7 @@ struct Find<'a> {
 
 impl Kernel for Find<'_> {
     type Out = ();
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
         let at = self.list.positions();
@@ -124,7 +125,7 @@ impl Kernel for Find<'_> {
                     let Some(j) = self.list.home(line[l] as usize) else {
                         continue;
                     };
-                    let y: [f64; 3] = std::array::from_fn(|a| at[line[l] as usize][a] - at[i][a]);
+                    let y: [f64; 3] = crate::array::from_fn(|a| at[line[l] as usize][a] - at[i][a]);
                     let other = self.list.lines(j / TILE);
                     // an atom that is no image is listed as itself
                     let found = match j == line[l] as usize {

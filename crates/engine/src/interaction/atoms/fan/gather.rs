@@ -17,6 +17,7 @@ pub(super) struct Gather<'a> {
 
 impl Kernel for Gather<'_> {
     type Out = ();
+    type Home = Self;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
         let (before, force) = (self.back.before(), self.back.forces());

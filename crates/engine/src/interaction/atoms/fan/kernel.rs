@@ -283,6 +283,7 @@ fn pull<L: Lane>(first: &mut Bond<L>, second: &mut Bond<L>, along: L, slope: [L;
 impl<F: Fan, const MANY: bool> Kernel for Centres<'_, F, MANY> {
     /// Energy and virial.
     type Out = [f64; 7];
+    type Home = F;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
         let view = &self.0;

@@ -183,6 +183,7 @@ pub(super) struct Density<'a, const D: usize, P> {
 
 impl<const D: usize, P: Potential> Kernel for Density<'_, D, P> {
     type Out = Option<Fault>;
+    type Home = P;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Option<Fault> {
         let view = &self.view;
@@ -221,6 +222,7 @@ pub(super) struct Forces<'a, const D: usize, P> {
 
 impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
     type Out = Option<Fault>;
+    type Home = P;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Option<Fault> {
         let view = &self.view;
@@ -256,6 +258,7 @@ pub(super) struct Energies<'a, const D: usize, P> {
 
 impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
     type Out = [f64; 1];
+    type Home = P;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 1] {
         let view = &self.view;

@@ -16,6 +16,7 @@ pub struct Energies<'a, const D: usize, W> {
 impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
     /// Strain and repulsion energy of the block (energy).
     type Out = [f64; 2];
+    type Home = W;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 2] {

@@ -28,6 +28,7 @@ pub struct Forces<'a, const D: usize, W, const FULL: bool> {
 
 impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
     type Out = Tally;
+    type Home = W;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Tally {

@@ -16,6 +16,7 @@ pub struct Share<'a, const D: usize, W> {
 
 impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
     type Out = ();
+    type Home = W;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {

@@ -10,7 +10,7 @@ use super::stiffness::{
     self, ACROSS, PAIRS, PLANE, Stiffness, in_plane, mean, orthotropic, symmetric, turned,
 };
 use super::{Classical, Stressed, Unseen};
-use crate::columns::{Declaration, Dimension, Halo, Shape};
+use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
@@ -49,9 +49,7 @@ impl<const D: usize> Classical<D> for Anisotropic {
 
     fn places(&self) -> Vec<Declaration> {
         let axis = |name, doc| {
-            Declaration::of_points(name, Shape::Vector, Dimension::NUMBER, doc)
-                .derived()
-                .halo(Halo::None)
+            Declaration::of_points(name, Shape::Vector, Dimension::NUMBER, doc).derived()
         };
         let mut all = vec![axis(
             FIBRE.name,

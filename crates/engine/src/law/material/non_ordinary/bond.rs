@@ -15,7 +15,7 @@
 
 use super::family::CONTROL;
 use super::{Asked, Classical, GRADIENT, Stressed, Unseen, answered, on_a_family, takes_bonds};
-use crate::columns::{Declaration, Halo, On};
+use crate::columns::{Declaration, On};
 use crate::law::descriptor::{Descriptor, Given, Shelved};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::material::{Bond, Columns, End, Free, Kin, Material, Numbers, Site};
@@ -172,7 +172,6 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
         let of_bond = |column: Declaration| Declaration {
             name: format!("bond_{}", column.name).into(),
             on: On::Bonds,
-            halo: Halo::Value,
             ..column
         };
         Columns {

@@ -49,7 +49,7 @@ impl Direction {
     fn at(&self, place: &Point) -> Point {
         match self {
             Direction::Everywhere(direction) => *direction,
-            Direction::Of(components) => std::array::from_fn(|a| components[a].eval(place, 0.0)),
+            Direction::Of(components) => crate::array::from_fn(|a| components[a].eval(place, 0.0)),
         }
     }
 }
@@ -92,14 +92,14 @@ impl Axes {
         }
         let first = first.map(|x| x / a);
         let along = (0..3).map(|k| first[k] * third[k]).sum::<f64>() / b;
-        let mut third: Point = std::array::from_fn(|k| third[k] / b - along * first[k]);
+        let mut third: Point = crate::array::from_fn(|k| third[k] / b - along * first[k]);
         let rest = size(&third);
         if !(rest > 1e-6) {
             return Err("`fibre` and `normal` are parallel: say another `normal`, the third axis of the material ([0, 0, 1] when left out)".into());
         }
         third = third.map(|x| x / rest);
         // e₂ = e₃ × e₁
-        let second = std::array::from_fn(|k| {
+        let second = crate::array::from_fn(|k| {
             let [l, m] = [(k + 1) % 3, (k + 2) % 3];
             third[l] * first[m] - third[m] * first[l]
         });

@@ -324,7 +324,7 @@ mod tests {
                         slope: f64::from(u8::from(n == r && k == s)),
                     };
                     let h: Matrix<Dual<f64>, D> =
-                        std::array::from_fn(|n| std::array::from_fn(|k| dual(n, k)));
+                        crate::array::from_fn(|n| crate::array::from_fn(|k| dual(n, k)));
                     let zero = Dual::constant(0.0);
                     let seen = Unseen {
                         stiffness: zero,

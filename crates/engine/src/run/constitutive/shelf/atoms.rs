@@ -571,7 +571,7 @@ impl AnyPotentials {
         let parts = each.collect::<Result<Vec<_>, _>>()?;
         Ok(Box::new(move |kinds, q| {
             let said = parts.iter().filter_map(|p| p(kinds, q));
-            said.reduce(|a, b| std::array::from_fn(|n| a[n] + b[n]))
+            said.reduce(|a, b| crate::array::from_fn(|n| a[n] + b[n]))
         }))
     }
 

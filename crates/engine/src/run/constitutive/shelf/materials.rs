@@ -7,14 +7,15 @@ use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
 use crate::family::stencil::Stencil;
 use crate::interaction::bonds::breaking::PLASTIC_STRAIN;
+use crate::interaction::bonds::law::LawProperties;
 use crate::interaction::bonds::state::BondParts;
 use crate::interaction::bonds::{CloudFamily, LatticeFamily};
 use crate::interaction::criterion::{Criteria, Measure};
-use crate::interaction::material::MaterialInteraction;
+use crate::interaction::material::{AnyLaw, MaterialInteraction, compiled};
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, Repulsion, Toughness};
 use crate::law::descriptor::{Given, Key, Memory, Shelved, Value};
-use crate::law::material::{Material, Numbers, Partner};
+use crate::law::material::{Material, Partner};
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
 use crate::message;
@@ -344,12 +345,24 @@ impl Chosen {
 }
 
 fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<D>) -> Bound<D> {
-    let picked = |n: &usize| place.only.is_none_or(|o| o == *n);
-    let numbers: Vec<usize> = (0..chosen.materials.len()).filter(picked).collect();
-    let given: Vec<Given> = numbers
-        .iter()
-        .map(|n| {
-            let made = &chosen.materials[*n];
+    let numbers = chosen.numbers(place.only);
+    let law = M::make(D, chosen.plane, &chosen.given(&numbers)).map_err(|(n, message)| {
+        let n = numbers.get(n).copied().unwrap_or(0);
+        BuildError::invalid(format!("materials[{n}].law"), message)
+    })?;
+    chosen.put(&numbers, place, compiled(law.meeting(chosen.rule)))
+}
+
+impl Chosen {
+    /// The materials that are meant.
+    fn numbers(&self, only: Option<usize>) -> Vec<usize> {
+        let picked = |n: &usize| only.is_none_or(|o| o == *n);
+        (0..self.materials.len()).filter(picked).collect()
+    }
+
+    fn given(&self, numbers: &[usize]) -> Vec<Given<'_>> {
+        let given = |n: &usize| {
+            let made = &self.materials[*n];
             Given {
                 parameters: &made.parameters,
                 solid: made.solid,
@@ -357,96 +370,102 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 critical_stretch: made.critical_stretch,
                 breaks: made.breaks,
                 density: made.density,
-                weighted_volume: chosen.weighted_volume,
-                first_moment: chosen.first_moment,
-                horizon: chosen.horizon,
-                family: &chosen.family,
+                weighted_volume: self.weighted_volume,
+                first_moment: self.first_moment,
+                horizon: self.horizon,
+                family: &self.family,
             }
-        })
-        .collect();
-    let law = M::make(D, chosen.plane, &given).map_err(|(n, message)| {
-        let n = numbers.get(n).copied().unwrap_or(0);
-        BuildError::invalid(format!("materials[{n}].law"), message)
-    })?;
-    let law = law.meeting(chosen.rule);
-    let Place {
-        body,
-        stencil,
-        horizon,
-        weight,
-        toughness,
-        criteria,
-        repulsion,
-        simd,
-        ..
-    } = place;
-    // a bond that is not of its family's sums has one stiffness
-    let weight = match M::OF_FAMILY {
-        true => weight,
-        false => weight.mean(),
-    };
-    able(&law, &criteria)?;
-    let held = match D == 2 && chosen.plane == Plane::Strain {
-        true => numbers.iter().map(|n| chosen.materials[*n].held).collect(),
-        false => vec![],
-    };
-    let unfit = |(slot, why): (usize, String)| {
-        let n = match numbers[..] {
-            [one] => one,
-            _ => body.material_of(slot),
         };
-        let place = quantity::place(&body.position(slot)[..D]);
-        let message = message!["at ", place, ": ", why];
-        BuildError::invalid(format!("materials[{n}].law"), message).help(
+        numbers.iter().map(given).collect()
+    }
+
+    /// The law of these materials on the family of a body.
+    fn put<const D: usize>(
+        &self,
+        numbers: &[usize],
+        place: Place<D>,
+        law: Box<dyn AnyLaw<D>>,
+    ) -> Bound<D> {
+        let of = law.properties();
+        let Place {
+            body,
+            stencil,
+            horizon,
+            weight,
+            toughness,
+            criteria,
+            repulsion,
+            simd,
+            ..
+        } = place;
+        // a bond that is not of its family's sums has one stiffness
+        let weight = match law.of_family() {
+            true => weight,
+            false => weight.mean(),
+        };
+        able(&of, &criteria)?;
+        let held = match D == 2 && self.plane == Plane::Strain {
+            true => numbers.iter().map(|n| self.materials[*n].held).collect(),
+            false => vec![],
+        };
+        let unfit = |(slot, why): (usize, String)| {
+            let n = match numbers[..] {
+                [one] => one,
+                _ => body.material_of(slot),
+            };
+            let place = quantity::place(&body.position(slot)[..D]);
+            let message = message!["at ", place, ": ", why];
+            BuildError::invalid(format!("materials[{n}].law"), message).help(
             "give this place another direction (`a ? b : c` chooses), another material, or leave it out of the body",
         )
-    };
-    match (&body.layout, stencil) {
-        (Layout::Grid(grid), Some(stencil)) => {
-            let of = |xi: &[f64; D], r: f64| {
-                let [own, back] = weight.influence(xi, r, 1.0 / r);
-                [own, back, weight.volume_fraction(r)]
-            };
-            let parts = BondParts {
-                body,
-                family: LatticeFamily::new(body, grid, stencil, &of),
-                kind: "stencil",
-                near_horizon: 0,
-                toughness,
-                criteria,
-                repulsion,
-                held,
-                simd,
-            };
-            let made = MaterialInteraction::new(parts, law);
-            Ok(Box::new(made.map_err(unfit)?))
-        }
-        _ => {
-            let stiffnesses = weight.stiffnesses(body);
-            let (list, weight) = match body.horizon.is_empty() {
-                true => (HorizonList::new(body, horizon)?, weight),
-                false => own_horizons(body, horizon, weight)?,
-            };
-            let remembers = <M::Memory<f64> as Numbers<f64>>::COUNT > 0;
-            let near_horizon = list.near_horizon;
-            let family = CloudFamily::new(body, chosen.horizon, list, weight, remembers);
-            let family = match M::OF_BONDS {
-                true => family.of_bonds(stiffnesses),
-                false => family,
-            };
-            let parts = BondParts {
-                body,
-                family,
-                kind: "list",
-                near_horizon,
-                toughness,
-                criteria,
-                repulsion,
-                held,
-                simd,
-            };
-            let made = MaterialInteraction::new(parts, law);
-            Ok(Box::new(made.map_err(unfit)?))
+        };
+        match (&body.layout, stencil) {
+            (Layout::Grid(grid), Some(stencil)) => {
+                let of = |xi: &[f64; D], r: f64| {
+                    let [own, back] = weight.influence(xi, r, 1.0 / r);
+                    [own, back, weight.volume_fraction(r)]
+                };
+                let parts = BondParts {
+                    body,
+                    family: LatticeFamily::new(body, grid, stencil, &of),
+                    kind: "stencil",
+                    near_horizon: 0,
+                    toughness,
+                    criteria,
+                    repulsion,
+                    held,
+                    simd,
+                };
+                let made = MaterialInteraction::new(parts, law, AnyLaw::on_lattice);
+                Ok(Box::new(made.map_err(unfit)?))
+            }
+            _ => {
+                let stiffnesses = weight.stiffnesses(body);
+                let (list, weight) = match body.horizon.is_empty() {
+                    true => (HorizonList::new(body, horizon)?, weight),
+                    false => own_horizons(body, horizon, weight)?,
+                };
+                let remembers = of.memory > 0;
+                let near_horizon = list.near_horizon;
+                let family = CloudFamily::new(body, self.horizon, list, weight, remembers);
+                let family = match law.of_bonds() {
+                    true => family.of_bonds(stiffnesses),
+                    false => family,
+                };
+                let parts = BondParts {
+                    body,
+                    family,
+                    kind: "list",
+                    near_horizon,
+                    toughness,
+                    criteria,
+                    repulsion,
+                    held,
+                    simd,
+                };
+                let made = MaterialInteraction::new(parts, law, AnyLaw::on_cloud);
+                Ok(Box::new(made.map_err(unfit)?))
+            }
         }
     }
 }
@@ -465,13 +484,13 @@ fn own_horizons<const D: usize>(
 }
 
 /// Has the law what its bonds shall break by?
-fn able<const D: usize, M: Material<D>>(law: &M, criteria: &Criteria) -> Result<(), BuildError> {
+fn able<const D: usize>(of: &LawProperties<D>, criteria: &Criteria) -> Result<(), BuildError> {
     let refused = |message: &str| Err(BuildError::unsupported("materials[0].fracture", message));
     let measured = match &criteria.measure {
         Measure::Stretch | Measure::Work(_) => return Ok(()),
         Measure::VonMises(_) => true,
         Measure::PlasticStrain(_) => {
-            let past = law.columns().past;
+            let past = &of.columns.past;
             past.iter().any(|c| c.name == PLASTIC_STRAIN)
         }
     };
@@ -482,7 +501,7 @@ fn able<const D: usize, M: Material<D>>(law: &M, criteria: &Criteria) -> Result<
         )
         .help("take elastic_plastic or hypoelastic_plastic, or another criterion"));
     }
-    match law.failure() {
+    match of.failure {
         Some(_) => {
             refused("the law has a damage of its own, by which its bonds break: give one of both")
         }

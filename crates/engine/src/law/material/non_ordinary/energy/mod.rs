@@ -73,14 +73,14 @@ impl At {
     fn times(&self, b: &At) -> At {
         At {
             value: self.value * b.value,
-            slope: std::array::from_fn(|k| self.value * b.slope[k] + b.value * self.slope[k]),
+            slope: crate::array::from_fn(|k| self.value * b.slope[k] + b.value * self.slope[k]),
         }
     }
 
     fn plus(&self, sign: f64, b: &At) -> At {
         At {
             value: self.value + sign * b.value,
-            slope: std::array::from_fn(|k| self.slope[k] + sign * b.slope[k]),
+            slope: crate::array::from_fn(|k| self.slope[k] + sign * b.slope[k]),
         }
     }
 }
@@ -294,7 +294,7 @@ mod tests {
             let made = energy(text);
             for d in [[0.7, -0.4, 0.2], [-0.6, 0.5, -0.35], [3.0, 5.0, 0.9]] {
                 let at = |d: [f64; 3]| {
-                    let x: [f64; 3] = std::array::from_fn(|k| AT_REST[k] + d[k]);
+                    let x: [f64; 3] = crate::array::from_fn(|k| AT_REST[k] + d[k]);
                     expression.eval(&x, 0.0)
                 };
                 let found = made.beyond(&d);
