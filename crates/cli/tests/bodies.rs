@@ -1,6 +1,6 @@
 //! Several bodies as a user meets them: the gaps that `check` tells, the column of a frame.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
@@ -83,6 +83,43 @@ fn checked(deck: &str, files: &[(&str, &str)]) -> (Value, String) {
         serde_json::from_slice(&json.stdout).unwrap(),
         String::from_utf8_lossy(&text.stdout).into_owned(),
     )
+}
+
+/// Each body says what finds the forces of its bonds, and why.
+#[test]
+fn check_tells_what_finds_the_forces_of_bonds() {
+    let body = |name: &str, low: u32| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmaterial = \"{name}\"\nlattice = \"square\"\nspacing = 1\n\
+             region = {{ block = {{ low = [{low}, 0], high = [{}, 8] }} }}\n",
+            low + 8
+        )
+    };
+    let deck = format!(
+        "units = \"none\"\nhorizon = {{ m_ratio = 3 }}\ncontact = false\n{}{}{}\
+         [material.a]\ndensity = 1\nlaw = {{ pmb = {{ young = 1 }} }}\n\
+         [material.b]\ndensity = 1\nlaw = {{ lps = {{ young = 1, poisson = 0.2 }} }}\n\
+         fracture = {{ energy = 0.1, criterion = \"bond_energy\" }}\n\
+         [material.c]\ndensity = 1\nlaw = {{ springs = {{ young = 1 }} }}\n[run]\nsteps = 1\n",
+        body("a", 0),
+        body("b", 20),
+        body("c", 40),
+    );
+    let (found, text) = checked(&deck, &[]);
+    let forces = &found["bond_forces"];
+    let fused = json!({ "laws": ["pmb"], "fused": true, "reasons": [] });
+    assert_eq!(forces[0], fused);
+    let general =
+        json!({ "laws": ["lps"], "fused": false, "reasons": ["breaks by work of bonds"] });
+    assert_eq!(forces[1], general);
+    assert_eq!(forces[2], Value::Null);
+    for says in [
+        "bond forces       a: fused kernels of pmb",
+        "bond forces       b: general sweeps of lps (breaks by work of bonds)",
+    ] {
+        assert!(text.contains(says), "{says}\n{text}");
+    }
+    assert_eq!(text.matches("bond forces").count(), 2);
 }
 
 /// A plate of 20 × 10 quadrilaterals of 1 mm, whose right side has a name.

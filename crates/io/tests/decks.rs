@@ -140,6 +140,106 @@ fn odd_number(text: &str, units: UnitSystem) -> Option<String> {
 }
 
 /// What the engine says has numbers for people, whatever units the deck has.
+/// A law keeps its name, and what finds the forces of its bonds is said with the reason.
+#[test]
+fn fused_kernels_or_general_sweeps_are_said_with_the_reason() {
+    let pmb = "{ pmb = { young = 1 } }";
+    let lps = "{ lps = { young = 1, poisson = 0.2 } }";
+    let typed = "{ lps_as_typed = { bulk = 2, shear = 1 } }";
+    let eam = "{ eam_like = { pair = 2, volume = 0.1 } }";
+    let plastic = "{ elastic_plastic = { young = 1, poisson = 0.2, yield_stress = 0.1 } }";
+    let springs = "{ springs = { young = 1 } }";
+    let work = "fracture = { energy = 0.1, criterion = \"bond_energy\" }";
+    let stress = "fracture = { von_mises = 0.1 }";
+    let rate =
+        "fracture = { critical_stretch = 0.1, rate = { coefficient = 0.05, reference = 1 } }";
+    let fatigue = "fracture = { critical_stretch = 0.1, fatigue = { nucleation = [1, 3] } }";
+    let run = "[run]\nsteps = 1";
+    let cycles = "[statics]\nmethod = \"newton\"\nincrements = 1\ncycles = { load_ratio = 0.1 }";
+    let warm = "heat = { conductivity = 1, capacity = 1, expansion = 0.1 }\n[heat]\nreference = 1";
+    let horizons = "own_horizon = \"2.5 + 0.1*x\"\nfamily = \"list\"\ncalibration = \"continuum\"";
+    let directed = "influence = \"1 + 0.1*xi_x/r\"";
+    for (law, top, of_material, end, says) in [
+        (pmb, "", "", run, "fused kernels of pmb"),
+        (lps, "", "", run, "fused kernels of lps"),
+        (typed, "", "", run, "fused kernels of lps_as_typed"),
+        (eam, "", "", run, "fused kernels of eam_like"),
+        (pmb, horizons, "", run, "fused kernels of pmb"),
+        (pmb, directed, "", run, "fused kernels of pmb"),
+        (plastic, "", "", run, "general sweeps of elastic_plastic"),
+        (plastic, "", work, run, "general sweeps of elastic_plastic"),
+        (
+            pmb,
+            "",
+            work,
+            run,
+            "general sweeps of pmb (breaks by work of bonds)",
+        ),
+        (
+            typed,
+            "",
+            work,
+            run,
+            "general sweeps of lps_as_typed (breaks by work of bonds)",
+        ),
+        (
+            lps,
+            "",
+            stress,
+            run,
+            "general sweeps of lps (breaks by von Mises stress)",
+        ),
+        (
+            pmb,
+            "",
+            rate,
+            run,
+            "general sweeps of pmb (has a critical stretch that grows with the rate)",
+        ),
+        (
+            pmb,
+            "",
+            fatigue,
+            cycles,
+            "general sweeps of pmb (wears in cycles of load)",
+        ),
+        (eam, "", warm, run, "general sweeps of eam_like (expands)"),
+        (
+            lps,
+            horizons,
+            "",
+            run,
+            "general sweeps of lps (has horizons of points)",
+        ),
+        (
+            lps,
+            directed,
+            "",
+            run,
+            "general sweeps of lps (has an influence function that knows directions)",
+        ),
+        (springs, "", "", run, ""),
+    ] {
+        let text = format!(
+            "units = \"none\"\nplane = \"strain\"\nhorizon = 3.3\ncontact = false\n{top}\n\
+             [body]\nlattice = \"square\"\nspacing = 1\ncells = [8, 8]\n\
+             [material]\ndensity = 1\nlaw = {law}\n{of_material}\n\
+             [[condition]]\nregion = {{ block = {{ low = 0, high = [8, 1] }} }}\ndisplacement = [0, 0]\n{end}\n"
+        );
+        let deck = Deck::parse(&text, "deck.toml", &[]).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let options = Options {
+            trust_time_step: true,
+            ..Options::default()
+        };
+        let sim = build(&deck.spec, options).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let [sweeps] = &sim.info().sweeps[..] else {
+            panic!("{:?}", sim.info().sweeps)
+        };
+        let said = sweeps.as_ref().map_or(String::new(), |s| s.to_string());
+        assert_eq!(said, says, "{text}");
+    }
+}
+
 #[test]
 fn numbers_of_warnings_and_errors_have_units() {
     assert_eq!(

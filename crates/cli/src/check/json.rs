@@ -51,6 +51,9 @@ pub fn write(found: &Findings) -> String {
             "kind": info.family_kind, "min": info.family.0, "mean": info.family.1, "max": info.family.2,
             "full_volume": found.patch.as_ref().map(|p| p.full),
         },
+        "bond_forces": info.sweeps.iter().map(|s| s.as_ref().map(|s| json!({
+            "laws": s.laws, "fused": s.fused, "reasons": s.needs,
+        }))).collect::<Vec<_>>(),
         "near_horizon": info.near_horizon,
         "cut_by_precracks": info.cut,
         "materials": materials.collect::<Vec<_>>(),

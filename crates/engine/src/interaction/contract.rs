@@ -266,9 +266,9 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ) -> Result<(), BuildError> {
         Err(BuildError::unsupported(
             "bonds",
-            "factors of bonds multiply what pmb, lps and springs pull on a lattice, and pmb in a cloud or an interface: the bonds of this body are others",
+            "factors of bonds and corrections of surfaces multiply what pmb, springs, lps, lps_as_typed and eam_like pull on a lattice, and pmb in a cloud or an interface: the bonds of this body are others",
         )
-        .help("take pmb or lps on a lattice, or leave the factors out"))
+        .help("take one of these on a lattice, or leave both out"))
     }
 
     /// Volume with which the bond along ξ acts on slot i, and its factors, where there are any.

@@ -51,7 +51,7 @@ mod transfers;
 mod virial;
 
 pub use build::{Options, build, build_in, build_with};
-pub use constitutive::Shelf;
+pub use constitutive::{Shelf, Sweeps};
 pub use model::Model;
 pub use sets::{materials_of, materials_of_bodies};
 pub use transfers::TransferInfo;
@@ -81,6 +81,8 @@ pub struct Info {
     pub family: (usize, f64, usize),
     /// `"stencil"`, `"list"`, `"neighbours"` or `"reference"`.
     pub family_kind: &'static str,
+    /// What finds the forces of bonds, of each body in their order; `None`: it is loose, of springs, micromoduli or atoms.
+    pub sweeps: Vec<Option<Sweeps>>,
     /// Directed bonds whose length is within round-off of the horizon.
     pub near_horizon: u64,
     /// The longest of all bodies that have bonds.

@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::run::constitutive::{Shelf, generalised, is_solid, toughness};
+use crate::run::constitutive::{Shelf, toughness};
 use crate::spec::{
     ContactStiffness, Criterion, FractureSpec, Influence, LawSpec, MaterialSpec, Spec,
 };
@@ -14,13 +14,6 @@ use std::collections::hash_map::Entry;
 
 /// What is longer by this part is so by round-off.
 const ROUND_OFF: f64 = 1.0 + 1e-9;
-
-/// Where points have horizons of their own, solids are laws of `law/material`, and so is `pmb` of several materials: their own kernels know one
-/// horizon, or one material. Were laws changed?
-pub(super) fn resolve(spec: &mut Spec) -> bool {
-    let several = spec.materials.len() > 1;
-    spec.bonds.own_horizon.is_some() && generalised(spec, |law| several || is_solid(law))
-}
 
 /// Is the critical stretch that of a fracture energy?
 fn of_energy(fracture: FractureSpec) -> bool {

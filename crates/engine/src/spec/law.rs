@@ -119,7 +119,7 @@ impl FractureSpec {
         }
     }
 
-    /// Is it decided by more than the stretch that a bond has now? Kernels of `pmb` and `lps` look at no more.
+    /// Is it decided by more than the stretch that a bond has now? Fused kernels look at no more.
     pub fn remembers(&self) -> bool {
         let stretch = matches!(self.criterion, Criterion::Stretch(_) | Criterion::Energy(_));
         !stretch || self.rate.is_some() || self.fatigue.is_some()

@@ -793,3 +793,67 @@ fn criteria_that_mean_nothing_are_refused() {
     assert_eq!(path, "toughness[0]");
     assert!(message.contains("no temperature"), "{message}");
 }
+
+/// What is wrong with a law is the same, and said of it by its own name, whatever finds the forces of its bonds.
+#[test]
+fn a_law_is_refused_by_its_own_name() {
+    let solid = |young, poisson| LawSpec::Lps(Moduli { young, poisson });
+    let said = |law: &LawSpec, criterion, factor: bool| {
+        let mut spec = block(3, [4; 3], law.clone());
+        spec.materials[0].fracture = fracture(criterion);
+        if factor {
+            spec.bonds.factors = vec![BondFactorSpec::Field(e("1 + 0.1*x"))];
+        }
+        let error = build(&spec, Options::default()).err().expect("refused");
+        (error.path.clone(), error.message.to_string())
+    };
+    for (law, factor, says) in [
+        (solid(1.0, 0.7), false, "stiffness must be positive"),
+        (solid(1.0, 0.2), true, "the pressure of its ends"),
+    ] {
+        let fused = said(&law, Criterion::Stretch(0.1), factor);
+        assert!(fused.1.contains(says), "{fused:?}");
+        assert_eq!(fused, said(&law, Criterion::BondEnergy(0.1), factor));
+    }
+}
+
+/// `pmb` beside its general sweeps has these, too, bit by bit: one law, whoever names it.
+#[test]
+fn a_law_beside_its_general_sweeps_has_them() {
+    let run = |half: LawSpec| {
+        let general =
+            |young| LawSpec::named("thermoelastic", Parameters::numbers(&[("young", young)]));
+        let mut spec = block(2, [8, 6, 1], general(1.0));
+        for (name, low, high) in [("left", -1.0, 4.0), ("right", 4.0, 9.0)] {
+            spec.sets.push(SetSpec {
+                name: name.into(),
+                members: Members::Region(Region::Block {
+                    low: [low, -1.0, -1.0],
+                    high: [high, 9.0, 1.0],
+                }),
+            });
+        }
+        spec.materials[0].set = "left".into();
+        let mut right = spec.materials[0].clone();
+        (right.name, right.set, right.law) = ("other".into(), "right".into(), half);
+        spec.materials.push(right);
+        spec.loading.initial = vec![InitialSpec {
+            set: "all".into(),
+            displacement: [None, None, None],
+            velocity: [Some(e("0.02*sin(x*y)")), None, None],
+        }];
+        let mut sim = started(&spec);
+        for _ in 0..10 {
+            sim.step().unwrap();
+        }
+        let sweeps = sim.info().sweeps[0].clone().expect("a solid");
+        assert!(!sweeps.fused);
+        (sweeps.laws, sim.displacements())
+    };
+    let young = [("young", 3.0)];
+    let (laws, u) = run(LawSpec::Pmb(PmbStiffness::Young(3.0)));
+    let (alone, v) = run(LawSpec::named("thermoelastic", Parameters::numbers(&young)));
+    assert_eq!(laws, ["thermoelastic", "pmb"]);
+    assert_eq!(alone, ["thermoelastic"]);
+    assert_eq!(u, v);
+}

@@ -118,7 +118,7 @@ fn lps_is_pmb_where_poissons_ratio_is_that_of_bonds() {
     println!("LPS = PMB at ν = ¼ (plane stress ⅓) to {worst:.1e}");
 }
 
-/// The law that lps becomes where bodies expand is lps while they do not, and in the bulk, where shear looks the same in all directions, the
+/// The law that sweeps for lps where bodies expand is lps while they do not, and in the bulk, where shear looks the same in all directions, the
 /// position-aware solid is, too: on a triangular lattice, whose families are isotropic to fourth order.
 #[test]
 fn thermoelastic_and_position_aware_solids_are_lps() {

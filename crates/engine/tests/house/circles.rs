@@ -98,8 +98,6 @@ const IN_CIRCLES: &[&str] = &[
     "run/torn",
     "run/traits",
     "run/traits/system",
-    "run/transfers",
-    "run/transfers/expansion",
     "run/transfers/make",
     "space/membership",
     "space/membership/compile",

@@ -47,6 +47,14 @@ pub(super) fn points(found: &Findings) -> String {
             info.family_kind
         ),
     );
+    for (n, sweeps) in info.sweeps.iter().enumerate() {
+        let Some(sweeps) = sweeps else { continue };
+        let of = match info.bodies.get(n) {
+            Some((name, _)) => format!("{name}: "),
+            None => String::new(),
+        };
+        row(&mut out, "bond forces", format!("{of}{sweeps}"));
+    }
     let (least, mean, most) = info.family;
     row(
         &mut out,

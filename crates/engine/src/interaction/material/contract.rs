@@ -142,9 +142,9 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
     ) -> Result<(), BuildError> {
         Err(BuildError::unsupported(
             "bonds",
-            "factors multiply what a bond pulls by its own stretch and its ends' dilatation; the bonds of this body do more: they remember (work, stress or strain that they break by, plastic flow), expand, or answer to tensors",
+            "factors of bonds and corrections of surfaces multiply what a bond pulls by its own stretch and its ends' dilatation; the bonds of this body do more: they remember (work, stress or strain that they break by, plastic flow), expand, or answer to tensors",
         )
-        .help("leave the factors out, or take pmb or lps without expansion that break by critical_stretch or energy"))
+        .help("leave both out, or take a law with fused kernels (pmb, lps, lps_as_typed, eam_like) without expansion, which breaks by critical_stretch or energy"))
     }
 
     fn prepare(&mut self, body: &Body<D>) {

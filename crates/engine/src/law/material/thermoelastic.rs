@@ -1,5 +1,5 @@
-//! The bonds of `pmb` where bodies expand: `t(s) = s`, with the stretch counted, as for every law of this folder, from the length that the ends'
-//! temperature or concentration gives a bond.
+//! The bonds of `pmb` in general sweeps, as where bodies expand: `t(s) = s`, with the stretch counted, as for every law of this folder, from the
+//! length that the ends' temperature or concentration gives a bond.
 
 use super::bonds::BondLaw;
 use crate::law::descriptor::{Descriptor, Key};
@@ -19,7 +19,7 @@ impl BondLaw<0> for Thermoelastic {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             Self::NAME,
-            "Bond-based, f = c ω ν V s between points that may expand: s is counted from the length that their temperature or concentration gives a bond. pmb becomes this where a material expands. One of young, bulk, micromodulus; Poisson ratio 1/4, plane stress 1/3.",
+            "Bond-based, f = c ω ν V s between points that may expand: s is counted from the length that their temperature or concentration gives a bond. pmb is swept so where a material expands. One of young, bulk, micromodulus; Poisson ratio 1/4, plane stress 1/3.",
         )
         .source("Silling & Askari 2005; Kilic & Madenci 2010")
         .example("{ young = \"72 GPa\" }")

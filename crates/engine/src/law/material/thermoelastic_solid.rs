@@ -1,4 +1,4 @@
-//! The linear peridynamic solid where bodies expand: `W = ½κθ² + (α/2) Σ ω e²`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e` of
+//! The linear peridynamic solid in general sweeps, as where bodies expand: `W = ½κθ² + (α/2) Σ ω e²`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e` of
 //! [`Solid`], with the extension e counted, as for every law of this folder, from the length that the ends' temperature or concentration gives a bond.
 //! `T⟨ξ⟩ = ω ((nκθ/m) |ξ| + α e)` along the bond, over its whole bonds, with the m of the family as it was.
 
@@ -120,7 +120,7 @@ impl Shelved for ThermoelasticSolid {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             Self::NAME,
-            "Linear peridynamic solid, W = ½ κ θ² + β/(2m) Σ ω ν V e², between points that may expand: e is counted from the length that their temperature or concentration gives a bond. lps becomes this where a material expands. Two of young, poisson, bulk, shear.",
+            "Linear peridynamic solid, W = ½ κ θ² + β/(2m) Σ ω ν V e², between points that may expand: e is counted from the length that their temperature or concentration gives a bond. lps is swept so where a material expands. Two of young, poisson, bulk, shear.",
         )
         .source("Silling, Epton, Weckner, Xu & Askari 2007; Kilic & Madenci 2010")
         .example("{ young = \"72 GPa\", poisson = 0.22 }")

@@ -4,7 +4,7 @@ use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
 use crate::family::nodes::Nodes;
 use crate::quantity::Warnings;
-use crate::run::constitutive::{AnyPotentials, Shelf, criteria, directed};
+use crate::run::constitutive::{AnyPotentials, Shelf};
 use crate::run::faces::Faces;
 use crate::run::feasible::enough_memory;
 use crate::run::names::Names;
@@ -108,16 +108,6 @@ impl<'a, const D: usize> Bodies<'a, D> {
     }
 }
 
-/// Laws with kernels of their own become those of `law/material` where their body asks for what these kernels do not know.
-pub(super) fn lower(spec: &mut Spec, shelf: &Shelf) -> Result<(), BuildError> {
-    let own = own_horizons::resolve(spec);
-    let directed = directed(spec);
-    match criteria::remembering(spec) || own || directed {
-        true => shelf.resolve(spec),
-        false => Ok(()),
-    }
-}
-
 /// Gives each of several bodies its materials, and points their horizons.
 fn complete<const D: usize>(
     parts: &mut [Part],
@@ -132,8 +122,7 @@ fn complete<const D: usize>(
     for (n, part) in parts.iter_mut().enumerate() {
         let mut own = body.pieces()[n].body.clone();
         part.choose(body, n, &mut own);
-        let made = lower(part.spec.to_mut(), shelf)
-            .and_then(|()| traits::agree(&part.spec, shelf))
+        let made = traits::agree(&part.spec, shelf)
             .and_then(|()| own_horizons::give(&part.spec, &mut own, part.horizon));
         made.map_err(|e| {
             let own = named[n].own_horizon.is_some() && e.path == "own_horizon";

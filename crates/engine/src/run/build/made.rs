@@ -218,6 +218,8 @@ fn info<const D: usize>(
     let sizes = body.slots.iter();
     let sizes = sizes.map(|s| interaction.family_size(body, *s as usize));
     let (smallest, largest) = sizes.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
+    let sweeps = { constitutive.all().zip(&bodies.parts) }
+        .map(|(m, part)| m.sweeps.clone().filter(|_| part.bonded));
     let shelf = &bodies.names.shelf;
     let kinds = |law: &LawSpec| matches!(law, LawSpec::Named(law) if shelf.kinds(&law.name));
     Info {
@@ -230,6 +232,7 @@ fn info<const D: usize>(
             largest,
         ),
         family_kind: interaction.family(),
+        sweeps: sweeps.collect(),
         near_horizon: bonds.near_horizon,
         horizon: bodies.horizon,
         spacing: body.spacing,

@@ -4,7 +4,7 @@ mod bodies;
 mod bonds;
 mod made;
 
-use self::bodies::{Bodies, lower};
+use self::bodies::Bodies;
 use self::bonds::Bonds;
 use self::made::Made;
 use super::constitutive::Shelf;
@@ -12,11 +12,11 @@ use super::feasible::{consistent, possible};
 use super::model::Model;
 use super::stages::Stages;
 use super::stepper::stepper;
-use super::{Simulation, atoms, transfers};
+use super::{Simulation, atoms};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::quantity::Warnings;
-use crate::spec::{BodySpec, Spec};
+use crate::spec::Spec;
 
 /// How to build, as opposed to what.
 #[derive(Debug, Clone, Copy, Default)]
@@ -58,13 +58,6 @@ pub fn build_in<const D: usize>(
 ) -> Result<Model<D>, BuildError> {
     let mut resolved = spec.clone();
     shelf.resolve(&mut resolved)?;
-    let expanding = transfers::expanding(&mut resolved);
-    if expanding {
-        shelf.resolve(&mut resolved)?;
-    }
-    if !matches!(resolved.body, BodySpec::Several(_)) {
-        lower(&mut resolved, shelf)?;
-    }
     consistent(&resolved, shelf)?;
     let potentials = shelf.potentials(&resolved)?;
     atoms::check_smooth(&resolved)?;

@@ -1,6 +1,5 @@
 //! What materials break by beside their critical stretch.
 
-use super::general::generalised;
 use crate::error::BuildError;
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::law::fracture_energy;
@@ -10,13 +9,6 @@ use crate::spec::{Criterion, FractureSpec, MaterialSpec, Spec};
 
 fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
     BuildError::unsupported(format!("materials[{n}].{key}"), message)
-}
-
-/// Where bonds break by more than the stretch of now, `pmb` is `thermoelastic` and `lps` `thermoelastic_solid`: their own kernels know no more. Were
-/// laws changed?
-pub(in crate::run) fn remembering(spec: &mut Spec) -> bool {
-    let remembers = |m: &MaterialSpec| m.fracture.is_some_and(|f| f.remembers());
-    spec.materials.iter().any(remembers) && generalised(spec, |_| true)
 }
 
 /// Of all materials of a body.

@@ -2,10 +2,10 @@
 
 mod constants;
 pub(super) mod criteria;
-mod general;
 mod interaction;
 mod pairs;
 pub(super) mod shelf;
+mod sweeps;
 mod toughness;
 
 use crate::condition::toughness::Bears;
@@ -22,11 +22,11 @@ use crate::law::micromodulus::Moments;
 use crate::spec::{Calibration, FamilyChoice, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
-pub(super) use general::{directed, generalised, is_solid};
 pub(super) use pairs::contact_stiffness;
 pub use shelf::Shelf;
 pub(super) use shelf::{AnyPotentials, Softens, Stiffness};
 use std::sync::Arc;
+pub use sweeps::Sweeps;
 pub(super) use toughness::toughness;
 
 /// A full family.
@@ -64,7 +64,9 @@ pub(super) struct ConstitutiveModel {
     pub rule: InterfaceRule,
     /// Constants of pairs of materials, where they do not follow from the two.
     pub pairs: Option<Arc<BondTable>>,
-    /// The law of the shelf that all materials have; `None`: `laws` says all.
+    /// `None`: springs, micromoduli and atoms have others.
+    pub sweeps: Option<Sweeps>,
+    /// The law of the shelf by which all materials are swept in general; `None`: `laws` says all.
     pub named: Option<shelf::Chosen>,
     pub simd: Simd,
 }
@@ -213,7 +215,14 @@ impl ConstitutiveModel {
             None => None,
         };
         let pairs = pairs::bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
-        let named = shelf::chosen::<D>(spec, shelf, (horizon, moments, bulk.family), &toughness)?;
+        let sweeps = Sweeps::of(spec);
+        let named = match &sweeps {
+            Some(sweeps) if !sweeps.fused => {
+                let full = (horizon, moments, bulk.family);
+                shelf::chosen::<D>(spec, shelf, full, &toughness)?
+            }
+            Some(_) | None => None,
+        };
         Ok(ConstitutiveModel {
             laws,
             toughness,
@@ -231,6 +240,7 @@ impl ConstitutiveModel {
             breaks: breaks(spec),
             rule: spec.interactions.interface,
             pairs,
+            sweeps,
             named,
             simd,
         })

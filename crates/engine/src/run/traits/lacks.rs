@@ -156,7 +156,6 @@ fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     for m in &spec.materials {
         match shelf.stiffness(&m.law) {
             Some(Stiffness::Family | Stiffness::Bonds) => {}
-            None if matches!(m.law, LawSpec::Pmb(_)) => {}
             Some(Stiffness::Horizon) => lack(
                 "own_horizon",
                 "bonds of this law have the stiffness of one horizon",

@@ -4,15 +4,8 @@ use super::make::Maker;
 use super::state::Transfers;
 use crate::body::view;
 use crate::error::BuildError;
-use crate::run::constitutive::generalised;
 use crate::run::system::System;
-use crate::spec::{Spec, TransferSpec};
-
-/// Where a material expands, `pmb` and `lps` are laws of `law/material`: their own kernels know no temperature. Were laws changed?
-pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
-    let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
-    spec.interactions.transfers.iter().any(expands) && generalised(spec, |_| true)
-}
+use crate::spec::Spec;
 
 impl<const D: usize> Maker<'_, D> {
     /// Bodies that expand: can their bonds?

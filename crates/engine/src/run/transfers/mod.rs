@@ -6,7 +6,6 @@ pub(super) mod make;
 pub(super) mod state;
 mod warmth;
 
-pub(super) use expansion::expanding;
 pub use state::TransferInfo;
 
 use super::system::System;

@@ -94,8 +94,9 @@ pub struct Document {
     pub smooth: Option<At<Smooth>>,
     /// ["x"]: the body's region spans one period; or { x = "50 mm" }.
     pub periodic: Option<At<Periodic>>,
-    /// Factors of bonds near the surface of a lattice body with a bond-based law; none when left out. exact: every uniform
-    /// strain is in equilibrium under its uniform traction, and the surface runs through the outermost points. Of several bodies that of all, or in a `[[body]]` its own.
+    /// Factors of bonds near the surface of a lattice body, of bond-based laws (pmb, springs) and, with exact, state-based solids (lps, lps_as_typed,
+    /// eam_like); none when left out. exact: every uniform strain is in equilibrium under its uniform traction, and the surface runs through the
+    /// outermost points. Of several bodies that of all, or in a `[[body]]` its own.
     pub surface: Option<At<SurfaceName>>,
     /// Factors of the stiffness of bonds (pmb, springs on lattices), of those of interfaces, too; all that concern a bond are multiplied.
     #[serde(default)]

@@ -24,7 +24,7 @@ pub(super) fn rule(
     };
     let bonds = |m: &MaterialSpec| match &m.law {
         LawSpec::Pmb(_) | LawSpec::Springs(_) => true,
-        // what pmb becomes
+        // pmb in general sweeps
         LawSpec::Named(law) => law.name == Thermoelastic::NAME,
         LawSpec::Lps(_)
         | LawSpec::LpsAsTyped { .. }

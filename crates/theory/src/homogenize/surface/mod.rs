@@ -41,11 +41,11 @@ const ONE: f64 = 1e-15;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
     #[error(
-        "a surface correction multiplies what single bonds pull, of pmb, lps and springs: atoms have no horizon to be missing in, and the bonds of laws with memory, tensors or several stiffnesses pull with what their whole family says"
+        "a surface correction multiplies what single bonds pull, of pmb, springs, lps, lps_as_typed and eam_like: atoms have no horizon to be missing in, and the bonds of laws with memory, tensors or several stiffnesses pull with what their whole family says"
     )]
     Law,
     #[error(
-        "a surface correction of lps is known where its influence function is the same from both ends of a bond, ω(ξ) = ω(−ξ)"
+        "a surface correction of a state-based solid is known where its influence function is the same from both ends of a bond, ω(ξ) = ω(−ξ)"
     )]
     Directed,
     #[error(
@@ -88,7 +88,7 @@ impl SurfaceError {
     /// What to do about it.
     pub fn help(&self) -> &'static str {
         match self {
-            SurfaceError::Law => "leave surface out, or take pmb or lps",
+            SurfaceError::Law => "leave surface out, or take one of these",
             SurfaceError::Directed => "leave surface out, or take pmb",
             SurfaceError::Published => "write surface = \"exact\", or take pmb",
             SurfaceError::Lattice => {

@@ -20,8 +20,9 @@ use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
 use crate::message;
 use crate::quantity::{self, Dimension};
+use crate::run::constitutive::sweeps::general;
 use crate::spec::{
-    Calibration, InterfaceRule, LawSpec, NamedLaw, Parameter, Parameters, Plane, PmbStiffness, Spec,
+    Calibration, InterfaceRule, LawSpec, Parameter, Parameters, Plane, PmbStiffness, Spec,
 };
 use std::any::Any;
 use std::sync::Arc;
@@ -200,34 +201,31 @@ fn held(d: usize, solid: Option<Solid>, young: Option<f64>) -> Option<[f64; 2]> 
     }
 }
 
-/// The law of the shelf that a body's materials name; `None`: they name none.
+/// The law of the shelf that sweeps for all materials of a body; `None`: there is none.
 ///
 /// # Errors
-/// They name different ones.
+/// They have different ones.
 pub(in crate::run::constitutive) fn chosen<const D: usize>(
     spec: &Spec,
     shelf: &Shelf,
     (horizon, moments, family): (f64, Moments, Vec<Partner<3>>),
     toughness: &[Toughness],
 ) -> Result<Option<Chosen>, BuildError> {
-    let named = |law: &LawSpec| match law {
-        LawSpec::Named(law) => Some(law.clone()),
-        _ => None,
-    };
-    let laws: Vec<Option<NamedLaw>> = spec.materials.iter().map(|m| named(&m.law)).collect();
-    let Some(first) = laws.iter().flatten().next() else {
+    let laws = || spec.materials.iter().map(|m| &m.law);
+    let named = |law: &&LawSpec| matches!(law, LawSpec::Named(_));
+    let Some(first) = laws().find(named).or(laws().next()).and_then(general) else {
         return Ok(None);
     };
     let mut materials = vec![];
-    for (n, law) in laws.iter().enumerate() {
-        let Some(law) = law.as_ref().filter(|l| l.name == first.name) else {
+    for (n, of) in laws().enumerate() {
+        let written = shelf.written(of).filter(|_| general(of) == Some(first));
+        let Some((_, parameters)) = written else {
             return Err(BuildError::unsupported(
                 format!("materials[{n}].law"),
                 "different kinds of law in one body, such as bond-based and state-based",
             )
             .help("give all materials the same kind of law: bonds across need one"));
         };
-        let of = &spec.materials[n].law;
         let solid = Solid::of_law(D, spec.space.plane, of.linear());
         let modulus = |stiffness| micromodulus(D, spec.space.plane, stiffness, moments);
         let micromodulus = match of.linear() {
@@ -236,10 +234,10 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
         };
         let young = micromodulus.map(|c| c / modulus(PmbStiffness::Young(1.0)));
         materials.push(Made {
-            parameters: law.parameters.clone(),
-            held: match law.isotropic {
-                true => held(D, solid, young),
-                false => None,
+            parameters,
+            held: match of {
+                LawSpec::Named(law) if !law.isotropic => None,
+                _ => held(D, solid, young),
             },
             solid,
             micromodulus,
@@ -248,11 +246,11 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
             density: spec.materials[n].density,
         });
     }
-    let Some(entry) = shelf.entry(&first.name) else {
+    let Some(entry) = shelf.entry(first) else {
         return Err(BuildError::unknown(
             "materials[0].law",
-            first.name.clone(),
-            format!("the law {} is on no shelf", first.name),
+            first,
+            format!("the law {first} is on no shelf"),
         ));
     };
     let chosen = Chosen {

@@ -16,6 +16,7 @@ use crate::law::potential::{self, Described, Kinds};
 use crate::law::solid::linear::{self, Linear};
 use crate::observe::Observable;
 use crate::observe::observables;
+use crate::run::constitutive::sweeps::general;
 use crate::space::Point;
 use crate::space::lattice::LatticeKind;
 use crate::spec::{ForceSpec, LawSpec, NamedLaw, Parameters, Spec};
@@ -278,6 +279,13 @@ impl Shelf {
         self.entries.iter().find(|e| e.descriptor.name == name)
     }
 
+    fn material(&self, name: &str) -> Option<&Materials> {
+        match &self.entry(name)?.runs {
+            Runs::Material(material) => Some(material),
+            Runs::Linear { .. } | Runs::Atoms(_) => None,
+        }
+    }
+
     /// Fill up what a potential takes from the lattice that its atoms lie on, of this spacing (length).
     pub fn on_lattice(&self, law: &mut NamedLaw, kind: LatticeKind, spacing: f64) {
         if let Some(atoms) = self.entry(&law.name).and_then(|e| e.atoms()) {
@@ -374,64 +382,40 @@ impl Shelf {
 
     /// Does a law have its critical stretch among its constants?
     pub(crate) fn ends(&self, name: &str) -> bool {
-        match self.entry(name).map(|e| &e.runs) {
-            Some(Runs::Material(material)) => material.ends,
-            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
-        }
+        self.material(name).is_some_and(|m| m.ends)
     }
 
     /// Do some of its bonds break at a stretch of their own?
     pub(crate) fn kinds(&self, name: &str) -> bool {
-        match self.entry(name).map(|e| &e.runs) {
-            Some(Runs::Material(material)) => material.kinds,
-            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
-        }
+        self.material(name).is_some_and(|m| m.kinds)
     }
 
     /// [`Shelved::FADES`](crate::law::descriptor::Shelved::FADES) of a law.
     pub(crate) fn fades(&self, name: &str) -> bool {
-        match self.entry(name).map(|e| &e.runs) {
-            Some(Runs::Material(material)) => material.fades,
-            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
-        }
+        self.material(name).is_some_and(|m| m.fades)
     }
 
-    /// What makes the stiffness of a law of `law/material`; `None`: it is none.
+    /// What makes the stiffness of a law in the general sweeps; `None`: it has none there.
     pub(crate) fn stiffness(&self, law: &LawSpec) -> Option<Stiffness> {
-        let LawSpec::Named(law) = law else {
-            return None;
-        };
-        match &self.entry(&law.name)?.runs {
-            Runs::Material(material) => Some(material.stiffness(&law.parameters)),
-            Runs::Linear { .. } | Runs::Atoms(_) => None,
-        }
+        let (_, parameters) = self.written(law)?;
+        Some(self.material(general(law)?)?.stiffness(&parameters))
     }
 
     /// Does a law say what the stress across plane strain is?
     pub(crate) fn across(&self, name: &str) -> bool {
-        match self.entry(name).map(|e| &e.runs) {
-            Some(Runs::Material(material)) => material.across,
-            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
-        }
+        self.material(name).is_some_and(|m| m.across)
     }
 
     /// Do its bonds store energy by turning, too?
     pub(crate) fn turns(&self, name: &str) -> bool {
-        match self.entry(name).map(|e| &e.runs) {
-            Some(Runs::Material(material)) => material.turns,
-            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
-        }
+        self.material(name).is_some_and(|m| m.turns)
     }
 
     /// The fracture energy of a brittle bond with the critical stretch of this law's (see [`Shelved::brittle_energy`]).
     pub(crate) fn brittle_energy(&self, law: &LawSpec, energy: f64) -> f64 {
         match law {
-            LawSpec::Named(law) => match self.entry(&law.name).map(|e| &e.runs) {
-                Some(Runs::Material(material)) => {
-                    (material.brittle_energy)(&law.parameters, energy)
-                }
-                Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => energy,
-            },
+            LawSpec::Named(law) => { self.material(&law.name) }
+                .map_or(energy, |m| (m.brittle_energy)(&law.parameters, energy)),
             _ => energy,
         }
     }
