@@ -130,22 +130,20 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
         let mut sum = vec![0.0; sums];
         let mut through = vec![vec![0.0; points]; sums];
         let mut shares = vec![];
+        // the law stands once in what is compiled: all slopes of a bond in one loop, by η and then by numbers of the point
+        let moved = if pass > 0 { D + points } else { D };
         for b in bonds {
             let mut own = vec![[0.0; D]; sums];
-            for a in 0..D {
-                let slopes = share(b, Some(a), None);
-                for (s, own) in own.iter_mut().enumerate() {
-                    own[a] = b.weight * b.per_length * slopes.get(s).slope;
-                    if a == 0 {
-                        sum[s] += b.weight * slopes.get(s).value;
+            for n in 0..moved {
+                let slopes = share(b, Some(n).filter(|n| *n < D), n.checked_sub(D));
+                for s in 0..sums {
+                    let slope = slopes.get(s).slope;
+                    match n.checked_sub(D) {
+                        None => own[s][n] = b.weight * b.per_length * slope,
+                        Some(n) => through[s][n] += b.weight * slope,
                     }
-                }
-            }
-            if pass > 0 {
-                for n in 0..points {
-                    let slopes = share(b, None, Some(n));
-                    for (s, through) in through.iter_mut().enumerate() {
-                        through[n] += b.weight * slopes.get(s).slope;
+                    if n == 0 {
+                        sum[s] += b.weight * slopes.get(s).value;
                     }
                 }
             }
@@ -166,13 +164,23 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
             self.0.settle(pass, &site, lifted(&sum, by_sum), &mut point);
             (0..points).map(|n| point.get(n)).collect()
         };
-        let slopes = |all: Vec<Real>| all.into_iter().map(|x| x.slope).collect::<Vec<f64>>();
+        let all = |n: usize| {
+            let after = settle(Some(n).filter(|n| *n < sums), n.checked_sub(sums));
+            let slopes: Vec<f64> = after.iter().map(|x| x.slope).collect();
+            let values: Vec<f64> = after.iter().map(|x| x.value).collect();
+            (slopes, values)
+        };
+        // and the point itself, last
+        let mut by_sum: Vec<_> = (0..=sums + points).map(all).collect();
+        let (_, point) = by_sum.pop().unwrap_or_default();
+        let mut by_sum: Vec<_> = by_sum.into_iter().map(|(slopes, _)| slopes).collect();
+        let by_point = by_sum.split_off(sums);
         PassSlopes {
             shares,
             through,
-            by_sum: (0..sums).map(|s| slopes(settle(Some(s), None))).collect(),
-            by_point: (0..points).map(|n| slopes(settle(None, Some(n)))).collect(),
-            point: settle(None, None).into_iter().map(|x| x.value).collect(),
+            by_sum,
+            by_point,
+            point,
         }
     }
 
@@ -188,28 +196,33 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
                 point: &point,
                 memory: &memory,
             };
+            let seen = if own { bond } else { mirrored(&bond) };
+            let force = self.0.answer(&seen, &end).alone(&seen);
             if own {
-                let state = self.0.answer(&bond, &end);
-                state.alone(&bond)
+                force
             } else {
-                let state = self.0.answer(&mirrored(&bond), &end);
-                state.alone(&mirrored(&bond)).map(|x| still(0.0) - x)
+                force.map(|x| still(0.0) - x)
             }
         };
-        let mut by_eta = [[0.0; D]; D];
-        for c in 0..D {
-            let slopes = pull(Some(c), None);
-            for r in 0..D {
-                by_eta[r][c] = slopes[r].slope;
+        let points = <M::Point<f64> as Numbers<f64>>::COUNT;
+        let (mut by_eta, mut by_point, mut force) = ([[0.0; D]; D], vec![], [0.0; D]);
+        // by η, by numbers of the point, and the force itself
+        for n in 0..=D + points {
+            let pulled = pull(Some(n).filter(|n| *n < D), n.checked_sub(D));
+            match n.checked_sub(D) {
+                None => {
+                    for r in 0..D {
+                        by_eta[r][n] = pulled[r].slope;
+                    }
+                }
+                Some(n) if n < points => by_point.push(pulled.map(|x| x.slope)),
+                Some(_) => force = pulled.map(|x| x.value),
             }
         }
-        let points = 0..<M::Point<f64> as Numbers<f64>>::COUNT;
         AnswerSlopes {
             by_eta,
-            by_point: points
-                .map(|n| pull(None, Some(n)).map(|x| x.slope))
-                .collect(),
-            force: pull(None, None).map(|x| x.value),
+            by_point,
+            force,
         }
     }
 }

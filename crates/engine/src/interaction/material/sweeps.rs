@@ -8,7 +8,7 @@ use crate::interaction::Tally;
 use crate::interaction::bonds::family::{Family, Slots, put};
 use crate::interaction::bonds::repulsion::Pushed;
 use crate::interaction::bonds::store::OwnRows;
-use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site, part_of};
+use crate::law::material::{End, ForceState, Material, Numbers, Site, part_of};
 
 /// A pass: sums over bonds, and what the points make of them.
 pub struct Sums<'a, const D: usize, F, M> {
@@ -87,7 +87,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Forces<'_, D, F, M
 /// # Safety
 /// A bond of the group.
 #[inline(always)]
-pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
+unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     v: &View<D, F, M>,
     at: &GroupOf<L, D, F, M>,
     point: &M::Point<L>,
@@ -115,7 +115,7 @@ pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
 /// # Safety
 /// As of [`pull`].
 #[inline(always)]
-pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
+unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     v: &View<D, F, M>,
     at: &GroupOf<L, D, F, M>,
     point: &M::Point<L>,
@@ -164,35 +164,6 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
         }
         (own.pull(other, &bond), weight)
     }
-}
-
-/// The force state of the group's end of its bond `k`.
-///
-/// # Safety
-/// As of [`pull`].
-#[inline(always)]
-pub unsafe fn answers<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
-    v: &View<D, F, M>,
-    at: &GroupOf<L, D, F, M>,
-    point: &M::Point<L>,
-    k: usize,
-    bond: &Bond<L, D>,
-) -> M::State<L> {
-    // SAFETY: the caller's promise
-    let (memory, left, constants) = unsafe {
-        let ends = v.family.ends(at.number, k);
-        (
-            v.memory::<L>(at.number, k),
-            v.integrity::<L>(at.rows),
-            v.constants_to::<L>(at, ends),
-        )
-    };
-    let end = End {
-        constants: &constants,
-        point,
-        memory: &memory,
-    };
-    v.law.answer(bond, &end).times(left)
 }
 
 /// What bonds and points remember at the end of a step.

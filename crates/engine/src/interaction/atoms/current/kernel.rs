@@ -193,6 +193,7 @@ impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
     /// Energy and, where asked for, virial.
     type Out = [f64; 7];
     type Home = P;
+    const SELDOM: bool = true;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
         let view = &self.view;

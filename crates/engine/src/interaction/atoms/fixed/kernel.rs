@@ -259,6 +259,7 @@ pub(super) struct Energies<'a, const D: usize, P> {
 impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
     type Out = [f64; 1];
     type Home = P;
+    const SELDOM: bool = true;
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 1] {
         let view = &self.view;

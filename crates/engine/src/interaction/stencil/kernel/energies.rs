@@ -31,6 +31,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
     /// Strain and repulsion energy of the block (energy).
     type Out = [f64; 2];
     type Home = W;
+    const SELDOM: bool = true;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
