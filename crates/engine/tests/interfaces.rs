@@ -118,9 +118,21 @@ fn two_halves_glued_are_the_whole_bar() {
         let each = laws
             .iter()
             .flat_map(|law| [(law, vec![]), (law, factors(d))]);
-        for (law, factors) in each {
+        // laws of the shelf, one of which softens from a stretch of 0.05 on
+        let young = || Parameters::numbers(&[("young", 100.0)]);
+        let softening = young().with("onset", Parameter::Number(0.1));
+        let softening = LawSpec::named("softening", softening);
+        let shelved = [LawSpec::named("thermoelastic", young()), softening];
+        for (law, factors) in each.chain(shelved.iter().map(|law| (law, vec![]))) {
             let [mut whole, mut glued] = bars(d, law).map(|mut spec| {
                 spec.bonds.factors.clone_from(&factors);
+                if law == &shelved[1] {
+                    let ends = Some(FractureSpec::new(Criterion::Stretch(0.5)));
+                    spec.materials[0].fracture = ends;
+                    for interface in &mut spec.interactions.interfaces {
+                        interface.fracture = ends;
+                    }
+                }
                 let sim = build(&spec, Options::default()).unwrap();
                 let told = |w: &peridyne::quantity::Message| w.contains("no bond crosses");
                 assert!(!sim.info().warnings.iter().any(told));
@@ -534,6 +546,129 @@ fn glue_breaks_in_turn_at_its_own_stretch() {
     }
 }
 
+/// A chain of 20 springs of the length 1, of which one is glue, and what its end is told.
+fn chain(law: &LawSpec, told: &str) -> Spec {
+    let half = |low: f64, high: f64| block(1, 1.0, [low, 0.0, 0.0], [high, 0.0, 0.0]);
+    let pieces = vec![
+        PieceSpec::new("left", half(0.0, 9.0)),
+        PieceSpec::new("right", half(10.0, 20.0)),
+    ];
+    let mut spec = Spec::new(1, BodySpec::Several(pieces), 1.0, law.clone());
+    spec.bonds.horizon = Horizon::Ratio(1);
+    spec.interactions.interfaces = vec![glue(law.clone(), Horizon::Ratio(1))];
+    for (name, at, u) in [("low", "x < 0.1", "0"), ("high", "x > 19.9", told)] {
+        spec.sets.push(SetSpec {
+            name: name.into(),
+            members: Members::Where(Expression::parse(at, &[]).unwrap()),
+        });
+        spec.loading.conditions.push(ConditionSpec {
+            set: name.into(),
+            kind: ConditionKind::Displacement([text(u), None, None]),
+        });
+    }
+    spec.run.schedule.time_step = TimeStep::Fixed(1.0);
+    spec
+}
+
+/// A bond of the length 1 takes `w = ½ c s²`, and glue of such bonds that of one: the chain bears `s = √(2 G/c)` of its 20 springs.
+#[test]
+fn glue_breaks_in_turn_by_its_work() {
+    let law = LawSpec::Pmb(PmbStiffness::Micromodulus(2.0));
+    let mut spec = chain(&law, "3*t");
+    let fracture = FractureSpec::new(Criterion::BondEnergy(1e-4));
+    spec.interactions.interfaces[0].fracture = Some(fracture);
+    spec.run.schedule.steps = 1;
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
+        control: Control::Breaking,
+        ..Statics::default()
+    });
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    sim.step().unwrap();
+    assert!((sim.time() - 0.2 / 3.0).abs() < 1e-12, "{}", sim.time());
+    let l = sim.ledger().unwrap();
+    assert!((l.strain - 20.0 * 1e-4).abs() < 1e-13, "{l:?}");
+}
+
+/// The one bond of the glue of a chain that is pulled to a hundredth of its length wears by `a ((1 − R) s)^m` a cycle, and is broken in the second increment.
+#[test]
+fn glue_wears_in_cycles() {
+    let law = LawSpec::Pmb(PmbStiffness::Micromodulus(2.0));
+    let mut spec = chain(&law, "0.2");
+    spec.interactions.interfaces[0].fracture = Some(FractureSpec {
+        fatigue: Some(FatigueSpec {
+            nucleation: Some([1e3, 2.0]),
+            limit: 0.0,
+            growth: None,
+            crack: 0.35,
+        }),
+        ..FractureSpec::new(Criterion::Stretch(0.5))
+    });
+    spec.run.schedule.steps = 2;
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
+        method: Method::Newton,
+        tolerance: 1e-11,
+        cycles: Some(Cycles {
+            load_ratio: 0.1,
+            bonds: 1,
+            most: f64::INFINITY,
+        }),
+        ..Statics::default()
+    });
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    (0..2).for_each(|_| sim.step().unwrap());
+    let exact = 1.0 / (1e3 * 0.009f64.powi(2));
+    let found = sim.cycles().unwrap();
+    assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
+    assert_eq!((sim.broken(), sim.fragments()), (2, 2));
+}
+
+/// What glue breaks by beside its stretch: by work, and later where it is pulled fast.
+#[test]
+fn glue_breaks_by_work_and_rate() {
+    let broken = |fracture: FractureSpec| {
+        let mut spec = pulled();
+        spec.materials[0].fracture = None;
+        spec.interactions.interfaces[0].fracture = Some(fracture);
+        for (i, v) in spec
+            .loading
+            .initial
+            .iter_mut()
+            .zip(["-0.08*(3-x)", "0.08*(x-2.5)"])
+        {
+            i.velocity[0] = text(v);
+        }
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        let first = sim.ledger().unwrap().initial;
+        let mut when = None;
+        while sim.time() < 3.0 {
+            sim.step().unwrap();
+            let l = sim.ledger().unwrap();
+            assert!(l.residual().abs() < 0.02 * first, "{fracture:?}: {l:?}");
+            if sim.broken() > 0 {
+                when.get_or_insert(sim.time());
+            }
+        }
+        when
+    };
+    let by = |criterion: Criterion| FractureSpec::new(criterion);
+    let plain = broken(by(Criterion::Stretch(0.005))).expect("it breaks");
+    // the reference is a hundredth of how fast bonds are stretched: they bear 1 + 0.1 ln 100 = 1.46 times as much
+    let fast = FractureSpec {
+        rate: Some(RateSpec {
+            coefficient: 0.1,
+            reference: 8e-4,
+        }),
+        ..by(Criterion::Stretch(0.005))
+    };
+    let late = broken(fast).is_none_or(|when| when > plain);
+    assert!(late, "{plain}");
+    assert!(broken(by(Criterion::BondEnergy(1e-9))).is_some());
+    assert!(broken(by(Criterion::BondEnergy(1e9))).is_none());
+}
+
 /// Bonds of an interface heal like all others: cut and healed at once, it was never cut.
 #[test]
 fn an_interface_heals() {
@@ -568,5 +703,36 @@ fn an_interface_heals() {
         let ((cut, one, healed), (none, _, whole)) = (run(true), run(false));
         assert!(cut > 0 && none == 0 && one == 1, "{cut} {none} {one}");
         assert_eq!(healed, whole);
+    }
+}
+
+/// Glue that lets go and is pressed together again holds as before, whatever it breaks by, and where nothing else breaks.
+#[test]
+fn glue_that_came_apart_heals() {
+    for criterion in [Criterion::Stretch(0.01), Criterion::BondEnergy(1e-3)] {
+        let [_, mut spec] = bars(2, &PMB);
+        spec.interactions.interfaces[0].fracture = Some(FractureSpec::new(criterion));
+        spec.damage.healing = Some(HealingSpec {
+            set: "all".into(),
+            below: Expression::parse("1e-3", &[]).unwrap(),
+        });
+        spec.loading.conditions = vec![ConditionSpec {
+            set: "all".into(),
+            kind: ConditionKind::Displacement([
+                text("x > 2.75 ? 2*sin(pi*t/10)^2 : 0"),
+                text("0"),
+                None,
+            ]),
+        }];
+        spec.run.schedule.time_step = TimeStep::Fixed(0.01);
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        (0..500).for_each(|_| sim.step().unwrap());
+        assert_eq!(sim.fragments(), 2, "{criterion:?}");
+        (0..500).for_each(|_| sim.step().unwrap());
+        assert_eq!(sim.fragments(), 1, "{criterion:?}");
+        assert_eq!(sim.scalars("damage").iter().sum::<f64>(), 0.0);
+        let strain = sim.ledger().unwrap().strain;
+        assert!(strain.abs() < 1e-9, "{criterion:?}: {strain}");
     }
 }

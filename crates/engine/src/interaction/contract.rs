@@ -194,7 +194,8 @@ pub trait Interaction<const D: usize>: Send + Sync {
     }
 
     /// Broken bonds become whole again, as they were in the reference, where `heals` of their ends and their `e` (see [`history`](super::history)) at `u`,
-    /// images of which are fresh; it must say the same of both directions. Those of absent cracks do not. How many directed ones; `None`: those of the law do not.
+    /// images of which are fresh; it must say the same of both directions. They remember nothing. Those of absent cracks do not. How many directed ones; `None`: what
+    /// they break by is of points, or there are none.
     fn mend(
         &mut self,
         _body: &Body<D>,
@@ -213,6 +214,17 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// by something else. NaN of points whose body has none.
     fn stress_borne(&mut self, _body: &Body<D>, _u: FieldView<D>) -> Option<Vec<f64>> {
         None
+    }
+
+    /// Of every undirected whole bond that breaks by the work on it, `visit(i, j, ξ, part)` of the work that its force has done at `u` from rest, `½ (T_i − T_j)·η`
+    /// as of a linear body, over what it bears. False: no bonds do.
+    fn work_borne(
+        &mut self,
+        _body: &Body<D>,
+        _u: FieldView<D>,
+        _visit: &mut dyn FnMut(usize, usize, [f64; D], f64),
+    ) -> bool {
+        false
     }
 
     /// What enumerates the bonds: `"stencil"`, `"list"`, `"neighbours"` or `"reference"`.

@@ -2,13 +2,13 @@
 
 use super::{
     BondForce, BondStatus, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
-    history,
+    Wearing, history,
 };
 use crate::body::{Body, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 use crate::columns::On;
 use crate::error::BuildError;
 use crate::law::BondFactors;
-use crate::spec::CrackKind;
+use crate::spec::{CrackKind, Cycles};
 use crate::state::Archive;
 
 /// No slot.
@@ -254,6 +254,47 @@ impl<const D: usize> Interface<D> {
         points.take(u, view_mut(&mut self.u));
         let heals = |i: usize, j: usize, e: f64| heals(points.whole(i), points.whole(j), e);
         self.bonds.mend(&points.cloud, view(&self.u), &heals)
+    }
+
+    /// [`expand`](Interaction::expand), by slots of the body of all.
+    pub fn expand(&mut self, strain: &[f64]) -> bool {
+        let points = &self.points;
+        let mut own = vec![0.0; points.cloud.len];
+        for (all, slot) in points.slots.iter().zip(&points.cloud.slots) {
+            own[*slot as usize] = strain[*all as usize];
+        }
+        self.bonds.expand(&points.cloud, &own)
+    }
+
+    /// [`last`](Interaction::last)
+    pub fn last(&mut self, step: f64) {
+        self.bonds.last(step);
+    }
+
+    /// [`wearing`](Interaction::wearing)
+    pub fn wearing(&self, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
+        let mut own = self.points.cloud.at_rest();
+        self.points.take(u, view_mut(&mut own));
+        self.bonds.wearing(&self.points.cloud, view(&own), load)
+    }
+
+    /// [`wear`](Interaction::wear)
+    pub fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
+        self.bonds.wear(bonds, cycles);
+    }
+
+    /// [`work_borne`](Interaction::work_borne), of slots of the body of all.
+    pub fn work_borne(
+        &mut self,
+        u: FieldView<D>,
+        visit: &mut dyn FnMut(usize, usize, [f64; D], f64),
+    ) -> bool {
+        let points = &self.points;
+        points.take(u, view_mut(&mut self.u));
+        let visit = &mut |i: usize, j: usize, xi: [f64; D], part: f64| {
+            visit(points.whole(i), points.whole(j), xi, part);
+        };
+        self.bonds.work_borne(&points.cloud, view(&self.u), visit)
     }
 
     pub fn cut(

@@ -1,11 +1,12 @@
 //! Linear bonds on a lattice: `f_i = Σ_j C_ij (u_j − u_i)` with the same D×D micromoduli at every point.
 //!
 //! Springs are `C = c ω ν V_j ξ⊗ξ/|ξ|³`, the bond-based solid linearised about the reference (seleson2009 (A.2)); they pull
-//! along their reference direction and may go through each other.
+//! along their reference direction and may go through each other. One that temperature or swelling makes longer by ε, the mean of both ends, answers to
+//! what is beyond that, `f_i = Σ_j C_ij (u_j − u_i − ε ξ)`.
 
 use super::scale::{Scale, TileFactors};
 use super::{BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
-use crate::body::{Body, FieldView, FieldViewMut, Grid, Identity, Values};
+use crate::body::{Body, Column, Field, FieldView, FieldViewMut, Grid, Identity, Values, zeros};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
@@ -23,12 +24,22 @@ pub struct LinearInteraction<const D: usize> {
     stiffness: Vec<Vec<[[f64; D]; D]>>,
     /// Factors of bonds.
     scale: Scale,
+    /// What bonds grow by per strain of temperature or swelling: 1 + ν of a slice that is held, where all of them have ν = ¼.
+    grows: f64,
+    /// Strain by temperature or swelling per slot, and `Σ C εξ` (force density); empty: none.
+    expansion: Vec<f64>,
+    pull: Field<D>,
     sums: PerBlock<[f64; 1]>,
 }
 
 impl<const D: usize> LinearInteraction<D> {
-    /// `modulus` gives `C` from ξ (force density / length).
-    pub fn new(links: Links<D>, simd: Simd, modulus: impl Fn([f64; D]) -> [[f64; D]; D]) -> Self {
+    /// `modulus` gives `C` from ξ (force density / length); `held`: is the body in plane strain?
+    pub fn new(
+        links: Links<D>,
+        simd: Simd,
+        held: bool,
+        modulus: impl Fn([f64; D]) -> [[f64; D]; D],
+    ) -> Self {
         LinearInteraction {
             body: links.body,
             simd,
@@ -39,8 +50,55 @@ impl<const D: usize> LinearInteraction<D> {
                 .collect(),
             sums: PerBlock::sums(links.blocks()),
             scale: Scale::default(),
+            grows: if held { 1.25 } else { 1.0 },
+            expansion: vec![],
+            pull: crate::array::from_fn(|_| Column::default()),
             links,
         }
+    }
+
+    /// Visits every directed bond that grows: its point, the other end, εξ and `C εξ`.
+    fn each_growth(&self, body: &Body<D>, mut visit: impl FnMut(usize, usize, [f64; D], [f64; D])) {
+        if self.expansion.is_empty() {
+            return;
+        }
+        let grid = body.grid();
+        self.links.each_directed(grid, |i, j, sub, k| {
+            let strain = 0.5 * (self.expansion[i] + self.expansion[j]);
+            let grown = self.links.links[sub][k].xi.map(|x| strain * x);
+            let factor = self.factor(grid, i, k);
+            let pull = self.stiffness[sub][k]
+                .map(|row| factor * row.iter().zip(&grown).map(|(c, x)| c * x).sum::<f64>());
+            visit(i, j, grown, pull);
+        });
+    }
+
+    /// Finds what growth pulls.
+    fn look(&mut self, body: &Body<D>) {
+        if self.expansion.is_empty() {
+            return;
+        }
+        let mut pull = zeros(body.len);
+        self.each_growth(body, |i, _, _, of| {
+            for a in 0..D {
+                pull[a][i] += of[a];
+            }
+        });
+        self.pull = pull;
+    }
+
+    /// `¼ (εξ·C εξ − 2 η·C εξ)` of every bond that grows: what the energy density of its point is more than without.
+    fn each_growth_energy(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        mut visit: impl FnMut(usize, f64),
+    ) {
+        self.each_growth(body, |i, j, grown, pull| {
+            let beyond = |a: usize| grown[a] - 2.0 * (u[a][j] - u[a][i]);
+            let energy: f64 = (0..D).map(|a| beyond(a) * pull[a]).sum();
+            visit(i, 0.25 * energy);
+        });
     }
 
     /// Factor of bond `k` of a slot's point.
@@ -217,11 +275,20 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
             f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
         };
         run_blocks(self.simd, &kernel, self.links.blocks());
+        if !self.expansion.is_empty() {
+            for (f, pull) in f.into_iter().zip(&self.pull) {
+                for s in body.slots.iter().map(|s| *s as usize) {
+                    f[s] -= pull[s];
+                }
+            }
+        }
         Tally::default()
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
-        [self.energies(body, u, Shared::NULL), 0.0]
+        let mut sum = self.energies(body, u, Shared::NULL);
+        self.each_growth_energy(body, u, |i, energy| sum += body.volume.at(i) * energy);
+        [sum, 0.0]
     }
 
     unsafe fn observe_unchecked(
@@ -232,6 +299,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     ) {
         out.zeros(body.len);
         self.energies(body, u, Shared(out.strain.as_mut_ptr()));
+        self.each_growth_energy(body, u, |i, energy| out.strain[i] += energy);
     }
 
     unsafe fn tangents_unchecked(
@@ -260,7 +328,28 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         u: FieldView<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
-        self.tangents(body, u, &mut |bond| visit(bond.linear_force(u)));
+        let strain = std::mem::take(&mut self.expansion);
+        self.tangents(body, u, &mut |bond| {
+            let mut force = bond.linear_force(u);
+            if !strain.is_empty() {
+                let grown = 0.5 * (strain[bond.i] + strain[bond.j]);
+                let pull = bond.stiffness.map(|row| -> f64 {
+                    row.iter().zip(&bond.y).map(|(c, x)| c * (grown * x)).sum()
+                });
+                force.force = crate::array::from_fn(|a| force.force[a] - pull[a]);
+                force.own = Some(force.force.map(|f| 0.5 * f));
+            }
+            visit(force);
+        });
+        self.expansion = strain;
+        true
+    }
+
+    fn expand(&mut self, body: &Body<D>, strain: &[f64]) -> bool {
+        self.check(body, &[]);
+        assert_eq!(strain.len(), body.len, "a strain for each slot");
+        self.expansion = strain.iter().map(|x| self.grows * x).collect();
+        self.look(body);
         true
     }
 
@@ -287,6 +376,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
                 old.of(n, k, l).times(factors(tile.first + l, j, cell))
             })
         });
+        self.look(body);
         Ok(())
     }
 
@@ -298,12 +388,18 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         self.links.family_size(body, slot)
     }
 
-    /// Nothing is remembered.
-    fn archive(&mut self, _: &Body<D>, _: &mut Archive<'_>) {}
+    /// Nothing is remembered but how long bonds are.
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        archive.all("expansion", &mut self.expansion);
+        if archive.loads() {
+            self.look(body);
+        }
+    }
 
     fn bytes(&self) -> usize {
         self.links.bytes()
             + self.scale.bytes()
+            + 8 * (D + 1) * self.expansion.len()
             + self
                 .stiffness
                 .iter()

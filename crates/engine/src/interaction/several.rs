@@ -139,6 +139,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         for bonds in self.own.iter_mut().filter_map(|own| own.bonds.as_mut()) {
             bonds.last(step);
         }
+        for interface in &mut self.interfaces {
+            interface.last(step);
+        }
     }
 
     fn begin_steps(&mut self, body: &Body<D>) {
@@ -161,24 +164,26 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         any
     }
 
-    /// Bonds of interfaces know no strain.
     fn expand(&mut self, body: &Body<D>, strain: &[f64]) -> bool {
         self.check(body, &[]);
-        let mut all = self.interfaces.is_empty();
+        let mut all = true;
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
                 all &= bonds.expand(&p.body, &strain[p.range()]);
             }
         }
+        for interface in &mut self.interfaces {
+            all &= interface.expand(strain);
+        }
         all
     }
 
-    /// Bonds of interfaces do not wear.
     fn wearing(&self, body: &Body<D>, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
         self.check(body, &[u]);
         let all = self.each(body);
         let each = all.filter_map(|(p, bonds)| bonds.wearing(&p.body, p.part(u), load));
-        each.reduce(|mut all, more| {
+        let between = { self.interfaces.iter() }.filter_map(|i| i.wearing(u, load));
+        each.chain(between).reduce(|mut all, more| {
             all.extend(more);
             all
         })
@@ -187,6 +192,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
         for own in self.own.iter_mut().filter_map(|own| own.bonds.as_mut()) {
             own.wear(bonds, cycles);
+        }
+        for interface in &mut self.interfaces {
+            interface.wear(bonds, cycles);
         }
     }
 
@@ -423,6 +431,26 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 }
             });
         }
+    }
+
+    fn work_borne(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        visit: &mut dyn FnMut(usize, usize, [f64; D], f64),
+    ) -> bool {
+        let mut any = false;
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                any |= bonds.work_borne(&p.body, p.part(u), &mut |i, j, xi, part| {
+                    visit(i + p.first, j + p.first, xi, part);
+                });
+            }
+        }
+        for interface in &mut self.interfaces {
+            any |= interface.work_borne(u, visit);
+        }
+        any
     }
 
     fn stress_borne(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<Vec<f64>> {

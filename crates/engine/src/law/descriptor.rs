@@ -568,6 +568,12 @@ pub trait Shelved: Sized {
         energy
     }
 
+    /// Why points of a body of these parameters have one horizon; `None`: the law says how its stiffness follows that of each
+    /// ([`OF_FAMILY`](crate::law::material::Material::OF_FAMILY) and beside).
+    fn of_one_horizon(_: &Parameters) -> Option<&'static str> {
+        None
+    }
+
     /// The law of all materials of a body in `d` dimensions.
     ///
     /// # Errors

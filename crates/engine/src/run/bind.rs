@@ -74,7 +74,7 @@ pub(super) fn bind<const D: usize>(
     if named.iter().any(|p| p.surface.is_some()) {
         body.join_volumes();
     }
-    let mut joined = vec![];
+    let (mut joined, mut between) = (vec![], vec![]);
     for made in interfaces(spec, named, body, shelf, simd)? {
         let (count, horizon) = (made.interface.near_horizon(), made.model.horizon);
         if count > 0 && !made.model.ratio {
@@ -87,9 +87,10 @@ pub(super) fn bind<const D: usize>(
             ]);
         }
         joined.push(made.interface);
+        between.extend(made.model.named);
     }
     let interaction = SeveralInteraction::new(body, all, joined);
-    let constitutive = ConstitutiveModels::several(constitutive);
+    let constitutive = ConstitutiveModels::several(constitutive, between);
     Ok((constitutive, Box::new(interaction)))
 }
 

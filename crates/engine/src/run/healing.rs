@@ -1,7 +1,7 @@
 //! Healing: broken bonds that become whole again, in motion.
 //!
-//! A bond heals with the length that it had in the reference, where both its ends may heal and the size of its stretch is below the limit of the time; bonds of absent
-//! cracks were never there and do not. What it
+//! A bond heals with the length that it had in the reference (longer by what temperature or swelling gives it), where both its ends may heal and the size of its
+//! stretch is below the limit of the time; bonds of absent cracks were never there and do not. It is new: without memory, work and wear. What it
 //! holds then comes from what healing is driven by, not from the body: it is taken from the energy released.
 
 pub(super) mod state;
@@ -19,7 +19,9 @@ use std::cell::Cell;
 fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {
     let unsupported =
         |message: &str, help: &str| Err(BuildError::unsupported("healing", message).help(help));
-    if spec.materials.iter().all(|m| m.fracture.is_none()) && spec.damage.precracks.is_empty() {
+    let materials = spec.materials.iter().map(|m| m.fracture);
+    let interfaces = spec.interactions.interfaces.iter().map(|i| i.fracture);
+    if materials.chain(interfaces).all(|f| f.is_none()) && spec.damage.precracks.is_empty() {
         return unsupported(
             "nothing of this body breaks",
             "give a material a fracture, or leave healing out",
@@ -55,9 +57,9 @@ impl<const D: usize> System<D> {
             .mend(&self.body, view(&self.u), &|_, _, _| false)
             .is_none()
         {
-            let message = "bonds of this law remember more than whether they are whole";
+            let message = "bonds of this body break by what their points remember (plastic strain, damage of a law): what heals would break at once";
             return Err(BuildError::unsupported("healing", message).help(
-                "bonds of pmb and lps heal, that break by critical_stretch or energy, without rate, fatigue and expansion",
+                "bonds heal that break by their stretch, energy, work, stress, rate or cycles",
             ));
         }
         let mut may = vec![false; self.body.len];

@@ -11,7 +11,7 @@ use crate::interaction::interface::Interface;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::Dimension;
-use crate::spec::{Calibration, InterfaceSpec, MaterialSpec, PieceSpec, Spec};
+use crate::spec::{Calibration, InterfaceSpec, PieceSpec, Spec};
 
 /// An interface with its law, and places of the two bodies.
 pub(super) struct Joined<const D: usize> {
@@ -85,13 +85,7 @@ fn join<const D: usize>(
     let first = &pieces[bodies[0]];
     let mut own = Spec {
         body: first.body.clone(),
-        materials: vec![MaterialSpec {
-            name: written.name.clone(),
-            set: "all".into(),
-            density: 1.0,
-            law: written.law.clone(),
-            fracture: written.fracture,
-        }],
+        materials: vec![written.material()],
         ..spec.clone()
     };
     own.bonds.horizon = written.horizon;
@@ -101,6 +95,7 @@ fn join<const D: usize>(
     own.interactions.contact = None;
     own.interactions.interfaces = vec![];
     own.damage.precracks = vec![];
+    shelf.resolve(&mut own)?;
     let full = reference::<D>(&own)?;
     let spacings = bodies.map(|b| {
         let piece = &all.pieces()[b].body;

@@ -1,6 +1,6 @@
 //! What joins two bodies.
 
-use super::{FractureSpec, Horizon, Influence, LawSpec};
+use super::{FractureSpec, Horizon, Influence, LawSpec, MaterialSpec};
 
 /// Bonds between the points of two bodies that are within a horizon of each other in the reference, by a law of their own.
 #[derive(Debug, Clone)]
@@ -16,4 +16,17 @@ pub struct InterfaceSpec {
     pub influence: Influence,
     /// `None`: its bonds never break.
     pub fracture: Option<FractureSpec>,
+}
+
+impl InterfaceSpec {
+    /// What its bonds are made of, as of a body; they have no mass.
+    pub fn material(&self) -> MaterialSpec {
+        MaterialSpec {
+            name: self.name.clone(),
+            set: "all".into(),
+            density: 1.0,
+            law: self.law.clone(),
+            fracture: self.fracture,
+        }
+    }
 }

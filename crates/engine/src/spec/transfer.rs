@@ -49,6 +49,13 @@ pub struct TransferSpec {
     pub conditions: Vec<TransferCondition>,
 }
 
+impl TransferSpec {
+    /// Does any material expand by it?
+    pub fn expands(&self) -> bool {
+        self.materials.iter().any(|m| m.expansion != 0.0)
+    }
+}
+
 /// What a material conducts, holds, and how it expands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TransferMaterial {

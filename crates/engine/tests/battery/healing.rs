@@ -30,6 +30,39 @@ fn laws() -> [(LawSpec, FamilyChoice); 4] {
     ]
 }
 
+fn general() -> Vec<(LawSpec, FamilyChoice)> {
+    let solid = || Parameters::numbers(&[("young", 100.0), ("poisson", 0.2)]);
+    let branches = Parameter::Rows(vec![vec![0.3, 2.0]]);
+    let gradient = Parameter::Word("bond".into());
+    let all = [
+        ("thermoelastic", Parameters::numbers(&[("young", 100.0)])),
+        ("thermoelastic_solid", solid()),
+        ("position_aware", solid()),
+        ("bond_rotation", solid()),
+        ("correspondence", solid()),
+        ("correspondence", solid().with("gradient", gradient)),
+        (
+            "softening",
+            Parameters::numbers(&[("young", 100.0), ("onset", 0.9)]),
+        ),
+        ("hypoelastic", solid()),
+        ("viscoelastic", solid().with("branches", branches)),
+        (
+            "elastic_plastic",
+            solid().with("yield_stress", Parameter::Number(0.1)),
+        ),
+    ];
+    let families = [FamilyChoice::Stencil, FamilyChoice::List];
+    let each = all.into_iter().zip(families.into_iter().cycle());
+    let law = |((name, keys), family)| (LawSpec::named(name, keys), family);
+    each.map(law).collect()
+}
+
+/// Those whose points and bonds remember nothing, or only while they are whole.
+fn elastic() -> Vec<(LawSpec, FamilyChoice)> {
+    general().into_iter().take(7).collect()
+}
+
 /// A plate that swings, cut across by a broken crack or whole.
 fn plate(law: LawSpec, family: FamilyChoice, cut: bool) -> Spec {
     let body = BodySpec::Lattice {
@@ -46,6 +79,9 @@ fn plate(law: LawSpec, family: FamilyChoice, cut: bool) -> Spec {
     spec.bonds.family = family;
     spec.bonds.horizon = Horizon::Ratio(3);
     spec.space.periodic[1] = Some(7.0);
+    if matches!(&spec.materials[0].law, LawSpec::Named(law) if law.name == "softening") {
+        spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.5)));
+    }
     if cut {
         spec.damage.precracks = vec![PrecrackSpec {
             shape: CrackShape::Segment {
@@ -72,7 +108,9 @@ fn started(spec: &Spec) -> Box<dyn Simulation> {
 
 #[test]
 fn a_crack_that_heals_at_once_was_never_there() {
-    for (law, family) in laws() {
+    // bonds hold something at the end of the first step, where they heal
+    let each = laws().into_iter().map(|law| (law, 1e-3));
+    for ((law, family), part) in each.chain(general().into_iter().map(|law| (law, 5e-3))) {
         let mut healed = plate(law.clone(), family, true);
         heals(&mut healed, "0.1");
         let run = |spec: &Spec| {
@@ -82,20 +120,20 @@ fn a_crack_that_heals_at_once_was_never_there() {
             (sim, cut)
         };
         let (mut healed, cut) = run(&healed);
-        let (mut whole, _) = run(&plate(law, family, false));
+        let (mut whole, _) = run(&plate(law.clone(), family, false));
         assert!(cut > 1.0, "{cut}");
         assert_eq!(healed.scalars("damage").iter().sum::<f64>(), 0.0);
         assert_eq!(healed.fragments(), 1);
-        assert_eq!(healed.displacements(), whole.displacements());
+        assert_eq!(healed.displacements(), whole.displacements(), "{law:?}");
         let l = healed.ledger().unwrap();
-        assert!(l.residual().abs() < 1e-3 * l.initial, "{l:?}");
+        assert!(l.residual().abs() < part * l.initial, "{law:?}: {l:?}");
     }
 }
 
 /// Bonds that an absent crack took away were never there: beside them broken ones heal, and they do not.
 #[test]
 fn bonds_of_an_absent_crack_do_not_heal() {
-    for (law, family) in laws() {
+    for (law, family) in laws().into_iter().chain(elastic()) {
         let run = |broken: bool, healing: bool| {
             let mut spec = plate(law.clone(), family, false);
             let crack = |x: f64, kind| PrecrackSpec {
@@ -118,19 +156,24 @@ fn bonds_of_an_absent_crack_do_not_heal() {
             sim
         };
         let (mut absent, mut healed) = (run(false, false), run(true, true));
-        assert_eq!(healed.displacements(), absent.displacements());
+        assert_eq!(healed.displacements(), absent.displacements(), "{law:?}");
         assert_eq!(healed.displacements(), run(false, true).displacements());
         assert_eq!(healed.scalars("damage").iter().sum::<f64>(), 0.0);
         assert_eq!([healed.fragments(), absent.fragments()], [2; 2]);
         let l = healed.ledger().unwrap();
-        assert!(l.residual().abs() < 1e-3 * l.initial, "{l:?}");
+        assert!(l.residual().abs() < 5e-3 * l.initial, "{law:?}: {l:?}");
     }
 }
 
 /// What healed bonds hold is taken from what is released; only those of the set heal, and only from their time on.
 #[test]
 fn what_heals_under_strain_is_accounted_for() {
-    for (law, family) in laws() {
+    // those whose bonds hold energy one by one
+    let branches = Parameter::Rows(vec![vec![0.3, 2.0]]);
+    let relaxes = Parameters::numbers(&[("young", 100.0), ("poisson", 0.2)]);
+    let relaxes = LawSpec::named("viscoelastic", relaxes.with("branches", branches));
+    let more = [elastic()[0].clone(), (relaxes, FamilyChoice::List)];
+    for (law, family) in laws().into_iter().chain(more) {
         let mut spec = plate(law, family, true);
         spec.sets = vec![SetSpec {
             name: "upper".into(),
@@ -190,18 +233,43 @@ fn torn_and_closed_again_it_is_whole() {
         spec.bonds.calibration = Calibration::Continuum;
         spec.bonds.volume_scaling = true;
     };
+    // as much as a stretch of about a tenth takes: bonds that still knew it would break again
+    let work = |spec: &mut Spec| {
+        spec.materials[0].fracture = Some(FractureSpec::new(Criterion::BondEnergy(1.0)));
+    };
     for (law, family) in laws() {
         let plain = matches!(law, LawSpec::Pmb(_)) && family == FamilyChoice::List;
         closes(&law, family, &explicit);
         closes(&law, family, &implicit);
         closes(&law, family, &tougher);
+        closes(&law, family, &work);
         if plain {
             closes(&law, family, &own);
         }
     }
 }
 
-fn closes(law: &LawSpec, family: FamilyChoice, change: &dyn Fn(&mut Spec)) {
+/// What is whole again answers as what was never torn: no weights of families, integrities or greatest stretches are left.
+#[test]
+fn torn_and_closed_again_it_is_new() {
+    for (law, family) in elastic() {
+        let mut closed = closes(&law, family, &|_| {});
+        let mut new = plate(law.clone(), family, false);
+        new.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
+        let mut new = started(&new);
+        let place = new.vectors("reference");
+        let wave = |x: &[f64; 3]| [0.01 * x[0].sin(), 0.01 * (0.5 * x[0]).cos(), 0.0];
+        let u: Vec<[f64; 3]> = place.iter().map(wave).collect();
+        let (f, g) = (closed.forces_under(&u), new.forces_under(&u));
+        let most = g.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
+        assert!(most > 1e-2, "{most}");
+        for (f, g) in f.iter().flatten().zip(g.iter().flatten()) {
+            assert!((f - g).abs() < 1e-12 * most, "{law:?}: {f} {g}");
+        }
+    }
+}
+
+fn closes(law: &LawSpec, family: FamilyChoice, change: &dyn Fn(&mut Spec)) -> Box<dyn Simulation> {
     let mut spec = plate(law.clone(), family, false);
     spec.loading.initial = vec![];
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
@@ -226,13 +294,15 @@ fn closes(law: &LawSpec, family: FamilyChoice, change: &dyn Fn(&mut Spec)) {
     assert!(most > 0.3, "{most}");
     assert!(sim.broken() > 100);
     let strain = sim.ledger().unwrap().strain;
-    assert!(strain.abs() < 1e-9, "{strain}");
-    assert_eq!(sim.scalars("damage").iter().sum::<f64>(), 0.0);
+    assert!(strain.abs() < 1e-9, "{law:?}: {strain}");
+    assert_eq!(sim.scalars("damage").iter().sum::<f64>(), 0.0, "{law:?}");
+    sim
 }
 
 #[test]
 fn healing_that_cannot_be_is_refused() {
     let (law, family) = laws()[0].clone();
+    let (flows, _) = general().pop().unwrap();
     let refused = |spec: &Spec| match build(spec, Options::default()) {
         Err(error) => error.to_string(),
         Ok(_) => panic!("built"),
@@ -240,8 +310,9 @@ fn healing_that_cannot_be_is_refused() {
     let mut spec = plate(law, family, false);
     heals(&mut spec, "1e-3");
     assert!(refused(&spec).contains("nothing of this body breaks"));
-    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::BondEnergy(1.0)));
-    assert!(refused(&spec).contains("remember more"));
+    spec.materials[0].law = flows;
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::PlasticStrain(0.1)));
+    assert!(refused(&spec).contains("would break at once"));
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
     heals(&mut spec, "x");
     assert!(refused(&spec).contains("depends on the place"));

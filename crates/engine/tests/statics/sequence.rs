@@ -89,6 +89,59 @@ fn a_bar_of_bonds_that_break_by_stress_closes_its_ledger() {
     }
 }
 
+/// A bond of the length 1 takes `w = ½ c s²`, and of a chain of such bonds a crack takes that of one: `s = √(2 G/c)`.
+#[test]
+fn a_chain_bears_the_work_of_its_springs() {
+    let mut spec = block(
+        [20.0, 0.0, 0.0],
+        1,
+        LawSpec::Pmb(PmbStiffness::Micromodulus(2.0)),
+    );
+    hold(&mut spec, "low", [number(0.0), None, None]);
+    hold(&mut spec, "high", [text("3*t"), None, None]);
+    breaking(&mut spec, 0.01, 1);
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::BondEnergy(1e-4)));
+    let mut sim = solved(&spec);
+    assert!((sim.time() - 0.2 / 3.0).abs() < 1e-13, "{}", sim.time());
+    let l = sim.ledger().unwrap();
+    assert!((l.strain - 20.0 * 1e-4).abs() < 1e-14, "{l:?}");
+    assert!(l.residual().abs() < 1e-15, "{l:?}");
+    let error = sim.step().unwrap_err().to_string();
+    assert!(error.contains("nothing is left to break"), "{error}");
+}
+
+/// Of bonds and of families: the energy closes to round-off, and all loads go with the root of what bonds bear.
+#[test]
+fn a_bar_of_bonds_that_break_by_work_closes_its_ledger() {
+    let lps = LawSpec::Lps(Moduli {
+        young: 1.0,
+        poisson: 0.3,
+    });
+    for law in [LawSpec::Pmb(PmbStiffness::Young(1.0)), lps] {
+        let run = |energy: f64| {
+            let mut spec = slender();
+            spec.materials[0].law = law.clone();
+            spec.materials[0].fracture = Some(FractureSpec::new(Criterion::BondEnergy(energy)));
+            let mut sim = build(&spec, Options::default()).unwrap();
+            sim.start(true);
+            let mut times = vec![];
+            for n in 1..=6 {
+                sim.step().unwrap();
+                let l = sim.ledger().unwrap();
+                let off = l.residual().abs() / l.work_conditions.abs().max(l.strain);
+                assert!(off < 1e-9, "{law:?} {n}: {off:e} {l:?}");
+                assert_eq!(sim.broken() > 0, n > 1);
+                times.push(sim.time());
+            }
+            times
+        };
+        let (one, four) = (run(1e-4), run(4e-4));
+        for (a, b) in one.iter().zip(&four) {
+            assert!((b / a - 2.0).abs() < 1e-9, "{law:?}: {one:?} {four:?}");
+        }
+    }
+}
+
 /// A bar five times as long as it is wide, with a notch, pulled by t.
 pub(super) fn slender() -> Spec {
     let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));

@@ -66,6 +66,8 @@ pub struct CloudFamily<const D: usize> {
     rate: f64,
     /// `[slots]`: micromodulus over that at the longest horizon, where points have their own and bonds the stiffness; else empty.
     stiff: Vec<f64>,
+    /// Are bonds of these the same from both ends?
+    alike: bool,
     /// `[slots][4]`: x, y, z, volume.
     pub reference: Vec<f64>,
     /// `[lines][8]`: place of the bond that leads back; empty: nobody asks.
@@ -112,6 +114,7 @@ impl<const D: usize> CloudFamily<D> {
             reach: vec![],
             rate: body.spacing.recip(),
             stiff: vec![],
+            alike: false,
             reference,
             back: vec![],
             period: body.period.map(|p| p.unwrap_or(0.0)),
@@ -124,9 +127,13 @@ impl<const D: usize> CloudFamily<D> {
         self.period.iter().any(|p| *p > 0.0)
     }
 
-    /// Of bonds that make the stiffness, which have the mean of their ends: micromoduli over that of the law, by slot.
-    pub fn of_bonds(self, stiff: Vec<f64>) -> Self {
-        CloudFamily { stiff, ..self }
+    /// Of bonds that make the stiffness: micromoduli over that of the law, by slot. Each end weighs by its own, or both by the mean where bonds are `alike` at both.
+    pub fn of_bonds(self, stiff: Vec<f64>, alike: bool) -> Self {
+        CloudFamily {
+            stiff,
+            alike,
+            ..self
+        }
     }
 
     /// What part of a cell at this distance is within a horizon.
@@ -248,7 +255,10 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
                     false => {
                         // SAFETY: a number per slot
                         let stiff = unsafe { ends.one::<L>(self.stiff.as_ptr()) };
-                        [L::splat(0.5) * (own * at[5] + back * stiff); 2]
+                        match self.alike {
+                            true => [L::splat(0.5) * (own * at[5] + back * stiff); 2],
+                            false => [own * at[5], back * stiff],
+                        }
                     }
                 }
             }

@@ -2,6 +2,7 @@
 
 use super::family::Family;
 use super::state::BondState;
+use crate::body::FieldView;
 use crate::execute::blocks::Seen;
 
 /// What a law has of a point beside its bonds.
@@ -27,6 +28,18 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             past: self.past.numbers(slot),
             section,
         }
+    }
+
+    /// η of the bond ξ between two slots of the family as laws see it, beyond what temperature or swelling gives the bond.
+    pub fn plain_eta(&self, u: FieldView<D>, [i, end]: [usize; 2], xi: &[f64; D]) -> [f64; D] {
+        let mut eta: [f64; D] = crate::array::from_fn(|a| u[a][end] - u[a][i]);
+        if !self.expansion.is_empty() {
+            let strain = 0.5 * (self.expansion[i] + self.expansion[end]);
+            for a in 0..D {
+                eta[a] = (eta[a] - strain * xi[a]) / (1.0 + strain);
+            }
+        }
+        eta
     }
 
     /// Constants of a slot, of `[materials][numbers]`.

@@ -91,6 +91,26 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         body: &Body<D>,
         visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
     ) {
+        self.each_half_of(bonds, body, &mut |[group, k, l], [i, j], status| {
+            visit(i, j, self.family.bond(group, k, l).0, status);
+        });
+    }
+
+    /// Every undirected bond that damage counts: group, bond and place, and both ends.
+    pub fn each_half(
+        &self,
+        body: &Body<D>,
+        visit: &mut dyn FnMut([usize; 3], [usize; 2], BondStatus),
+    ) {
+        self.each_half_of(self.counted(), body, visit);
+    }
+
+    fn each_half_of(
+        &self,
+        bonds: impl Iterator<Item = (usize, usize, usize)>,
+        body: &Body<D>,
+        visit: &mut dyn FnMut([usize; 3], [usize; 2], BondStatus),
+    ) {
         for (group, k, l) in bonds {
             let i = self.family.rows(group).slot(l);
             let end = self.family.ends(group, k).slot(l);
@@ -98,7 +118,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             // a bond between a point and its own image counts from one side only
             if i < j || (i == j && end > i) {
                 let status = BondStatus::of(self.is_whole(group, k, l));
-                visit(i, j, self.family.bond(group, k, l).0, status);
+                visit([group, k, l], [i, j], status);
             }
         }
     }
@@ -115,14 +135,9 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         torn: impl Fn(usize) -> bool,
         visit: &mut dyn FnMut(usize, usize, [f64; D]),
     ) {
-        for (group, k, l) in self.lost(torn) {
-            let i = self.family.rows(group).slot(l);
-            let end = self.family.ends(group, k).slot(l);
-            let j = body.exchange.original(end);
-            if i < j || (i == j && end > i) {
-                visit(i, j, self.family.bond(group, k, l).0);
-            }
-        }
+        self.each_half_of(self.lost(torn), body, &mut |[group, k, l], [i, j], _| {
+            visit(i, j, self.family.bond(group, k, l).0);
+        });
     }
 
     /// Every directed bond of the family that is not whole, those of absent cracks too, of groups that may have lost one: group, bond, place.

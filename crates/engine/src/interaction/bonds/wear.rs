@@ -47,13 +47,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             let [i, end] = [self.family.rows(group), self.family.ends(group, k)].map(|s| s.slot(l));
             let j = body.exchange.original(end);
             let r = self.family.plain(group, k, l);
-            let mut eta: [f64; D] = crate::array::from_fn(|a| u[a][end] - u[a][i]);
-            if !self.expansion.is_empty() {
-                let strain = 0.5 * (self.expansion[i] + self.expansion[end]);
-                for a in 0..D {
-                    eta[a] = (eta[a] - strain * r.xi[a]) / (1.0 + strain);
-                }
-            }
+            let eta = self.plain_eta(u, [i, end], &r.xi);
             let stretch = history::stretch(relative_square_stretch(eta, r.xi, r.two_by_square));
             let range = (1.0 - load.load_ratio) * stretch.abs();
             let of = |slot: usize| {

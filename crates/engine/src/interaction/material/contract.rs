@@ -107,6 +107,27 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         self.stress(body, u)
     }
 
+    fn mend(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> Option<u64> {
+        self.check(body, &[u]);
+        let new = self.bonds.ends_by_bonds();
+        new.then(|| self.bonds.mend(body, u, heals, &*self.law))
+    }
+
+    fn work_borne(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        visit: &mut dyn FnMut(usize, usize, [f64; D], f64),
+    ) -> bool {
+        self.check(body, &[u]);
+        self.works(body, u, visit)
+    }
+
     fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
         self.bonds.bond_limit(ends, xi, critical)
     }

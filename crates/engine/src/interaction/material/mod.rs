@@ -39,6 +39,8 @@ pub trait AnyLaw<const D: usize>: Sync {
     fn of_family(&self) -> bool;
     /// [`Material::OF_BONDS`]
     fn of_bonds(&self) -> bool;
+    /// [`Material::ALIKE`]
+    fn is_alike(&self) -> bool;
     /// Are its constants those of places?
     fn is_placed(&self) -> bool;
 
@@ -69,6 +71,10 @@ impl<const D: usize, M: Material<D>> AnyLaw<D> for Compiled<M> {
 
     fn of_bonds(&self) -> bool {
         M::OF_BONDS
+    }
+
+    fn is_alike(&self) -> bool {
+        M::ALIKE
     }
 
     fn is_placed(&self) -> bool {

@@ -13,7 +13,7 @@ use crate::interaction::bonds::state::{Before, Room};
 use crate::interaction::bonds::store::Store;
 use crate::interaction::bonds::view::BondView;
 use crate::interaction::criterion::Measure;
-use crate::interaction::{EnergyFields, Motion, PointEnergiesMut, Tally};
+use crate::interaction::{BondStatus, EnergyFields, Motion, PointEnergiesMut, Tally, history};
 use crate::spec::Release;
 
 impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
@@ -381,6 +381,44 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         self.mises(body, u, &room, Shared(out.as_mut_ptr()));
         self.bonds.room = room;
         Some(out.to_vec())
+    }
+
+    /// [`work_borne`](crate::interaction::Interaction::work_borne)
+    pub(super) fn works(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        visit: &mut dyn FnMut(usize, usize, [f64; D], f64),
+    ) -> bool {
+        if self.bonds.work.is_empty() {
+            return false;
+        }
+        let room = self.take_room(u, self.bonds.step);
+        self.settle(body, u, &room);
+        let rest = Before::zeros(body.len, room.records.len());
+        let at_rest = Room {
+            records: rest.records,
+            ..Room::default()
+        };
+        let mut done = vec![0.0; self.bonds.work.len()];
+        self.bonds.blocks.run(&Work {
+            law: self.asked(self.bonds.view(u, &room)),
+            other: self.bonds.view(view(&rest.u), &at_rest),
+            part: -0.5,
+            work: Shared(done.as_mut_ptr()),
+        });
+        let critical = &self.bonds.critical;
+        self.bonds
+            .each_half(body, &mut |[group, k, l], [i, j], status| {
+                let limit = history::limit(critical[i], critical[j]);
+                if status == BondStatus::Whole && limit.is_finite() {
+                    let at = self.bonds.family.own(group, k, 0, 1) + l;
+                    let (xi, _) = self.bonds.family.bond(group, k, l);
+                    visit(i, j, xi, done[at] / limit);
+                }
+            });
+        self.bonds.room = room;
+        true
     }
 
     /// Are bonds measured by the forces of now?

@@ -80,6 +80,7 @@ impl<const D: usize> Material<D> for BondRotation {
     type Memory<N: Number> = [N; 0];
     type State<N: Number> = Free<N, D>;
     const PASSES: usize = 1;
+    const OF_BONDS: bool = true;
     const FORM_OF_WHOLE: bool = true;
 
     fn constants(&self, material: usize, _: f64) -> [f64; 2] {

@@ -20,6 +20,8 @@ use crate::spec::{Influence, LawSpec, Parameters, Plane};
 const OF_VOLUME: &[&str] = &["theta", "theta0"];
 const OF_WEIGHT: &[&str] = &["r", "r0", "omega", "delta"];
 const OF_PAIR: &[&str] = &["r", "r0", "omega", "delta", "theta0"];
+/// Which of those of bonds is the horizon.
+const DELTA: usize = 3;
 
 /// E, j and w of a material.
 #[derive(Debug, Clone)]
@@ -148,6 +150,8 @@ impl<const D: usize> Material<D> for EmbeddedSolid {
     type Memory<N: Number> = [N; 0];
     type State<N: Number> = Along<N>;
     const PASSES: usize = 1;
+    /// Whatever its functions make of them.
+    const OF_FAMILY: bool = true;
 
     fn constants(&self, material: usize, _: f64) -> [f64; 1] {
         [material as f64]
@@ -280,6 +284,12 @@ impl Shelved for EmbeddedSolid {
             pair: 18.0 * bulk,
             volume: 0.0,
         })
+    }
+
+    fn of_one_horizon(parameters: &Parameters) -> Option<&'static str> {
+        let written = ["weight", "pair"].map(|key| parameters.formula(key));
+        let knows = written.into_iter().flatten().any(|e| e.depends_on(DELTA));
+        knows.then_some("functions that are written with delta know one horizon")
     }
 
     fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {

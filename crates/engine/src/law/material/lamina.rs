@@ -315,6 +315,12 @@ impl Shelved for Lamina {
         )))
     }
 
+    fn of_one_horizon(_: &Parameters) -> Option<&'static str> {
+        Some(
+            "constants of a lamina are sums over the rows of a lattice, whose points have one horizon",
+        )
+    }
+
     fn make(d: usize, plane: Plane, all: &[Given]) -> Result<Self, (usize, String)> {
         let each = all.iter().enumerate();
         let made = each.map(|(n, given)| constants(d, plane, given).map_err(|why| (n, why)));

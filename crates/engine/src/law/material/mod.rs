@@ -341,7 +341,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     type Point<N: Number>: Numbers<N>;
     /// What a point remembers.
     type Past<N: Number>: Numbers<N>;
-    /// What a directed bond remembers.
+    /// What a directed bond remembers; zeros of a new one.
     type Memory<N: Number>: Numbers<N>;
     /// [`Along`] or [`Free`].
     type State<N: Number>: ForceState<N, D>;
@@ -353,8 +353,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const ALIKE: bool = false;
     /// Do the sums of the family make its stiffness, with ω once in each of them and in each answer? Points may have horizons of their own then.
     const OF_FAMILY: bool = false;
-    /// Do bonds make its stiffness, each with a micromodulus for all of its answer and ω once in it? Points may have horizons of their own
-    /// then, too: c goes as `δ^−(D+1)`.
+    /// Do bonds make its stiffness, each with a micromodulus for all of its answer and ω once in it, and once in each sum? Points may have horizons of their
+    /// own then, too: c goes as `1/∫ω|ξ|dV`, of each end its own, of laws that are [`ALIKE`](Material::ALIKE) at both ends the mean.
     const OF_BONDS: bool = false;
     /// Does it look at what is across a body in plane strain ([`Around::section`])? Bonds of a law that does not are expanded by (1 + ν) times
     /// what temperature or swelling gives them there: exact where it is linear and isotropic.

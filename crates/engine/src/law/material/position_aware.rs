@@ -306,6 +306,12 @@ impl Shelved for PositionAware {
         descriptor::moduli(parameters).map(LawSpec::Lps)
     }
 
+    fn of_one_horizon(_: &Parameters) -> Option<&'static str> {
+        Some(
+            "this law corrects the weights of whole cells: where a horizon passed a point, its stiffness would jump",
+        )
+    }
+
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
         let of = |(n, m): (usize, &Given)| {
             let moduli = descriptor::moduli(m.parameters).map_err(|why| (n, why))?;

@@ -64,14 +64,19 @@ pub(super) fn criteria<const D: usize>(
 
 /// Are there cycles where bonds wear, and bonds that wear where there are cycles?
 pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
-    let mut all = spec.materials.iter();
-    let wears = all.position(|m| m.fracture.is_some_and(|f| f.fatigue.is_some()));
+    let fatigue = |f: Option<FractureSpec>| f.is_some_and(|f| f.fatigue.is_some());
+    let mut materials = spec.materials.iter();
+    let material = materials.position(|m| fatigue(m.fracture));
+    let mut interfaces = spec.interactions.interfaces.iter();
+    let interface = interfaces.position(|i| fatigue(i.fracture));
+    let path = |of: &str, n: usize| format!("{of}[{n}].fracture.fatigue");
+    let wears = material.map(|n| path("materials", n));
+    let wears = wears.or(interface.map(|n| path("interface", n)));
     let cycles = spec.run.schedule.statics().and_then(|s| s.cycles);
     match (wears, cycles) {
         (None, None) | (Some(_), Some(_)) => Ok(()),
-        (Some(n), None) => Err(unsupported(
-            n,
-            "fracture.fatigue",
+        (Some(path), None) => Err(BuildError::unsupported(
+            path,
             "bonds wear in cycles of load, and this run has none",
         )
         .help("write [statics] with method = \"newton\", increments and cycles = { load_ratio = 0.1 }")),

@@ -117,6 +117,7 @@ impl ConstitutiveModel {
                 body,
                 stencil: self.stencil.as_ref(),
                 horizon: self.reach(),
+                list: None,
                 weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
                 toughness,
                 criteria: match only {
@@ -155,7 +156,9 @@ impl ConstitutiveModel {
             let k = c * self.weight(&xi, r0) * volume / (r0 * r0 * r0);
             crate::array::from_fn(|a| crate::array::from_fn(|b| k * xi[a] * xi[b]))
         };
-        Ok(Box::new(LinearInteraction::new(links, self.simd, modulus)))
+        Ok(Box::new(LinearInteraction::new(
+            links, self.simd, self.slice, modulus,
+        )))
     }
 
     fn of_micromoduli<const D: usize>(
@@ -261,9 +264,25 @@ impl ConstitutiveModel {
         };
         let reach = self.reach();
         let of = |i: usize, j: usize| if across(i, j) { reach } else { 0.0 };
+        let list = HorizonList::within(body, reach, of)?;
+        if let Some(named) = &self.named {
+            let made = named.bind(Place {
+                body,
+                stencil: None,
+                horizon: reach,
+                list: Some(list),
+                weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
+                toughness: self.toughness.clone(),
+                criteria: self.criteria.clone(),
+                repulsion: None,
+                simd: self.simd,
+                only: None,
+            })?;
+            return self.weighed(body, made);
+        }
         let made = Box::new(ListInteraction::new(ListParts {
             body,
-            list: HorizonList::within(body, reach, of)?,
+            list,
             law: BondBased { c: c[0] },
             weight: self.bond_weight(),
             point_constants: PointConstants::None,

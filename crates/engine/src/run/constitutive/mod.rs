@@ -19,7 +19,7 @@ use crate::interaction::{PairTable, Repulsion, Toughness};
 use crate::law::influence::{InfluenceFunction, mean_influence};
 use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
-use crate::spec::{Calibration, FamilyChoice, Horizon, Influence, InterfaceRule, Spec};
+use crate::spec::{Calibration, FamilyChoice, Horizon, Influence, InterfaceRule, Plane, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
 pub(super) use pairs::contact_stiffness;
@@ -62,6 +62,8 @@ pub(super) struct ConstitutiveModel {
     /// Do bonds break, or are some cut?
     pub breaks: bool,
     pub rule: InterfaceRule,
+    /// Is the body in plane strain?
+    pub slice: bool,
     /// Constants of pairs of materials, where they do not follow from the two.
     pub pairs: Option<Arc<BondTable>>,
     /// `None`: springs, micromoduli and atoms have others.
@@ -75,6 +77,8 @@ pub(super) struct ConstitutiveModel {
 pub(super) struct ConstitutiveModels {
     /// First slot, places of the materials in the spec, model.
     of: Vec<(usize, Vec<usize>, ConstitutiveModel)>,
+    /// Laws of interfaces that are on the shelf.
+    between: Vec<shelf::Chosen>,
 }
 
 /// Do bonds break, or are some cut? Where the spec says so.
@@ -96,12 +100,22 @@ impl ConstitutiveModels {
     pub fn one(model: ConstitutiveModel) -> ConstitutiveModels {
         ConstitutiveModels {
             of: vec![(0, (0..model.contact.len()).collect(), model)],
+            between: vec![],
         }
     }
 
-    /// `(first slot, places of its materials in the spec, model)` of each body, in order.
-    pub fn several(of: Vec<(usize, Vec<usize>, ConstitutiveModel)>) -> ConstitutiveModels {
-        ConstitutiveModels { of }
+    /// `(first slot, places of its materials in the spec, model)` of each body, in order; and laws of the interfaces `between` them.
+    pub fn several(
+        of: Vec<(usize, Vec<usize>, ConstitutiveModel)>,
+        between: Vec<shelf::Chosen>,
+    ) -> ConstitutiveModels {
+        ConstitutiveModels { of, between }
+    }
+
+    /// Laws of the shelf, of bodies and of interfaces.
+    pub fn named(&self) -> impl Iterator<Item = &shelf::Chosen> {
+        let own = self.all().filter_map(|m| m.named.as_ref());
+        own.chain(&self.between)
     }
 
     pub fn first(&self) -> &ConstitutiveModel {
@@ -239,6 +253,7 @@ impl ConstitutiveModel {
             held: spec.bonds.family == FamilyChoice::Reference,
             breaks: breaks(spec),
             rule: spec.interactions.interface,
+            slice: D == 2 && spec.space.plane == Plane::Strain,
             pairs,
             sweeps,
             named,

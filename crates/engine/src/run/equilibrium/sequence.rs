@@ -7,7 +7,8 @@
 //! its bonds are cut, and the next factor may be lower, with both load and displacement (snap-back).
 //!
 //! A bond that breaks by the stress of its ends has no critical stretch, but `σ = λ σ¹` is as linear: it lets go at `λ = σ_c/σ¹` and the stretch
-//! that it has there.
+//! that it has there. One that breaks by the work on it, `½ (T_i − T_j)·η = λ² w¹` from the reference, lets go at `λ = √(w_c/w¹)`. (Of a bond that knows its own
+//! stretch alone that is its work whatever broke before; of others it is that of the load on the body as it is now.)
 //!
 //! What the loads do between two such equilibria: while the bond lets go slowly at its critical stretch, displacements and forces are
 //! linear in the force that is left in it (the equations are), from `λ u¹` to `λ' u'¹` of the body without it, `λ' = s_c/s'¹` at its
@@ -49,7 +50,8 @@ impl<const D: usize> System<D> {
         let mut all = [self.criticals()].into_iter().chain(between).flatten();
         let rest = self.body.at_rest();
         let stress = self.interaction.stress_borne(&self.body, view(&rest));
-        if stress.is_none() && !all.any(|e| e > 0.0 && e < history::NEVER) {
+        let works = (self.interaction).work_borne(&self.body, view(&rest), &mut |_, _, _, _| {});
+        if stress.is_none() && !works && !all.any(|e| e > 0.0 && e < history::NEVER) {
             return Err(BuildError::missing(
                 "materials[0].fracture",
                 "no bond of this body breaks: nothing says how far the load goes",
@@ -206,6 +208,10 @@ impl<const D: usize> Problem<'_, D> {
         let (u, small) = system.made_small();
         let stress = system.interaction.stress_borne(&system.body, view(&u));
         let stress = stress.unwrap_or_default();
+        let mut by_work = vec![];
+        (system.interaction).work_borne(&system.body, view(&u), &mut |i, j, xi, part| {
+            by_work.push((i, j, xi, part));
+        });
         let system = &*self.system;
         let critical = system.criticals();
         let between = system.interaction.criticals_between();
@@ -222,6 +228,28 @@ impl<const D: usize> Problem<'_, D> {
         };
         let mut all = vec![];
         let mut most = 0.0f64;
+        // the points of bodies whose bonds break by work
+        let mut work = vec![
+            false;
+            if by_work.is_empty() {
+                0
+            } else {
+                system.body.len
+            }
+        ];
+        for (i, j, xi, part) in by_work {
+            if system.body.piece_of(i) == system.body.piece_of(j) {
+                (work[i], work[j]) = (true, true);
+            }
+            let s = stretch(i, j, &xi, &system.u);
+            most = most.max(s.abs());
+            if s > 0.0 && part > 0.0 {
+                let factor = small / part.sqrt();
+                let stretch = factor * s;
+                all.push((factor, Critical { i, j, xi, stretch }));
+            }
+        }
+        let works = |i: usize| work.get(i) == Some(&true);
         system
             .interaction
             .each_bond(&system.body, &mut |i, j, xi, state| {
@@ -229,6 +257,9 @@ impl<const D: usize> Problem<'_, D> {
                     return;
                 }
                 let whole_body = system.body.piece_of(i) == system.body.piece_of(j);
+                if whole_body && works(i) && works(j) {
+                    return;
+                }
                 let [a, b] = [i, j].map(|s| stress.get(s).copied().unwrap_or(f64::NAN));
                 if whole_body && !(a + b).is_nan() {
                     let s = stretch(i, j, &xi, &system.u);
@@ -261,11 +292,12 @@ impl<const D: usize> Problem<'_, D> {
         let least = all.iter().map(|(factor, _)| *factor);
         let least = least.fold(f64::INFINITY, f64::min);
         let largest = all.iter().map(|(_, b)| b.stretch).fold(0.0, f64::max);
-        // where stress is all that there is of a body that moves as a whole it is round-off
+        // where stress or work is all that there is of a body that moves as a whole it is round-off
         let peak = { system.body.slots.iter() }
             .flat_map(|s| system.u.iter().map(|c| c[*s as usize].abs()))
             .fold(0.0f64, f64::max);
-        let rests = !stress.is_empty() && !(most * system.body.spacing > AT_REST * peak);
+        let forced = !stress.is_empty() || !work.is_empty();
+        let rests = forced && !(most * system.body.spacing > AT_REST * peak);
         if rests || !(least.is_finite() && least * most > AT_REST * largest) {
             return Err(SolveError::NothingBreaks);
         }

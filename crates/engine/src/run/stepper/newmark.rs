@@ -155,7 +155,7 @@ impl<const D: usize> NewmarkStepper<D> {
                 " follow them",
             ]);
         }
-        let named = system.constitutive.all().filter_map(|m| m.named.as_ref());
+        let named = system.constitutive.named();
         let mut memories = named.map(|law| law.memory().0);
         if dt > reach * limits.bond && memories.any(|m| m == Memory::Shock) {
             system.info.warnings.push(message![

@@ -22,14 +22,14 @@ impl<const D: usize> System<D> {
 
     /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
     pub fn at_peace(&self) -> bool {
-        let mut named = self.constitutive.all().filter_map(|m| m.named.as_ref());
+        let mut named = self.constitutive.named();
         let pulls = named.any(|n| n.pulls());
         !pulls && !matches!(self.constitutive.first().laws, Laws::Atoms(_)) && !self.expands()
     }
 
     /// Has no law forces at the reference, and another stiffness there than here, by what it remembers? What fades has none: it is let back to there.
     pub fn forgets(&self) -> bool {
-        let mut named = self.constitutive.all().filter_map(|m| m.named.as_ref());
+        let mut named = self.constitutive.named();
         named.all(|n| n.memory().0 == Memory::Nothing || n.fades())
     }
 

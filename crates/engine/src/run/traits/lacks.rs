@@ -7,12 +7,12 @@ use crate::run::constitutive::{Shelf, Stiffness};
 use crate::run::reference::{current_neighbours, listed};
 use crate::spec::{
     BodySpec, Calibration, Control, CrackKind, Criterion, FamilyChoice, FractureSpec,
-    IndenterMotion, LawSpec, MaterialSpec, Measure, Method, PreloadSpec, Quantity, Release, Solver,
-    Spec, Stepper, ToughnessFactor, TransferMethod, TransferSpec,
+    IndenterMotion, InterfaceSpec, LawSpec, MaterialSpec, Measure, Method, PreloadSpec, Quantity,
+    Release, Solver, Spec, Stepper, ToughnessFactor, TransferMethod, TransferSpec,
 };
 
 pub(super) fn of(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
-    let mut all = of_bodies(spec);
+    let mut all = of_bodies(spec, shelf);
     all.extend(of_families(spec));
     all.extend(of_horizons(spec, shelf));
     all.extend(of_probes(spec));
@@ -26,7 +26,7 @@ pub(super) fn of(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     all
 }
 
-fn of_bodies(spec: &Spec) -> Vec<Lack> {
+fn of_bodies(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     let mut all = vec![];
     if !spec.interactions.pairs.is_empty() {
         let says = "the constants of pairs of materials are one table for all bonds of a body";
@@ -54,12 +54,20 @@ fn of_bodies(spec: &Spec) -> Vec<Lack> {
         let instead = "take the interfaces away";
         all.push(Lack::new(Property::Unbonded, says, instead));
     }
-    if spec
-        .interactions
-        .interfaces
-        .iter()
-        .any(|i| i.fracture.is_some())
-    {
+    let interfaces = &spec.interactions.interfaces;
+    let rated = |i: &InterfaceSpec| i.fracture.is_some_and(|f| f.rate.is_some());
+    if let Some(n) = interfaces.iter().position(rated) {
+        let path = format!("interface[{n}].fracture.rate");
+        let says = "bonds of this interface break by how fast they are stretched";
+        for property in [Property::Timeless, Property::PresentStretch] {
+            all.push(Lack::new(property, says, "leave rate out").at(&*path));
+        }
+    }
+    let lets_go = |i: &InterfaceSpec| {
+        let fades = matches!(&i.law, LawSpec::Named(law) if shelf.fades(&law.name));
+        i.fracture.is_some() && !fades
+    };
+    if interfaces.iter().any(lets_go) {
         let says = "bonds of an interface let go while they bear";
         let instead = "leave the fracture of the interface out, or write control = \"breaking\"";
         all.push(Lack::new(Property::Fades, says, instead).at("statics.control"));
@@ -156,9 +164,9 @@ fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
     for m in &spec.materials {
         match shelf.stiffness(&m.law) {
             Some(Stiffness::Family | Stiffness::Bonds) => {}
-            Some(Stiffness::Horizon) => lack(
+            Some(Stiffness::Horizon(why)) => lack(
                 "own_horizon",
-                "bonds of this law have the stiffness of one horizon",
+                why,
                 "take pmb, lps or another law of sums over families, or leave own_horizon out",
             ),
             None => lack(
@@ -473,6 +481,12 @@ fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
             }
         }
         LawSpec::Atoms(_) => {
+            if (m.fracture).is_some_and(|f| matches!(f.criterion, Criterion::BondEnergy(_))) {
+                let says =
+                    "the work on bonds of a potential is known where atoms move, step by step";
+                let instead = "give critical_stretch";
+                all.push(Lack::new(Property::PresentStretch, says, instead).at(&*path));
+            }
             if spec.interactions.contact.is_some() {
                 let says = "how atoms repel each other is what their potential says, and no stiffness of contact follows from it";
                 let instead = "remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps";
@@ -554,11 +568,21 @@ pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
     all
 }
 
-/// Of bonds between bodies, for what they break by.
-pub(super) fn of_interface() -> [Lack; 1] {
-    let says = "bonds of an interface break by their critical stretch";
-    let instead = "give critical_stretch or energy, without criterion, rate and fatigue";
-    [Lack::new(Property::OtherMeasures, says, instead)]
+/// Of bonds between bodies, for what they break by; `path` is where that is said.
+pub(super) fn of_interface(i: &InterfaceSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
+    let mut all = of_law(&i.material(), path, shelf);
+    let points = |f: FractureSpec| {
+        matches!(
+            f.criterion,
+            Criterion::VonMises(_) | Criterion::PlasticStrain(_)
+        )
+    };
+    if i.fracture.is_some_and(points) {
+        let says = "stress and plastic strain are of points in a body, and bonds of an interface join those of two";
+        let instead = "give critical_stretch or energy";
+        all.push(Lack::new(Property::OtherMeasures, says, instead).at(path));
+    }
+    all
 }
 
 fn of_fracture(fracture: FractureSpec, path: &str) -> Vec<Lack> {
@@ -570,7 +594,12 @@ fn of_fracture(fracture: FractureSpec, path: &str) -> Vec<Lack> {
             all.push(Lack::new(property, says, "leave alpha out").at(path));
         }
     }
-    let of_now = !fracture.remembers() || matches!(fracture.criterion, Criterion::VonMises(_));
+    // the work on a bond of a linear body is that of the load
+    let of_load = matches!(
+        fracture.criterion,
+        Criterion::VonMises(_) | Criterion::BondEnergy(_)
+    );
+    let of_now = !fracture.remembers() || of_load;
     if !of_now || fracture.rate.is_some() || fracture.fatigue.is_some() {
         let says = "these bonds break by more than the stretch that they have now";
         let instead = "give critical_stretch or energy without criterion, rate and fatigue";

@@ -222,7 +222,7 @@ pub(super) fn agree(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
     for (n, i) in spec.interactions.interfaces.iter().enumerate() {
         let path = format!("interface[{n}].fracture");
         let needs = needs::of_fracture(spec, i.fracture, &path);
-        met(needs, &lacks::of_interface())?;
+        met(needs, &lacks::of_interface(i, &path, shelf))?;
     }
     Ok(())
 }

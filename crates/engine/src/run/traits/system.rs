@@ -137,7 +137,7 @@ fn of_solver(solver: Solver, path: &str) -> Option<Need> {
 }
 
 fn lacks<const D: usize>(system: &System<D>) -> Vec<Lack> {
-    let named = system.constitutive.all().filter_map(|m| m.named.as_ref());
+    let named = system.constitutive.named();
     let mut lacks: Vec<Lack> = named.flat_map(|law| of_law(law.memory())).collect();
     let applied = &system.applied;
     if applied.free().next().is_some() {

@@ -28,7 +28,7 @@ impl<const D: usize> Maker<'_, D> {
         {
             return Err(BuildError::unsupported(
                 name,
-                "the bonds of this law or body know no expansion: those of pmb and lps do where no interface joins bodies, and laws such as elastic_plastic, viscoelastic, correspondence, softening",
+                "the bonds of this law or body know no expansion: those of pmb, lps and springs do, and laws such as elastic_plastic, viscoelastic, correspondence, softening",
             )
             .help("take one of these, or leave expansion and swelling out"));
         }

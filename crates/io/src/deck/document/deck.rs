@@ -212,7 +212,7 @@ pub struct Interface {
     pub name: Option<At<String>>,
     /// Names of the two bodies.
     pub bodies: At<Vec<At<String>>>,
-    /// pmb; moduli are those of a full family of the first body at this horizon.
+    /// A law of bonds (pmb, thermoelastic, softening); moduli are those of a full family of the first body at this horizon.
     pub law: At<Law>,
     /// { m_ratio = 3 } in spacings of the first body, or a length; that of the first body when left out.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]

@@ -13,6 +13,7 @@
 //! Every directed bond remembers what the law remembers; the point has the mean over its bonds to show. Points whose bonds span no space
 //! answer nothing.
 
+use super::equation_of_state::is_pressed;
 use super::family::CONTROL;
 use super::{Asked, Classical, GRADIENT, Stressed, Unseen, answered, on_a_family, takes_bonds};
 use crate::columns::{Declaration, On};
@@ -158,6 +159,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     type Memory<N: Number> = L::Past<N>;
     type State<N: Number> = Free<N, D>;
     const PASSES: usize = 2;
+    const OF_FAMILY: bool = true;
     const SECTION: bool = true;
     const ACROSS: bool = L::ACROSS;
     const STRETCHES: bool = false;
@@ -382,6 +384,11 @@ impl<L: Shelved> Shelved for BondAssociated<L> {
 
     fn brittle_energy(parameters: &Parameters, energy: f64) -> f64 {
         L::brittle_energy(parameters, energy)
+    }
+
+    fn of_one_horizon(parameters: &Parameters) -> Option<&'static str> {
+        let pressed = is_pressed(parameters);
+        pressed.then_some("with a gradient of each bond the viscosity of shocks knows one horizon")
     }
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {

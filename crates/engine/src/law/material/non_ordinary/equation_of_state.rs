@@ -216,6 +216,11 @@ pub const EQUATION: Key = Key {
     doc: "Pressure of the volume, with viscosity of shocks (Meyers 1994; von Neumann & Richtmyer 1950).",
 };
 
+/// Is there one?
+pub fn is_pressed(parameters: &Parameters) -> bool {
+    parameters.word(EQUATION.name) == Some("mie_gruneisen")
+}
+
 /// C_l and C_q where nobody says.
 const USUAL: [f64; 2] = [0.1, 0.5];
 

@@ -33,6 +33,8 @@ pub(crate) struct Place<'a, const D: usize> {
     pub stencil: Option<&'a Stencil>,
     /// Length up to which pairs of a cloud are bonds.
     pub horizon: f64,
+    /// Which of them; `None`: all.
+    pub list: Option<HorizonList>,
     pub weight: BondWeight,
     pub toughness: Vec<Toughness>,
     pub criteria: Criteria,
@@ -63,10 +65,14 @@ pub(super) struct Materials {
     pub pulls: bool,
     /// [`Material::ACROSS`]
     pub across: bool,
-    stiffness: Stiffness,
+    stiffness: fn(&Parameters) -> Stiffness,
     binders: Binders,
     /// Another law, and whether it fits the parameters of a material.
-    other: Option<(fn(&Parameters) -> bool, Stiffness, Binders)>,
+    other: Option<(
+        fn(&Parameters) -> bool,
+        fn(&Parameters) -> Stiffness,
+        Binders,
+    )>,
 }
 
 /// What makes the stiffness of a law, which horizons of points change.
@@ -76,16 +82,19 @@ pub(crate) enum Stiffness {
     Family,
     /// [`Material::OF_BONDS`]
     Bonds,
-    /// Computed for one horizon.
-    Horizon,
+    /// Computed for one horizon, and why.
+    Horizon(&'static str),
 }
 
 impl Stiffness {
-    fn of<M: Material<2>>() -> Stiffness {
-        match (M::OF_FAMILY, M::OF_BONDS) {
-            (true, _) => Stiffness::Family,
-            (false, true) => Stiffness::Bonds,
-            (false, false) => Stiffness::Horizon,
+    fn of<M: Shelved + Material<2>>(parameters: &Parameters) -> Stiffness {
+        match (M::of_one_horizon(parameters), M::OF_FAMILY, M::OF_BONDS) {
+            (Some(why), ..) => Stiffness::Horizon(why),
+            (None, true, _) => Stiffness::Family,
+            (None, false, true) => Stiffness::Bonds,
+            (None, false, false) => {
+                Stiffness::Horizon("the stiffness of this law is computed for one horizon")
+            }
         }
     }
 }
@@ -111,8 +120,8 @@ impl Materials {
     /// What makes the stiffness of a material of these parameters.
     pub fn stiffness(&self, parameters: &Parameters) -> Stiffness {
         match self.other {
-            Some((fits, other, _)) if fits(parameters) => other,
-            Some(_) | None => self.stiffness,
+            Some((fits, other, _)) if fits(parameters) => other(parameters),
+            Some(_) | None => (self.stiffness)(parameters),
         }
     }
 
@@ -138,7 +147,7 @@ impl Materials {
             kinds: M::KINDS,
             pulls: M::PULLS_AT_REST,
             across: <M as Material<2>>::ACROSS,
-            stiffness: Stiffness::of::<M>(),
+            stiffness: Stiffness::of::<M>,
             binders: [
                 line,
                 Arc::new(bind::<2, M> as Binder<2>),
@@ -389,6 +398,7 @@ impl Chosen {
             body,
             stencil,
             horizon,
+            list,
             weight,
             toughness,
             criteria,
@@ -439,15 +449,16 @@ impl Chosen {
             }
             _ => {
                 let stiffnesses = weight.stiffnesses(body);
-                let (list, weight) = match body.horizon.is_empty() {
-                    true => (HorizonList::new(body, horizon)?, weight),
-                    false => own_horizons(body, horizon, weight)?,
+                let (list, weight) = match list {
+                    Some(list) => (list, weight),
+                    None if body.horizon.is_empty() => (HorizonList::new(body, horizon)?, weight),
+                    None => own_horizons(body, horizon, weight)?,
                 };
                 let remembers = of.memory > 0;
                 let near_horizon = list.near_horizon;
                 let family = CloudFamily::new(body, self.horizon, list, weight, remembers);
                 let family = match law.of_bonds() {
-                    true => family.of_bonds(stiffnesses),
+                    true => family.of_bonds(stiffnesses, law.is_alike()),
                     false => family,
                 };
                 let parts = BondParts {
