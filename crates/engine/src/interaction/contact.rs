@@ -6,7 +6,7 @@
 use super::cohesion::Cohesion;
 use super::nearness::{Bounds, Nearness};
 use super::pull::Pull;
-use super::{BondTangent, Repulsion};
+use super::{EachTangent, Repulsion};
 use crate::body::{Body, Field, view};
 use crate::family::neighbours::{LOOSE, Neighbours, base, periods};
 
@@ -239,7 +239,7 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Tangents of all contacts, as those of bonds between points that touch. `u` as for [`Contact::energy`].
-    pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut EachTangent<D>) {
         self.each_pull(u, |pull| pull.tangents(body, visit));
     }
 

@@ -3,7 +3,7 @@
 
 use super::contact::Contact;
 use super::friction::{Friction, Pressed};
-use super::{BondTangent, Evaluation, Interaction, PointEnergies};
+use super::{EachTangent, Evaluation, Interaction, PointEnergies};
 use crate::body::{Body, Field};
 use crate::state::{Archive, Owner};
 
@@ -49,7 +49,7 @@ impl<const D: usize> ContactForces<D> {
     }
 
     /// Tangents as those of bonds between points that touch, at the displacements `u` of the last evaluation.
-    pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut EachTangent<D>) {
         self.central.tangents(body, u, visit);
         if let Some(friction) = &self.friction {
             friction.tangents(body, visit);

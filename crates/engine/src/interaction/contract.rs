@@ -1,8 +1,9 @@
 //! What every law on every family can do: the contract between bonds and those who move, load and watch a body.
 
+use super::bonds::AnyBonds;
 use super::{
-    BondForce, BondStatus, BondTangent, PointEnergiesMut, Sweep, Tally, Wearing, add_virial, along,
-    history,
+    BondStatus, Crosses, EachBond, EachForce, EachPair, EachTangent, FactorsOf, Gradient, Heals,
+    PointEnergiesMut, Sweep, Tally, Wearing, add_virial, along, history,
 };
 use crate::body::{Body, FieldView, FieldViewMut, Identity, view};
 use crate::columns::{Declaration, On};
@@ -18,6 +19,23 @@ use crate::state::Archive;
 pub trait Interaction<const D: usize>: Send + Sync {
     /// The body that it was made for.
     fn made_for(&self) -> Identity;
+
+    /// Its bonds, where they are those of any law: what is asked of bonds below they answer, unless the interaction does. Else it has none but
+    /// those that it says itself.
+    fn bonds(&self) -> Option<&dyn AnyBonds<D>> {
+        None
+    }
+
+    /// The same, to be changed.
+    fn bonds_mut(&mut self) -> Option<&mut dyn AnyBonds<D>> {
+        None
+    }
+
+    /// Bonds are whole that were not, or the other way round.
+    fn look_bits(&mut self) {}
+
+    /// Critical values are others.
+    fn look_critical(&mut self, _body: &Body<D>) {}
 
     /// Does a sweep over this body with these fields stay inside what was made?
     ///
@@ -111,12 +129,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Energy densities and dilatation of all points under a homogeneous displacement gradient `∂u_a/∂x_b`, so small that
     /// nobody gets other neighbours; periodic images move like everything else.
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         // copies have displacements of their own
         let mut u = body.at_rest();
         let points = body.slots.iter().map(|s| *s as usize);
@@ -142,7 +155,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
-    fn tangents(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    fn tangents(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachTangent<D>) {
         self.check(body, &[u]);
         // SAFETY: just checked
         unsafe { self.tangents_unchecked(body, u, visit) }
@@ -156,7 +169,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     );
 
     /// `∂p_i / ∂(Σ share)` of a slot, since the last call of [`Interaction::tangents`].
@@ -169,25 +182,20 @@ pub trait Interaction<const D: usize>: Send + Sync {
         vec![]
     }
 
-    /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus));
-
-    /// Of [`each_bond`](Interaction::each_bond) those that are broken and whose points repel inside the family: not those of interfaces.
-    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        self.each_bond(body, &mut |i, j, xi, state| {
-            if state == BondStatus::Broken {
-                visit(i, j, xi);
-            }
-        });
+    /// Every undirected bond that the reference family ever had once: slots i < j (images resolved), reference vector ξ.
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        if let Some(bonds) = self.bonds() {
+            bonds.each_bond(body, visit);
+        }
     }
 
-    /// Of bonds between bodies those that are broken.
-    fn each_broken_between(&self, _visit: &mut dyn FnMut(usize, usize, [f64; D])) {}
-
-    /// Every undirected bond of the reference family, those of interfaces too, that is not whole, as one of an absent crack is not.
-    fn each_gone(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+    /// Of [`each_bond`](Interaction::each_bond) those that are not whole and whose points repel inside the family: not those of interfaces.
+    fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>) {
+        if let Some(bonds) = self.bonds() {
+            return bonds.each_broken(body, visit);
+        }
         self.each_bond(body, &mut |i, j, xi, state| {
-            if state == BondStatus::Broken {
+            if state != BondStatus::Whole {
                 visit(i, j, xi);
             }
         });
@@ -196,13 +204,13 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Broken bonds become whole again, as they were in the reference, where `heals` of their ends and their `e` (see [`history`](super::history)) at `u`,
     /// images of which are fresh; it must say the same of both directions. They remember nothing. Those of absent cracks do not. How many directed ones; `None`: what
     /// they break by is of points, or there are none.
-    fn mend(
-        &mut self,
-        _body: &Body<D>,
-        _u: FieldView<D>,
-        _heals: &dyn Fn(usize, usize, f64) -> bool,
-    ) -> Option<u64> {
-        None
+    fn mend(&mut self, body: &Body<D>, u: FieldView<D>, heals: &Heals) -> Option<u64> {
+        self.check(body, &[u]);
+        let mended = self.bonds_mut()?.mend(body, u, heals)?;
+        if mended > 0 {
+            self.look_bits();
+        }
+        Some(mended)
     }
 
     /// Critical `e` of the bond ξ between two slots, from those of its ends; ∞: it never breaks.
@@ -228,7 +236,9 @@ pub trait Interaction<const D: usize>: Send + Sync {
     }
 
     /// What enumerates the bonds: `"stencil"`, `"list"`, `"neighbours"` or `"reference"`.
-    fn family(&self) -> &'static str;
+    fn family(&self) -> &'static str {
+        self.bonds().map_or("none", |bonds| bonds.kind())
+    }
 
     /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the law has no forces
     /// of single bonds.
@@ -242,8 +252,11 @@ pub trait Interaction<const D: usize>: Send + Sync {
     }
 
     /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot; 0 for points without a family.
-    fn damage(&self, _body: &Body<D>, out: &mut [f64]) {
-        out.fill(0.0);
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        match self.bonds() {
+            Some(bonds) => bonds.damage(body, out),
+            None => out.fill(0.0),
+        }
     }
 
     /// A stable step is found for the body as it is now.
@@ -259,23 +272,16 @@ pub trait Interaction<const D: usize>: Send + Sync {
     }
 
     /// Cut bonds whose end points satisfy `crosses`. Returns directed bonds cut. Call before the first sweep.
-    fn cut(
-        &mut self,
-        _body: &Body<D>,
-        _kind: CrackKind,
-        _crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
-        0
+    fn cut(&mut self, body: &Body<D>, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
+        let cut = self.bonds_mut().map(|b| b.cut(body, kind, crosses));
+        self.look_bits();
+        cut.unwrap_or(0)
     }
 
     /// Multiply the parts of the force density at slot i, of its bond to slot j (an image, maybe) `cell` cells away, by
     /// `factors(i, j, cell)`; energies, and what breaking releases, follow. Weighted volumes become those of full families,
     /// critical stretches stay. Factors of several calls are multiplied. Call before the first sweep.
-    fn scale_bonds(
-        &mut self,
-        _body: &Body<D>,
-        _factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) -> Result<(), BuildError> {
+    fn scale_bonds(&mut self, _body: &Body<D>, _factors: &FactorsOf<D>) -> Result<(), BuildError> {
         Err(BuildError::unsupported(
             "bonds",
             "factors of bonds and corrections of surfaces multiply what pmb, springs, lps, lps_as_typed and eam_like pull on a lattice, and pmb in a cloud or an interface: the bonds of this body are others",
@@ -353,25 +359,29 @@ pub trait Interaction<const D: usize>: Send + Sync {
     fn wear(&mut self, _bonds: &mut dyn Iterator<Item = Wearing>, _cycles: f64) {}
 
     /// Directed bonds of the reference family.
-    fn directed_bonds(&self) -> u64;
+    fn directed_bonds(&self) -> u64 {
+        self.bonds().map_or(0, |bonds| bonds.directed_bonds())
+    }
 
     /// Size of the family of every slot.
-    fn family_size(&self, body: &Body<D>, slot: usize) -> usize;
+    fn family_size(&self, _body: &Body<D>, slot: usize) -> usize {
+        self.bonds().map_or(0, |bonds| bonds.family_size(slot))
+    }
 
     /// Directed pairs whose distance is within round-off of the horizon, in or out, where that was counted.
     fn near_horizon(&self) -> u64 {
-        0
+        self.bonds().map_or(0, |bonds| bonds.near_horizon())
     }
 
     /// Is the pair bonded or repelled inside the family (so that contact outside must leave it alone)?
-    fn in_family(&self, _body: &Body<D>, _i: usize, _j: usize) -> bool {
-        false
+    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
+        self.bonds().is_some_and(|bonds| bonds.joins(body, i, j))
     }
 
     /// Columns that the law has of points and of bonds: what it remembers ([`Life::Persistent`](crate::columns::Life)) and what it
     /// answers at the displacements of now ([`Life::Derived`](crate::columns::Life)). Names are those of the field, none twice.
     fn columns(&self) -> Vec<Declaration> {
-        vec![]
+        self.bonds().map_or(vec![], |bonds| bonds.declared())
     }
 
     /// Writes the values of one of its [columns](Interaction::columns) into `out`: [`stored`](crate::columns::Shape::stored)
@@ -379,30 +389,36 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// family in order of slots, broken ones too. Images of `u` must be fresh. False: there is no such column, and `out` is empty.
     fn read_column(
         &self,
-        _body: &Body<D>,
+        body: &Body<D>,
         _u: FieldView<D>,
-        _name: &str,
+        name: &str,
         out: &mut Vec<f64>,
     ) -> bool {
         out.clear();
-        false
+        self.bonds()
+            .is_some_and(|bonds| bonds.read_named(body, name, out))
     }
 
     /// Sets a persistent column to values in the order in which [`read_column`](Interaction::read_column) gives them, after
     /// [`prepare`](Interaction::prepare). False: there is no such column, it follows from others, or the number of values is
     /// another; then nothing is changed.
-    fn write_column(&mut self, _body: &Body<D>, _name: &str, _values: &[f64]) -> bool {
-        false
+    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        self.check(body, &[]);
+        let bonds = self.bonds_mut();
+        let known = bonds.is_some_and(|bonds| bonds.write_named(body, name, values));
+        if known {
+            self.look_critical(body);
+            self.look_bits();
+        }
+        known
     }
 
     /// Every directed bond of one of its columns of bonds, in the order in which [`read_column`](Interaction::read_column) gives their values: the slot of its
     /// point, that of its partner (which an image is resolved to), and ξ. What has columns of bonds says it itself.
-    fn each_directed(
-        &self,
-        _body: &Body<D>,
-        name: &str,
-        _visit: &mut dyn FnMut(usize, usize, [f64; D]),
-    ) {
+    fn each_directed(&self, body: &Body<D>, name: &str, visit: &mut EachPair<D>) {
+        if let Some(bonds) = self.bonds() {
+            return bonds.each_directed(body, visit);
+        }
         let columns = self.columns();
         let known = columns.iter().any(|c| c.name == name && c.on == On::Bonds);
         assert!(!known, "{name} is a column of bonds that nobody enumerates");
@@ -410,22 +426,26 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Every directed bond that pulls or pushes at `u`, in order of slots, with the force density that its point gets from it: their
     /// sum is that of [`forces`](Interaction::forces) without breaking. Repulsion inside the family counts. Images of `u` must be
-    /// fresh. False: the law has no forces of single bonds, and nothing is visited.
-    fn each_force(
-        &mut self,
-        _body: &Body<D>,
-        _u: FieldView<D>,
-        _visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
-        false
+    /// fresh. False: the law has no forces of single bonds, and nothing is visited. Unless it says them itself they are those of its tangents, along the bond.
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
+        self.tangents(body, u, &mut |bond| visit(bond.force()));
+        true
     }
 
     /// Passes what bonds and points remember through an archive; after reading, what follows from it is found anew.
-    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>);
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        if let Some(bonds) = self.bonds_mut() {
+            bonds.archive(body, archive);
+        }
+        if archive.loads() {
+            self.look_critical(body);
+            self.look_bits();
+        }
+    }
 
     /// The memory of bonds, as it is laid out: bits of whole bonds and critical values of `e`.
     fn memory(&self) -> (&[u8], &[f64]) {
-        (&[], &[])
+        self.bonds().map_or((&[], &[]), |bonds| bonds.memory())
     }
 
     /// Bytes held.

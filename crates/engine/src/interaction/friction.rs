@@ -14,7 +14,7 @@
 use super::contact::{Contact, Touch};
 use super::coulomb::{Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped};
 use super::spin::Families;
-use super::{BondTangent, Evaluation, Interaction};
+use super::{BondTangent, EachTangent, Evaluation, Interaction};
 use crate::body::{Body, Field, zeros};
 use crate::space::{cross, full};
 use crate::spec::FrictionSpec;
@@ -317,7 +317,7 @@ impl<const D: usize> Friction<D> {
 
     /// The tangents of the last evaluation. What pressure and couples do to them is left out: a couple reaches whole families, and is small beside
     /// what presses. Newton's steps are shorter by that, not wrong.
-    pub fn tangents(&self, body: &Body<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    pub fn tangents(&self, body: &Body<D>, visit: &mut EachTangent<D>) {
         let touching = self.touching.iter().filter(|t| t.r > 0.0);
         for (touch, spring) in touching.zip(&self.now) {
             let normal = touch.y.map(|c| c / touch.r);

@@ -1,7 +1,6 @@
 //! What bonds remember: the next critical stretch, and the energy of those that just broke.
 
-use super::Toughness;
-use super::bond::{critical_stretch, relative_square_stretch};
+use super::bond::{Crosses, Toughness, critical_stretch, relative_square_stretch};
 use crate::body::Body;
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::execute::lane::{Lane, TILE};
@@ -122,9 +121,6 @@ pub fn damage(whole: f64, family: f64) -> f64 {
         1.0 - whole / family
     }
 }
-
-/// Does a crack cross the line between two places?
-pub type Crosses<'a, const D: usize> = dyn Fn([f64; D], [f64; D]) -> bool + Sync + 'a;
 
 /// Does a crack cross the bond ξ of a point at `from`? Through a periodic face it is in two places, and ends at `to` in the other
 /// one; either end must see the same.

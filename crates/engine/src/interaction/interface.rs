@@ -1,13 +1,12 @@
 //! Bonds between two of several bodies: an interaction on the points of both that are near to the other, as a cloud of its own.
 
 use super::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
-    Wearing, history,
+    BondForce, BondTangent, Crosses, EachBond, EachForce, EachPair, EachTangent, FactorsOf,
+    Gradient, Heals, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally, Wearing, history,
 };
 use crate::body::{Body, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 use crate::columns::On;
 use crate::error::BuildError;
-use crate::law::BondFactors;
 use crate::spec::{CrackKind, Cycles};
 use crate::state::Archive;
 
@@ -60,7 +59,7 @@ pub fn has_bonds<const D: usize>(bonds: &dyn Interaction<D>, name: &str) -> bool
 
 /// An interface and its own columns.
 pub struct Interface<const D: usize> {
-    bonds: Box<dyn Interaction<D>>,
+    pub bonds: Box<dyn Interaction<D>>,
     points: Points<D>,
     u: Field<D>,
     v: Field<D>,
@@ -174,7 +173,7 @@ impl<const D: usize> Interface<D> {
         self.points.add_energies(&seen, out);
     }
 
-    pub fn observe_gradient(&self, gradient: &[[f64; D]; D], out: &mut PointEnergiesMut) {
+    pub fn observe_gradient(&self, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         let mut seen = PointEnergies::default();
         self.bonds.observe_gradient(
             &self.points.cloud,
@@ -184,7 +183,7 @@ impl<const D: usize> Interface<D> {
         self.points.add_energies(&seen, out);
     }
 
-    pub fn tangents(&mut self, u: FieldView<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    pub fn tangents(&mut self, u: FieldView<D>, visit: &mut EachTangent<D>) {
         let points = &self.points;
         points.take(u, view_mut(&mut self.u));
         self.bonds
@@ -197,7 +196,7 @@ impl<const D: usize> Interface<D> {
             });
     }
 
-    pub fn each_force(&mut self, u: FieldView<D>, visit: &mut dyn FnMut(BondForce<D>)) -> bool {
+    pub fn each_force(&mut self, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         let points = &self.points;
         points.take(u, view_mut(&mut self.u));
         self.bonds
@@ -223,7 +222,7 @@ impl<const D: usize> Interface<D> {
     }
 
     /// Of [`read_bonds`](Interface::read_bonds); nothing if there is no such column.
-    pub fn each_directed(&self, name: &str, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+    pub fn each_directed(&self, name: &str, visit: &mut EachPair<D>) {
         let points = &self.points;
         if has_bonds(self.bonds.as_ref(), name) {
             self.bonds
@@ -233,7 +232,7 @@ impl<const D: usize> Interface<D> {
         }
     }
 
-    pub fn each_bond(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    pub fn each_bond(&self, visit: &mut EachBond<D>) {
         let points = &self.points;
         self.bonds.each_bond(&points.cloud, &mut |i, j, xi, state| {
             let (i, j) = (points.whole(i), points.whole(j));
@@ -245,11 +244,7 @@ impl<const D: usize> Interface<D> {
     }
 
     /// [`mend`](Interaction::mend), of slots of the body of all.
-    pub fn mend(
-        &mut self,
-        u: FieldView<D>,
-        heals: &dyn Fn(usize, usize, f64) -> bool,
-    ) -> Option<u64> {
+    pub fn mend(&mut self, u: FieldView<D>, heals: &Heals) -> Option<u64> {
         let points = &self.points;
         points.take(u, view_mut(&mut self.u));
         let heals = |i: usize, j: usize, e: f64| heals(points.whole(i), points.whole(j), e);
@@ -266,21 +261,11 @@ impl<const D: usize> Interface<D> {
         self.bonds.expand(&points.cloud, &own)
     }
 
-    /// [`last`](Interaction::last)
-    pub fn last(&mut self, step: f64) {
-        self.bonds.last(step);
-    }
-
     /// [`wearing`](Interaction::wearing)
     pub fn wearing(&self, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
         let mut own = self.points.cloud.at_rest();
         self.points.take(u, view_mut(&mut own));
         self.bonds.wearing(&self.points.cloud, view(&own), load)
-    }
-
-    /// [`wear`](Interaction::wear)
-    pub fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
-        self.bonds.wear(bonds, cycles);
     }
 
     /// [`work_borne`](Interaction::work_borne), of slots of the body of all.
@@ -297,19 +282,12 @@ impl<const D: usize> Interface<D> {
         self.bonds.work_borne(&points.cloud, view(&self.u), visit)
     }
 
-    pub fn cut(
-        &mut self,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
+    pub fn cut(&mut self, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
         self.bonds.cut(&self.points.cloud, kind, crosses)
     }
 
     /// [`scale_bonds`](Interaction::scale_bonds), by slots of the body of all.
-    pub fn scale_bonds(
-        &mut self,
-        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) -> Result<(), BuildError> {
+    pub fn scale_bonds(&mut self, factors: &FactorsOf<D>) -> Result<(), BuildError> {
         let points = &self.points;
         let of = |i: usize, j: usize, c| factors(points.whole(i), points.whole(j), c);
         self.bonds.scale_bonds(&points.cloud, &of)

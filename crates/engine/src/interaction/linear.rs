@@ -5,7 +5,10 @@
 //! what is beyond that, `f_i = Σ_j C_ij (u_j − u_i − ε ξ)`.
 
 use super::scale::{Scale, TileFactors};
-use super::{BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
+use super::{
+    BondStatus, BondTangent, EachBond, EachForce, EachTangent, FactorsOf, Interaction,
+    PointEnergiesMut, Sweep, Tally,
+};
 use crate::body::{Body, Column, Field, FieldView, FieldViewMut, Grid, Identity, Values, zeros};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
@@ -306,7 +309,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         &mut self,
         body: &Body<D>,
         _: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         let grid = body.grid();
         self.links.each_directed(grid, |i, j, sub, k| {
@@ -322,12 +325,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     }
 
     /// Of the linear forces, along the reference distances.
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         let strain = std::mem::take(&mut self.expansion);
         self.tangents(body, u, &mut |bond| {
             let mut force = bond.linear_force(u);
@@ -353,16 +351,12 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         true
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         self.links
             .each(body, &mut |i, j, xi| visit(i, j, xi, BondStatus::Whole));
     }
 
-    fn scale_bonds(
-        &mut self,
-        body: &Body<D>,
-        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) -> Result<(), BuildError> {
+    fn scale_bonds(&mut self, body: &Body<D>, factors: &FactorsOf<D>) -> Result<(), BuildError> {
         let grid = body.grid();
         let links = &self.links;
         let old = std::mem::take(&mut self.scale);

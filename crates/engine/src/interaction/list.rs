@@ -2,28 +2,22 @@
 //! are computed anew from two records whenever it is met, so that nothing else is stored.
 
 mod assemble;
-mod bonds;
 mod images;
 mod kernel;
 mod weights;
 
-use super::bonds::family::Family;
-use super::bonds::fused::Fused;
-use super::bonds::{BondState, CloudFamily};
+use super::bonds::{AnyBonds, BondState, CloudFamily};
 use super::history;
 use super::pairs::BondTable;
 use super::point_constants::pressure_factor;
 use super::{
-    BondForce, BondStatus, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
-    PointEnergiesMut, Sweep, Tally, along,
+    BondForce, BondTangent, EachForce, EachTangent, EnergyFields, FactorsOf, Gradient, Interaction,
+    Motion, PointConstants, PointEnergiesMut, Sweep, Tally, along,
 };
-use crate::body::{Body, FieldView, FieldViewMut, Identity};
-use crate::columns::Declaration;
+use crate::body::{Body, FieldView, FieldViewMut, Identity, view_mut, zeros};
 use crate::error::BuildError;
 use crate::execute::blocks::{Seen, Shared};
 use crate::law::{BondFactors, Law};
-use crate::spec::CrackKind;
-use crate::state::Archive;
 pub use assemble::ListParts;
 use images::Images;
 use kernel::{Energies, Forces, Share, View};
@@ -120,11 +114,6 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         self.bonds.blocks.tally(&kernel)
     }
 
-    /// Critical stretches are others.
-    fn look_critical(&mut self) {
-        self.spares = self.bonds.critical.contains(&history::NEVER);
-    }
-
     /// n and 1/m at a slot.
     fn per_weight(&self, body: &Body<D>, slot: usize) -> [f64; 2] {
         let by_weight = || self.fields[2 * slot + 1];
@@ -159,8 +148,16 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.bonds.body
     }
 
-    fn family(&self) -> &'static str {
-        self.bonds.kind
+    fn bonds(&self) -> Option<&dyn AnyBonds<D>> {
+        Some(&self.bonds)
+    }
+
+    fn bonds_mut(&mut self) -> Option<&mut dyn AnyBonds<D>> {
+        Some(&mut self.bonds)
+    }
+
+    fn look_critical(&mut self, _: &Body<D>) {
+        self.spares = self.bonds.critical.contains(&history::NEVER);
     }
 
     unsafe fn forces_unchecked(
@@ -219,12 +216,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
 
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
         let images = Images::new(self);
         let mut moved = vec![0.0; images.reference.len()];
@@ -239,9 +231,45 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
-        self.each_tangent(body, u, visit);
+        if W::SHARES {
+            // the pressures of this state
+            self.forces(body, u, view_mut(&mut zeros(body.len)), Sweep::Hold, None);
+        }
+        let view = self.view(self.moved());
+        self.each_line(|place, whole, [i, j]| {
+            if !whole {
+                return;
+            }
+            let (xi, share) = view.constant(i, j);
+            let mut k = share / xi.iter().map(|x| x * x).sum::<f64>();
+            let mut fields = [i, j].map(|s| self.field(s));
+            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+            k = self.law.between_ends(k, &xi, length, fields[0], fields[1]);
+            k *= self.factor(place);
+            if view.paired {
+                let pair = self.pairs.get(body.material_of(i), body.material_of(j));
+                k *= pair.stiffness;
+                fields.iter_mut().for_each(|f| f[0] *= pair.ratio());
+            }
+            let mut tangent = BondTangent::of_law(
+                self.law,
+                [i, j],
+                k,
+                BondFactors::ONE,
+                xi,
+                crate::array::from_fn(|a| u[a][j] - u[a][i]),
+                fields,
+            );
+            if view.paired && W::SHARES {
+                // the scalar is that of unit constants
+                let pair = self.pairs.get(body.material_of(i), body.material_of(j));
+                tangent.share = tangent.share.map(|x| x / pair.stiffness);
+                tangent.pull = tangent.pull.map(|p| p.map(|x| x * pair.ratio()));
+            }
+            visit(tangent);
+        });
     }
 
     fn gain(&self, slot: usize) -> f64 {
@@ -252,54 +280,23 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         }
     }
 
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         self.check(body, &[u]);
-        self.each_pull(u, visit);
+        self.pack_now(u);
+        if W::SHARES {
+            self.share();
+        }
+        let view = self.view(self.moved());
+        self.each_line(|place, whole, [i, j]| {
+            let (pull, y) = view.pull_of(i, j, whole.then(|| self.factor(place)));
+            if pull[0] != 0.0 {
+                visit(BondForce::central([i, j], y, pull));
+            }
+        });
         true
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
-        self.bonds.each_pair(body, visit);
-    }
-
-    fn mend(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        heals: &dyn Fn(usize, usize, f64) -> bool,
-    ) -> Option<u64> {
-        self.check(body, &[u]);
-        Some(self.bonds.mend(body, u, heals, &Fused))
-    }
-
-    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        self.bonds.each_broken(body, visit);
-    }
-
-    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
-        self.bonds.damage(body, out);
-    }
-
-    fn cut(
-        &mut self,
-        body: &Body<D>,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
-        let periodic = self.bonds.family.is_periodic();
-        self.bonds.cut(body, kind, crosses, |_, _| periodic, &Fused)
-    }
-
-    fn scale_bonds(
-        &mut self,
-        body: &Body<D>,
-        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) -> Result<(), BuildError> {
+    fn scale_bonds(&mut self, body: &Body<D>, factors: &FactorsOf<D>) -> Result<(), BuildError> {
         self.check(body, &[]);
         match W::SHARES {
             true => Err(BuildError::unsupported(
@@ -317,56 +314,6 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     fn prepare(&mut self, body: &Body<D>) {
         self.check(body, &[]);
         self.weigh(body);
-    }
-
-    fn directed_bonds(&self) -> u64 {
-        self.bonds.directed
-    }
-
-    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
-        self.bonds.family_size(slot)
-    }
-
-    fn near_horizon(&self) -> u64 {
-        self.bonds.near_horizon
-    }
-
-    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
-        self.bonds.family.joins(body, i, j)
-    }
-
-    fn columns(&self) -> Vec<Declaration> {
-        self.bonds.declared()
-    }
-
-    fn read_column(&self, body: &Body<D>, _: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
-        self.bonds.read_named(body, name, &Fused, out)
-    }
-
-    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
-        let known = self.bonds.write_named(body, name, values, &Fused);
-        self.look_critical();
-        known
-    }
-
-    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
-        self.bonds.archive(body, archive, &Fused);
-        if archive.loads() {
-            self.look_critical();
-        }
-    }
-
-    fn each_directed(
-        &self,
-        body: &Body<D>,
-        _: &str,
-        visit: &mut dyn FnMut(usize, usize, [f64; D]),
-    ) {
-        self.bonds.each_directed(body, visit);
-    }
-
-    fn memory(&self) -> (&[u8], &[f64]) {
-        (&self.bonds.alive, &self.bonds.critical)
     }
 
     fn bytes(&self) -> usize {

@@ -1,12 +1,14 @@
 //! Given micromoduli: `f_i = Σ_j C_ij (u_j − u_i)`, a block for every directed bond. Coarsened bodies, composites, defects.
 
-use super::{BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
+use super::{
+    BondStatus, BondTangent, EachBond, EachForce, EachTangent, Gradient, Interaction,
+    PointEnergiesMut, Sweep, Tally,
+};
 use crate::body::{Body, FieldView, FieldViewMut, Identity};
-use crate::execute::blocks::{Shared, for_each_block};
+use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
 use crate::spec::LinearBody;
-use crate::state::Archive;
 
 /// Rows per block of work.
 const BLOCK: usize = 256;
@@ -25,7 +27,7 @@ pub struct MicromoduliInteraction<const D: usize> {
     block: Vec<[[f64; D]; D]>,
     /// `[partners]` reference vectors (length).
     xi: Vec<[f64; D]>,
-    sums: Vec<f64>,
+    sums: PerBlock<[f64; 1]>,
     asymmetry: f64,
 }
 
@@ -43,7 +45,7 @@ impl<const D: usize> MicromoduliInteraction<D> {
             partner: Vec::with_capacity(linear.partner.len()),
             block: Vec::with_capacity(linear.partner.len()),
             xi: Vec::with_capacity(linear.partner.len()),
-            sums: vec![0.0; ids.len().div_ceil(BLOCK)],
+            sums: PerBlock::sums(ids.len().div_ceil(BLOCK)),
             asymmetry: linear.soundness().asymmetry,
         };
         for (row, &id) in ids.iter().enumerate() {
@@ -91,14 +93,16 @@ impl<const D: usize> MicromoduliInteraction<D> {
         (f, energy)
     }
 
-    fn energies(&self, body: &Body<D>, u: FieldView<D>, out: Shared, sums: &mut [f64]) {
+    /// Energy, and energy densities per slot where asked for.
+    fn energies(&self, body: &Body<D>, u: FieldView<D>, out: Shared) -> f64 {
         let kernel = Energies {
             law: self,
             body,
             u,
             out,
         };
-        for_each_block(self.simd, &kernel, sums);
+        let [sum] = self.sums.sum(self.simd, &kernel);
+        sum
     }
 }
 
@@ -113,10 +117,10 @@ struct Forces<'a, const D: usize> {
 }
 
 impl<const D: usize> Kernel for Forces<'_, D> {
-    type Out = f64;
+    type Out = ();
     type Home = Self;
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> f64 {
+    fn block<L: Lane>(&self, block: usize) {
         for row in rows(block, self.law.slots.len()) {
             let (f, _) = self.law.pull(self.u, row);
             for a in 0..D {
@@ -124,7 +128,6 @@ impl<const D: usize> Kernel for Forces<'_, D> {
                 unsafe { *self.f[a].at(self.law.slots[row] as usize) = f[a] };
             }
         }
-        0.0
     }
 }
 
@@ -137,10 +140,10 @@ struct Energies<'a, const D: usize> {
 }
 
 impl<const D: usize> Kernel for Energies<'_, D> {
-    type Out = f64;
+    type Out = [f64; 1];
     type Home = Self;
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> f64 {
+    fn block<L: Lane>(&self, block: usize) -> [f64; 1] {
         let mut sum = 0.0;
         for row in rows(block, self.law.slots.len()) {
             let (_, energy) = self.law.pull(self.u, row);
@@ -151,7 +154,7 @@ impl<const D: usize> Kernel for Energies<'_, D> {
             }
             sum += energy * self.body.volume.at(slot);
         }
-        sum
+        [sum]
     }
 }
 
@@ -175,23 +178,17 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         if let Some(seen) = seen {
             self.observe(body, u, seen);
         }
-        let mut sums = std::mem::take(&mut self.sums);
         let kernel = Forces {
             law: self,
             u,
             f: crate::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
         };
-        for_each_block(self.simd, &kernel, &mut sums);
-        self.sums = sums;
+        run_blocks(self.simd, &kernel, self.sums.blocks());
         Tally::default()
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
-        let mut sums = std::mem::take(&mut self.sums);
-        self.energies(body, u, Shared::NULL, &mut sums);
-        let total = sums.iter().sum();
-        self.sums = sums;
-        [total, 0.0]
+        [self.energies(body, u, Shared::NULL), 0.0]
     }
 
     unsafe fn observe_unchecked(
@@ -201,16 +198,10 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         out: &mut PointEnergiesMut,
     ) {
         out.zeros(body.len);
-        let strain = Shared(out.strain.as_mut_ptr());
-        self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
+        self.energies(body, u, Shared(out.strain.as_mut_ptr()));
     }
 
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
         out.zeros(body.len);
         for (row, &slot) in self.slots.iter().enumerate() {
@@ -227,7 +218,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         &mut self,
         _: &Body<D>,
         _: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         for (row, &slot) in self.slots.iter().enumerate() {
             for (j, c, xi) in self.bonds(row) {
@@ -236,7 +227,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         }
     }
 
-    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, _: &Body<D>, visit: &mut EachBond<D>) {
         for (row, &slot) in self.slots.iter().enumerate() {
             let i = slot as usize;
             // a bond that only its other end knows is visited there
@@ -253,12 +244,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
     }
 
     /// Of the linear forces, along the reference distances.
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         self.tangents(body, u, &mut |bond| visit(bond.linear_force(u)));
         true
     }
@@ -275,9 +261,6 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         let row = self.row[slot] as usize;
         self.start[row + 1] - self.start[row]
     }
-
-    /// Nothing is remembered.
-    fn archive(&mut self, _: &Body<D>, _: &mut Archive<'_>) {}
 
     fn bytes(&self) -> usize {
         4 * (self.slots.len() + self.row.len() + self.partner.len())

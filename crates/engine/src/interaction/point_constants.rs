@@ -17,6 +17,21 @@ pub enum PointConstants {
 }
 
 impl PointConstants {
+    /// Both fields of a slot with this weighted volume, and its pressure factor where those differ.
+    pub(super) fn fields(&self, slot: usize, material: usize, m: f64) -> ([f64; 2], Option<f64>) {
+        match self {
+            PointConstants::None => ([0.0; 2], None),
+            PointConstants::PerMaterial(c) => ([c[material], 0.0], None),
+            PointConstants::PerPoint(all) => (all[slot], None),
+            PointConstants::Solid(solids) => {
+                let of = &solids[material];
+                let b = if m > 0.0 { of.beta / m } else { 0.0 };
+                let q = unlike(solids).then(|| of.ratio() * b * b);
+                ([0.0, b], q)
+            }
+        }
+    }
+
     /// n and 1/m of a point, from its `β/m`; 0 of laws without.
     #[inline]
     pub(super) fn per_weight(&self, material: usize, by_weight: impl Fn() -> f64) -> [f64; 2] {
@@ -30,7 +45,7 @@ impl PointConstants {
 }
 
 /// Pressure factors differ from the law's own where materials with unlike `κ/β²` meet.
-pub(super) fn unlike(solids: &[Solid]) -> bool {
+fn unlike(solids: &[Solid]) -> bool {
     solids.iter().any(|s| s.ratio() != solids[0].ratio())
 }
 

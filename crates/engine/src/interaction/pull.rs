@@ -1,6 +1,6 @@
 //! A central force of two points, and its tangents.
 
-use super::BondTangent;
+use super::{BondTangent, EachTangent};
 use crate::body::Body;
 
 /// A central force of a pair.
@@ -21,7 +21,7 @@ pub struct Pull<const D: usize> {
 
 impl<const D: usize> Pull<D> {
     /// `V_j (slope n⊗n + pull (1 − n⊗n))` of both ends; none of two points on one spot.
-    pub fn tangents(&self, body: &Body<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    pub fn tangents(&self, body: &Body<D>, visit: &mut EachTangent<D>) {
         let &Pull {
             i, j, y, r, pull, ..
         } = self;

@@ -5,8 +5,8 @@ mod columns;
 
 use super::interface::{Interface, has_bonds};
 use super::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally, Wearing,
-    history,
+    BondForce, BondStatus, BondTangent, Crosses, EachBond, EachForce, EachPair, EachTangent,
+    FactorsOf, Gradient, Heals, Interaction, PointEnergiesMut, Sweep, Tally, Wearing, history,
 };
 use crate::body::several::Piece;
 use crate::body::{Body, FieldView, FieldViewMut, Identity, Layout, view_mut};
@@ -56,6 +56,26 @@ impl<const D: usize> SeveralInteraction<D> {
             interfaces,
             family,
         }
+    }
+
+    /// The bonds of all bodies.
+    fn all(&self) -> impl Iterator<Item = &dyn Interaction<D>> {
+        self.own.iter().filter_map(|own| own.bonds.as_deref())
+    }
+
+    /// Bonds of bodies, and of interfaces.
+    fn all_mut(&mut self) -> impl Iterator<Item = &mut Box<dyn Interaction<D>>> {
+        let own = self.own.iter_mut().filter_map(|own| own.bonds.as_mut());
+        own.chain(self.interfaces.iter_mut().map(|i| &mut i.bonds))
+    }
+
+    /// Bodies with bonds, to be changed.
+    fn each_mut<'a>(
+        &'a mut self,
+        body: &'a Body<D>,
+    ) -> impl Iterator<Item = (&'a Piece<D>, &'a mut Box<dyn Interaction<D>>)> {
+        let all = pieces(body).iter().zip(&mut self.own);
+        all.filter_map(|(p, own)| own.bonds.as_mut().map(|bonds| (p, bonds)))
     }
 
     /// Bodies with bonds.
@@ -136,30 +156,21 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn last(&mut self, step: f64) {
-        for bonds in self.own.iter_mut().filter_map(|own| own.bonds.as_mut()) {
-            bonds.last(step);
-        }
-        for interface in &mut self.interfaces {
-            interface.last(step);
-        }
+        self.all_mut().for_each(|bonds| bonds.last(step));
     }
 
     fn begin_steps(&mut self, body: &Body<D>) {
         self.check(body, &[]);
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                bonds.begin_steps(&p.body);
-            }
+        for (p, bonds) in self.each_mut(body) {
+            bonds.begin_steps(&p.body);
         }
     }
 
     fn warm(&mut self, body: &Body<D>, above: &[f64]) -> bool {
         self.check(body, &[]);
         let mut any = false;
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                any |= bonds.warm(&p.body, &above[p.range()]);
-            }
+        for (p, bonds) in self.each_mut(body) {
+            any |= bonds.warm(&p.body, &above[p.range()]);
         }
         any
     }
@@ -167,10 +178,8 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn expand(&mut self, body: &Body<D>, strain: &[f64]) -> bool {
         self.check(body, &[]);
         let mut all = true;
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                all &= bonds.expand(&p.body, &strain[p.range()]);
-            }
+        for (p, bonds) in self.each_mut(body) {
+            all &= bonds.expand(&p.body, &strain[p.range()]);
         }
         for interface in &mut self.interfaces {
             all &= interface.expand(strain);
@@ -190,38 +199,29 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
-        for own in self.own.iter_mut().filter_map(|own| own.bonds.as_mut()) {
-            own.wear(bonds, cycles);
-        }
-        for interface in &mut self.interfaces {
-            interface.wear(bonds, cycles);
-        }
+        self.all_mut().for_each(|own| own.wear(bonds, cycles));
     }
 
     /// That of the worst.
     fn asymmetry(&self) -> f64 {
-        let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
-        all.map(|b| b.asymmetry()).fold(0.0, f64::max)
+        self.all().map(|b| b.asymmetry()).fold(0.0, f64::max)
     }
 
     /// Of potentials alone: beside them, and in interfaces, may be bonds of solids.
     fn is_potential(&self) -> bool {
-        let mut all = self.own.iter().filter_map(|o| o.bonds.as_ref()).peekable();
+        let mut all = self.all().peekable();
         self.interfaces.is_empty() && all.peek().is_some() && all.all(|b| b.is_potential())
     }
 
     fn has_fans(&self) -> bool {
-        let mut all = self.own.iter().filter_map(|o| o.bonds.as_ref());
-        all.any(|b| b.has_fans())
+        self.all().any(|b| b.has_fans())
     }
 
     fn add_stress_across(&mut self, body: &Body<D>, u: FieldView<D>, trace: &mut [f64]) -> bool {
         self.check(body, &[u]);
         let mut all = true;
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                all &= bonds.add_stress_across(&p.body, p.part(u), &mut trace[p.range()]);
-            }
+        for (p, bonds) in self.each_mut(body) {
+            all &= bonds.add_stress_across(&p.body, p.part(u), &mut trace[p.range()]);
         }
         all
     }
@@ -236,21 +236,17 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn shortest(&mut self, body: &Body<D>, u: FieldView<D>) -> f64 {
         self.check(body, &[u]);
         let mut least = 1.0f64;
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                least = least.min(bonds.shortest(&p.body, p.part(u)));
-            }
+        for (p, bonds) in self.each_mut(body) {
+            least = least.min(bonds.shortest(&p.body, p.part(u)));
         }
         least
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         let mut sum = [0.0; 2];
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                let [strain, repulsion] = bonds.energy(&p.body, p.part(u));
-                sum = [sum[0] + strain, sum[1] + repulsion];
-            }
+        for (p, bonds) in self.each_mut(body) {
+            let [strain, repulsion] = bonds.energy(&p.body, p.part(u));
+            sum = [sum[0] + strain, sum[1] + repulsion];
         }
         for interface in &mut self.interfaces {
             let [strain, repulsion] = interface.energy(u);
@@ -274,12 +270,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
         out.zeros(body.len);
         for (p, bonds) in self.each(body) {
@@ -294,41 +285,32 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                bonds.tangents(&p.body, p.part(u), &mut |bond| {
-                    visit(BondTangent {
-                        i: bond.i + p.first,
-                        j: bond.j + p.first,
-                        ..bond
-                    });
+        for (p, bonds) in self.each_mut(body) {
+            bonds.tangents(&p.body, p.part(u), &mut |bond| {
+                visit(BondTangent {
+                    i: bond.i + p.first,
+                    j: bond.j + p.first,
+                    ..bond
                 });
-            }
+            });
         }
         for interface in &mut self.interfaces {
             interface.tangents(u, visit);
         }
     }
 
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         let mut all = true;
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                all &= bonds.each_force(&p.body, p.part(u), &mut |bond| {
-                    visit(BondForce {
-                        i: bond.i + p.first,
-                        j: bond.j + p.first,
-                        ..bond
-                    });
+        for (p, bonds) in self.each_mut(body) {
+            all &= bonds.each_force(&p.body, p.part(u), &mut |bond| {
+                visit(BondForce {
+                    i: bond.i + p.first,
+                    j: bond.j + p.first,
+                    ..bond
                 });
-            }
+            });
         }
         for interface in &mut self.interfaces {
             all &= interface.each_force(u, visit);
@@ -338,7 +320,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
 
     fn columns(&self) -> Vec<Declaration> {
         let mut all: Vec<Declaration> = vec![];
-        for own in self.own.iter().filter_map(|o| o.bonds.as_ref()) {
+        for own in self.all() {
             for column in own.columns() {
                 if !all.iter().any(|c| c.name == column.name) {
                     all.push(column);
@@ -360,12 +342,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.write_named(body, name, values)
     }
 
-    fn each_directed(
-        &self,
-        body: &Body<D>,
-        name: &str,
-        visit: &mut dyn FnMut(usize, usize, [f64; D]),
-    ) {
+    fn each_directed(&self, body: &Body<D>, name: &str, visit: &mut EachPair<D>) {
         for (p, bonds) in self.each(body).filter(|(_, bonds)| has_bonds(*bonds, name)) {
             bonds.each_directed(&p.body, name, &mut |i, j, xi| {
                 visit(i + p.first, j + p.first, xi);
@@ -380,7 +357,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.at(slot, |bonds, _, s| bonds.gain(s)).unwrap_or(0.0)
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         for (p, bonds) in self.each(body) {
             bonds.each_bond(&p.body, &mut |i, j, xi, state| {
                 visit(i + p.first, j + p.first, xi, state);
@@ -391,18 +368,11 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
-    fn mend(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        heals: &dyn Fn(usize, usize, f64) -> bool,
-    ) -> Option<u64> {
+    fn mend(&mut self, body: &Body<D>, u: FieldView<D>, heals: &Heals) -> Option<u64> {
         let mut sum = 0;
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                let heals = |i: usize, j: usize, e: f64| heals(i + p.first, j + p.first, e);
-                sum += bonds.mend(&p.body, p.part(u), &heals)?;
-            }
+        for (p, bonds) in self.each_mut(body) {
+            let heals = |i: usize, j: usize, e: f64| heals(i + p.first, j + p.first, e);
+            sum += bonds.mend(&p.body, p.part(u), &heals)?;
         }
         for interface in &mut self.interfaces {
             sum += interface.mend(u, heals)?;
@@ -410,26 +380,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         Some(sum)
     }
 
-    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+    fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>) {
         for (p, bonds) in self.each(body) {
             bonds.each_broken(&p.body, &mut |i, j, xi| visit(i + p.first, j + p.first, xi));
-        }
-    }
-
-    fn each_gone(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        for (p, bonds) in self.each(body) {
-            bonds.each_gone(&p.body, &mut |i, j, xi| visit(i + p.first, j + p.first, xi));
-        }
-        self.each_broken_between(visit);
-    }
-
-    fn each_broken_between(&self, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        for interface in &self.interfaces {
-            interface.each_bond(&mut |i, j, xi, state| {
-                if state == BondStatus::Broken {
-                    visit(i, j, xi);
-                }
-            });
         }
     }
 
@@ -456,10 +409,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn stress_borne(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<Vec<f64>> {
         self.check(body, &[u]);
         let mut all = None;
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            let Some(bonds) = &mut own.bonds else {
-                continue;
-            };
+        for (p, bonds) in self.each_mut(body) {
             if let Some(of) = bonds.stress_borne(&p.body, p.part(u)) {
                 let all = all.get_or_insert_with(|| vec![f64::NAN; body.len]);
                 all[p.range()].copy_from_slice(&of);
@@ -489,10 +439,17 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         // of points in interfaces, all bonds together
         let mut joined = vec![false; body.len];
         for interface in &self.interfaces {
-            interface.each_bond(&mut |i, j, _, _| (joined[i], joined[j]) = (true, true));
+            interface.each_bond(&mut |i, j, _, state| {
+                for s in [i, j] {
+                    joined[s] |= state != BondStatus::Absent;
+                }
+            });
         }
         let mut family = vec![[0.0; 2]; body.len];
         self.each_bond(body, &mut |i, j, _, state| {
+            if state == BondStatus::Absent {
+                return;
+            }
             for (s, volume) in [(i, body.volume.at(j)), (j, body.volume.at(i))] {
                 family[s][0] += volume;
                 if state == BondStatus::Broken {
@@ -507,30 +464,17 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
-    fn cut(
-        &mut self,
-        body: &Body<D>,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
-        let all = pieces(body).iter().zip(&mut self.own);
-        let inside =
-            all.filter_map(|(p, own)| Some(own.bonds.as_mut()?.cut(&p.body, kind, crosses)));
-        let inside: u64 = inside.sum();
+    fn cut(&mut self, body: &Body<D>, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
+        let all = self.each_mut(body);
+        let inside: u64 = all.map(|(p, b)| b.cut(&p.body, kind, crosses)).sum();
         let between = self.interfaces.iter_mut().map(|i| i.cut(kind, crosses));
         inside + between.sum::<u64>()
     }
 
-    fn scale_bonds(
-        &mut self,
-        body: &Body<D>,
-        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) -> Result<(), BuildError> {
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                let of = |i: usize, j: usize, c| factors(i + p.first, j + p.first, c);
-                bonds.scale_bonds(&p.body, &of)?;
-            }
+    fn scale_bonds(&mut self, body: &Body<D>, factors: &FactorsOf<D>) -> Result<(), BuildError> {
+        for (p, bonds) in self.each_mut(body) {
+            let of = |i: usize, j: usize, c| factors(i + p.first, j + p.first, c);
+            bonds.scale_bonds(&p.body, &of)?;
         }
         let mut between = self.interfaces.iter_mut();
         between.try_for_each(|i| i.scale_bonds(factors))
@@ -542,16 +486,14 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
 
     fn prepare(&mut self, body: &Body<D>) {
         self.check(body, &[]);
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                bonds.prepare(&p.body);
-            }
+        for (p, bonds) in self.each_mut(body) {
+            bonds.prepare(&p.body);
         }
         self.interfaces.iter_mut().for_each(Interface::prepare);
     }
 
     fn directed_bonds(&self) -> u64 {
-        let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
+        let all = self.all();
         let between = self.interfaces.iter().map(Interface::directed_bonds);
         all.map(|b| b.directed_bonds()).chain(between).sum()
     }
@@ -564,8 +506,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn near_horizon(&self) -> u64 {
-        let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
-        all.map(|b| b.near_horizon()).sum()
+        self.all().map(|b| b.near_horizon()).sum()
     }
 
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
@@ -590,7 +531,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn bytes(&self) -> usize {
-        let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
+        let all = self.all();
         let between = self.interfaces.iter().map(Interface::bytes);
         all.map(|b| b.bytes()).chain(between).sum()
     }

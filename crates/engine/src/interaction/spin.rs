@@ -191,7 +191,7 @@ impl<const D: usize> Families<D> {
             if !wanted || i == j || body.piece_of(i) != body.piece_of(j) {
                 return;
             }
-            let torn = if state == BondStatus::Broken { now } else { 0 };
+            let torn = if state == BondStatus::Whole { 0 } else { now };
             for (from, to, way) in [(i, j, 1.0), (j, i, -1.0)] {
                 if let Some(own) = (place[from] as usize).checked_sub(1) {
                     known[own].partners.push(Partner {

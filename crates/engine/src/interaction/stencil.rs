@@ -7,23 +7,17 @@ mod kernel;
 mod weights;
 
 use super::bonds::family::Family;
-use super::bonds::fused::Fused;
-use super::bonds::{BondState, LatticeFamily};
-use super::history;
+use super::bonds::{AnyBonds, BondState, LatticeFamily};
 use super::point_constants::pressure_factor;
 use super::scale::Scale;
 use super::{
-    BondForce, BondStatus, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
-    PointEnergiesMut, Sweep, Tally,
+    BondTangent, EachForce, EachPair, EachTangent, EnergyFields, FactorsOf, Interaction, Motion,
+    PointConstants, PointEnergiesMut, Sweep, Tally,
 };
 use crate::body::{Body, Column, FieldView, FieldViewMut, Identity};
-use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::execute::blocks::{Seen, Shared};
-use crate::law::BondFactors;
-use crate::law::Law;
-use crate::spec::CrackKind;
-use crate::state::Archive;
+use crate::law::{BondFactors, Law};
 pub use assemble::StencilParts;
 pub use kernel::MOST;
 use kernel::{Bond, Energies, Forces, Partner, Remember, Share, View, WHOLE};
@@ -151,8 +145,27 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         self.bonds.body
     }
 
-    fn family(&self) -> &'static str {
-        self.bonds.kind
+    fn bonds(&self) -> Option<&dyn AnyBonds<D>> {
+        Some(&self.bonds)
+    }
+
+    fn bonds_mut(&mut self) -> Option<&mut dyn AnyBonds<D>> {
+        Some(&mut self.bonds)
+    }
+
+    fn look_bits(&mut self) {
+        self.look();
+    }
+
+    fn look_critical(&mut self, body: &Body<D>) {
+        let critical = &mut self.bonds.critical;
+        if !critical.is_empty() {
+            body.exchange.fill(critical);
+        }
+        let known = body.slots.iter().map(|s| critical.get(*s as usize));
+        let known = known.flatten().copied();
+        self.least_critical = known.fold(f64::INFINITY, f64::min);
+        self.settled = false;
     }
 
     unsafe fn forces_unchecked(
@@ -228,18 +241,32 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
-        self.each_tangent(body, u, visit);
+        self.update_pressures(body, u);
+        let family = &self.bonds.family;
+        for (n, l, i) in family.points() {
+            for (k, b) in self.stencil[family.sublattice(n)].iter().enumerate() {
+                if !self.bonds.is_whole(n, k, l) {
+                    continue;
+                }
+                let j = b.to(i);
+                visit(BondTangent::of_law(
+                    self.law,
+                    [i, body.exchange.original(j)],
+                    b.k,
+                    self.scale.of(n, k, l),
+                    b.back.map(|x| -x),
+                    crate::array::from_fn(|a| u[a][j] - u[a][i]),
+                    [i, j].map(|s| self.field(s)),
+                ));
+            }
+        }
     }
 
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
-        self.each_pull(body, u, visit);
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
+        self.update_pressures(body, u);
+        self.pulls_of(body, u, 0..self.tiles(), visit);
         true
     }
 
@@ -256,25 +283,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         }
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
-        self.bonds.each_pair(body, visit);
-    }
-
-    fn mend(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        heals: &dyn Fn(usize, usize, f64) -> bool,
-    ) -> Option<u64> {
-        self.check(body, &[u]);
-        let mended = self.bonds.mend(body, u, heals, &Fused);
-        if mended > 0 {
-            self.look();
-        }
-        Some(mended)
-    }
-
-    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+    fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>) {
         let torn = |n: usize| self.state[n] & WHOLE == 0;
         self.bonds.each_broken_of(body, torn, visit);
     }
@@ -284,23 +293,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         self.bonds.damage_of(body, |_| 1.0, out);
     }
 
-    fn cut(
-        &mut self,
-        body: &Body<D>,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
-        let image = |end: usize, j: usize| end != j;
-        let cut = self.bonds.cut(body, kind, crosses, image, &Fused);
-        self.look();
-        cut
-    }
-
-    fn scale_bonds(
-        &mut self,
-        _: &Body<D>,
-        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) -> Result<(), BuildError> {
+    fn scale_bonds(&mut self, _: &Body<D>, factors: &FactorsOf<D>) -> Result<(), BuildError> {
         self.multiply_factors(factors);
         Ok(())
     }
@@ -312,64 +305,6 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     fn prepare(&mut self, body: &Body<D>) {
         self.check(body, &[]);
         self.weigh(body);
-    }
-
-    fn directed_bonds(&self) -> u64 {
-        self.bonds.directed
-    }
-
-    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
-        self.bonds.family_size(slot)
-    }
-
-    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
-        self.bonds.family.joins(body, i, j)
-    }
-
-    fn columns(&self) -> Vec<Declaration> {
-        self.bonds.declared()
-    }
-
-    fn read_column(&self, body: &Body<D>, _: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
-        self.bonds.read_named(body, name, &Fused, out)
-    }
-
-    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
-        if !self.bonds.write_named(body, name, values, &Fused) {
-            return false;
-        }
-        match name {
-            history::WHOLE => {
-                self.settled = false;
-                self.look();
-            }
-            _ => self.look_critical(body),
-        }
-        true
-    }
-
-    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
-        self.bonds.archive(body, archive, &Fused);
-        if archive.loads() {
-            if !self.bonds.critical.is_empty() {
-                body.exchange.fill(&mut self.bonds.critical);
-            }
-            self.look_critical(body);
-            self.look();
-        }
-    }
-
-    fn each_directed(
-        &self,
-        body: &Body<D>,
-        _: &str,
-        visit: &mut dyn FnMut(usize, usize, [f64; D]),
-    ) {
-        self.bonds.each_directed(body, visit);
-    }
-
-    fn memory(&self) -> (&[u8], &[f64]) {
-        (&self.bonds.alive, &self.bonds.critical)
     }
 
     fn bytes(&self) -> usize {

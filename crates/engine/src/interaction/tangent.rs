@@ -5,7 +5,8 @@
 //! number of their sums have a [`Channel`] for each sum.
 
 use super::BondForce;
-use crate::body::FieldView;
+use crate::body::{Body, FieldView};
+use crate::law::blocks::PairTangent;
 use crate::law::jet::{self, Jet};
 use crate::law::potential::Potential;
 use crate::law::{BondFactors, Law};
@@ -99,6 +100,9 @@ impl<const D: usize> BondForce<D> {
     }
 }
 
+/// Visits directed bonds with their tangents.
+pub type EachTangent<'a, const D: usize> = dyn FnMut(BondTangent<D>) + 'a;
+
 impl<const D: usize> BondTangent<D> {
     /// Of a linear bond: without scalar and tension.
     pub fn direct(i: usize, j: usize, y: [f64; D], stiffness: [[f64; D]; D]) -> Self {
@@ -112,6 +116,22 @@ impl<const D: usize> BondTangent<D> {
             pull: [[0.0; D]; 2],
             channels: vec![],
         }
+    }
+
+    /// What both ends of a pair of a potential have from a term of it: of the first, then of the second.
+    pub(super) fn both(body: &Body<D>, [i, j]: [usize; 2], pair: &PairTangent<D>) -> [Self; 2] {
+        let turned = crate::array::from_fn(|a| crate::array::from_fn(|b| pair.block[b][a]));
+        let ends = [
+            (i, j, pair.y, pair.block),
+            (j, i, pair.y.map(|y| -y), turned),
+        ];
+        ends.map(|(i, j, y, block)| {
+            let scale = 1.0 / body.volume.at(i);
+            BondTangent {
+                tension: scale * pair.pull,
+                ..Self::direct(i, j, y, block.map(|row| row.map(|c| scale * c)))
+            }
+        })
     }
 
     /// What the point i of a central law gets from it.

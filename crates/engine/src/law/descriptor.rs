@@ -322,6 +322,11 @@ impl Descriptor {
         self
     }
 
+    pub fn memory(mut self, memory: Memory) -> Descriptor {
+        self.memory = memory;
+        self
+    }
+
     pub fn keys(mut self, keys: &[Key]) -> Descriptor {
         self.keys.extend_from_slice(keys);
         self
@@ -537,6 +542,19 @@ pub struct Given<'a> {
     pub horizon: f64,
     /// A full family of the lattice that the points lie on, of several sublattices their mean; empty: they lie on none.
     pub family: &'a [Partner<3>],
+}
+
+/// What a law makes of each material.
+///
+/// # Errors
+/// The number of the first that it makes nothing of, and why.
+pub(crate) fn each<T>(
+    materials: &[Given],
+    of: impl Fn(&Given) -> Result<T, String>,
+) -> Result<Vec<T>, (usize, String)> {
+    let numbered = materials.iter().enumerate();
+    let made = numbered.map(|(n, m)| of(m).map_err(|why| (n, why)));
+    made.collect()
 }
 
 /// A law that can stand on a shelf.

@@ -161,21 +161,92 @@ impl<L: Lane> Over<L> for L {
     }
 }
 
-impl<L: Lane> Over<L> for Dual<L> {
+/// A slope, or several: what derivatives are made of. Methods, not closures over lanes: those would not compile for the lanes' instruction set.
+pub trait Slope<L: Lane>: Copy {
+    fn zero() -> Self;
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn scaled(self, by: L) -> Self;
+    /// `by · self + other`, rounded once.
+    fn fma(self, by: L, other: Self) -> Self;
+    /// This where the mask is set, else the other.
+    fn or(self, mask: L::Mask, other: Self) -> Self;
+}
+
+impl<L: Lane> Slope<L> for L {
     #[inline(always)]
-    fn lane(x: L) -> Self {
-        Dual {
-            value: x,
-            slope: L::splat(0.0),
-        }
+    fn zero() -> L {
+        L::splat(0.0)
+    }
+    #[inline(always)]
+    fn add(self, other: L) -> L {
+        self + other
+    }
+    #[inline(always)]
+    fn sub(self, other: L) -> L {
+        self - other
+    }
+    #[inline(always)]
+    fn scaled(self, by: L) -> L {
+        by * self
+    }
+    #[inline(always)]
+    fn fma(self, by: L, other: L) -> L {
+        Lane::fma(by, self, other)
+    }
+    #[inline(always)]
+    fn or(self, mask: L::Mask, other: L) -> L {
+        L::select(mask, self, other)
     }
 }
 
-/// Values and slopes of a whole lane: `f + f′ε`, ε² = 0.
-#[derive(Clone, Copy)]
-pub struct Dual<L> {
+impl<L: Lane, const C: usize> Slope<L> for [L; C] {
+    #[inline(always)]
+    fn zero() -> Self {
+        [L::splat(0.0); C]
+    }
+    #[inline(always)]
+    fn add(mut self, other: Self) -> Self {
+        for n in 0..C {
+            self[n] = self[n] + other[n];
+        }
+        self
+    }
+    #[inline(always)]
+    fn sub(mut self, other: Self) -> Self {
+        for n in 0..C {
+            self[n] = self[n] - other[n];
+        }
+        self
+    }
+    #[inline(always)]
+    fn scaled(mut self, by: L) -> Self {
+        for n in 0..C {
+            self[n] = by * self[n];
+        }
+        self
+    }
+    #[inline(always)]
+    fn fma(mut self, by: L, other: Self) -> Self {
+        for n in 0..C {
+            self[n] = Lane::fma(by, self[n], other[n]);
+        }
+        self
+    }
+    #[inline(always)]
+    fn or(mut self, mask: L::Mask, other: Self) -> Self {
+        for n in 0..C {
+            self[n] = L::select(mask, self[n], other[n]);
+        }
+        self
+    }
+}
+
+/// Values and slopes of a whole lane: `f + f′ε`, ε² = 0; or several slopes ([`Slopes`](super::slopes::Slopes)).
+#[derive(Debug, Clone, Copy)]
+pub struct Dual<L, S = L> {
     pub value: L,
-    pub slope: L,
+    pub slope: S,
 }
 
 impl<L: Lane> Dual<L> {
@@ -187,50 +258,63 @@ impl<L: Lane> Dual<L> {
             slope: L::splat(1.0),
         }
     }
+}
+
+impl<L: Lane, S: Slope<L>> Dual<L, S> {
     /// A function's value and derivative at the value, by the chain rule.
     #[inline(always)]
     fn chain(self, value: L, derivative: L) -> Self {
         Dual {
             value,
-            slope: derivative * self.slope,
+            slope: self.slope.scaled(derivative),
         }
     }
 }
 
-impl<L: Lane> Add for Dual<L> {
+impl<L: Lane, S: Slope<L>> Over<L> for Dual<L, S> {
+    #[inline(always)]
+    fn lane(value: L) -> Self {
+        Dual {
+            value,
+            slope: S::zero(),
+        }
+    }
+}
+
+impl<L: Lane, S: Slope<L>> Add for Dual<L, S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
         Dual {
             value: self.value + o.value,
-            slope: self.slope + o.slope,
+            slope: self.slope.add(o.slope),
         }
     }
 }
-impl<L: Lane> Sub for Dual<L> {
+impl<L: Lane, S: Slope<L>> Sub for Dual<L, S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Dual {
             value: self.value - o.value,
-            slope: self.slope - o.slope,
+            slope: self.slope.sub(o.slope),
         }
     }
 }
-impl<L: Lane> Mul for Dual<L> {
+impl<L: Lane, S: Slope<L>> Mul for Dual<L, S> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
         Dual {
             value: self.value * o.value,
-            slope: self.value.fma(o.slope, self.slope * o.value),
+            slope: o.slope.fma(self.value, self.slope.scaled(o.value)),
         }
     }
 }
 
 /// A function of a plain number in every lane. No closure, so that this compiles for the lane's instruction set.
 #[inline(always)]
-pub(super) fn each<L: Lane>(x: L, f: fn(f64) -> f64) -> L {
+fn each<L: Lane>(x: L, f: fn(f64) -> f64) -> L {
     let mut a = x.to_array();
     for v in &mut a[..L::N] {
         *v = f(*v);
@@ -239,21 +323,15 @@ pub(super) fn each<L: Lane>(x: L, f: fn(f64) -> f64) -> L {
     unsafe { L::load(a.as_ptr()) }
 }
 
-impl<L: Lane> Number for Dual<L> {
+impl<L: Lane, S: Slope<L>> Number for Dual<L, S> {
     #[inline(always)]
     fn constant(x: f64) -> Self {
-        Dual {
-            value: L::splat(x),
-            slope: L::splat(0.0),
-        }
+        Self::lane(L::splat(x))
     }
     #[inline(always)]
     fn times(self, x: f64) -> Self {
         let x = L::splat(x);
-        Dual {
-            value: self.value * x,
-            slope: self.slope * x,
-        }
+        self.chain(self.value * x, x)
     }
     #[inline(always)]
     fn plus(self, x: f64) -> Self {
@@ -264,13 +342,13 @@ impl<L: Lane> Number for Dual<L> {
     }
     #[inline(always)]
     fn recip(self) -> Self {
-        let r = L::splat(1.0).div(self.value);
+        let r = Lane::div(L::splat(1.0), self.value);
         self.chain(r, L::splat(0.0) - r * r)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let r = self.value.sqrt();
-        self.chain(r, L::splat(0.5).div(r))
+        let r = Lane::sqrt(self.value);
+        self.chain(r, Lane::div(L::splat(0.5), r))
     }
     #[inline(always)]
     fn exp(self) -> Self {
@@ -279,7 +357,10 @@ impl<L: Lane> Number for Dual<L> {
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        self.chain(elementary::ln(self.value), L::splat(1.0).div(self.value))
+        self.chain(
+            elementary::ln(self.value),
+            Lane::div(L::splat(1.0), self.value),
+        )
     }
     #[inline(always)]
     fn table(self, table: &Spline) -> Self {
@@ -298,7 +379,7 @@ impl<L: Lane> Number for Dual<L> {
     }
     #[inline(always)]
     fn ln_1p(self) -> Self {
-        let slope = L::splat(1.0).div(L::splat(1.0) + self.value);
+        let slope = Lane::div(L::splat(1.0), L::splat(1.0) + self.value);
         self.chain(each(self.value, f64::ln_1p), slope)
     }
     #[inline(always)]
@@ -308,18 +389,19 @@ impl<L: Lane> Number for Dual<L> {
     }
     #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
+        let own = self.slope.fma(a.value, b.slope);
         Dual {
-            value: self.value.fma(a.value, b.value),
-            slope: self.value.fma(a.slope, self.slope.fma(a.value, b.slope)),
+            value: Lane::fma(self.value, a.value, b.value),
+            slope: a.slope.fma(self.value, own),
         }
     }
     #[inline(always)]
     fn div(self, a: Self) -> Self {
-        let r = L::splat(1.0).div(a.value);
+        let r = Lane::div(L::splat(1.0), a.value);
         let value = self.value * r;
         Dual {
             value,
-            slope: (self.slope - value * a.slope) * r,
+            slope: self.slope.sub(a.slope.scaled(value)).scaled(r),
         }
     }
     #[inline(always)]
@@ -335,7 +417,7 @@ impl<L: Lane> Number for Dual<L> {
         let m = self.value.lt(limit.value);
         Dual {
             value: L::select(m, a.value, b.value),
-            slope: L::select(m, a.slope, b.slope),
+            slope: a.slope.or(m, b.slope),
         }
     }
 }

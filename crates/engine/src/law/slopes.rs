@@ -1,22 +1,18 @@
 //! Numbers with derivatives by several variables: of first order over lanes, for forces; of second order, for tangents.
 
-use super::number::{Number, Over, each};
+use super::number::{Dual, Number, Over};
 use super::spline::{Spline, Twin};
 use crate::execute::lane::{Lane, elementary};
 use crate::law::jet::Jet;
 use std::ops::{Add, Mul, Sub};
 
 /// A value and its slopes by `C` variables.
-#[derive(Clone, Copy)]
-pub struct Slopes<L, const C: usize> {
-    pub value: L,
-    pub slope: [L; C],
-}
+pub type Slopes<L, const C: usize> = Dual<L, [L; C]>;
 
 impl<L: Lane, const C: usize> Slopes<L, C> {
     /// Variable number `n`.
     #[inline(always)]
-    pub fn variable(value: L, n: usize) -> Self {
+    pub fn nth(value: L, n: usize) -> Self {
         Self::along(value, L::splat(1.0), n)
     }
 
@@ -25,176 +21,7 @@ impl<L: Lane, const C: usize> Slopes<L, C> {
     pub fn along(value: L, slope: L, n: usize) -> Self {
         let mut all = [L::splat(0.0); C];
         all[n] = slope;
-        Slopes { value, slope: all }
-    }
-
-    /// A function's value and derivative at the value, by the chain rule.
-    #[inline(always)]
-    fn chain(self, value: L, derivative: L) -> Self {
-        let mut slope = self.slope;
-        for s in &mut slope {
-            *s = derivative * *s;
-        }
-        Slopes { value, slope }
-    }
-}
-
-impl<L: Lane, const C: usize> Add for Slopes<L, C> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: Self) -> Self {
-        let mut slope = self.slope;
-        for (s, o) in slope.iter_mut().zip(o.slope) {
-            *s = *s + o;
-        }
-        Slopes {
-            value: self.value + o.value,
-            slope,
-        }
-    }
-}
-
-impl<L: Lane, const C: usize> Sub for Slopes<L, C> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, o: Self) -> Self {
-        let mut slope = self.slope;
-        for (s, o) in slope.iter_mut().zip(o.slope) {
-            *s = *s - o;
-        }
-        Slopes {
-            value: self.value - o.value,
-            slope,
-        }
-    }
-}
-
-impl<L: Lane, const C: usize> Mul for Slopes<L, C> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, o: Self) -> Self {
-        let mut slope = self.slope;
-        for (s, by) in slope.iter_mut().zip(o.slope) {
-            *s = self.value.fma(by, *s * o.value);
-        }
-        Slopes {
-            value: self.value * o.value,
-            slope,
-        }
-    }
-}
-
-impl<L: Lane, const C: usize> Over<L> for Slopes<L, C> {
-    #[inline(always)]
-    fn lane(x: L) -> Self {
-        Slopes {
-            value: x,
-            slope: [L::splat(0.0); C],
-        }
-    }
-}
-
-impl<L: Lane, const C: usize> Number for Slopes<L, C> {
-    #[inline(always)]
-    fn constant(x: f64) -> Self {
-        Self::lane(L::splat(x))
-    }
-    #[inline(always)]
-    fn times(self, x: f64) -> Self {
-        let x = L::splat(x);
-        self.chain(self.value * x, x)
-    }
-    #[inline(always)]
-    fn plus(self, x: f64) -> Self {
-        Slopes {
-            value: self.value + L::splat(x),
-            slope: self.slope,
-        }
-    }
-    #[inline(always)]
-    fn recip(self) -> Self {
-        let r = L::splat(1.0).div(self.value);
-        self.chain(r, L::splat(0.0) - r * r)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let r = Lane::sqrt(self.value);
-        self.chain(r, L::splat(0.5).div(r))
-    }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        let e = elementary::exp(self.value);
-        self.chain(e, e)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.chain(elementary::ln(self.value), L::splat(1.0).div(self.value))
-    }
-    #[inline(always)]
-    fn table(self, table: &Spline) -> Self {
-        let [value, derivative] = table.lanes(self.value);
-        self.chain(value, derivative)
-    }
-    #[inline(always)]
-    fn twin(self, twin: &Twin) -> [Self; 2] {
-        let [[a, da], [b, db]] = twin.lanes(self.value);
-        [self.chain(a, da), self.chain(b, db)]
-    }
-    #[inline(always)]
-    fn of_twin(self, twin: &Twin, n: usize) -> Self {
-        let [value, derivative] = twin.lanes_of(n, self.value);
-        self.chain(value, derivative)
-    }
-    #[inline(always)]
-    fn ln_1p(self) -> Self {
-        let slope = L::splat(1.0).div(L::splat(1.0) + self.value);
-        self.chain(each(self.value, f64::ln_1p), slope)
-    }
-    #[inline(always)]
-    fn exp_m1(self) -> Self {
-        let e = each(self.value, f64::exp_m1);
-        self.chain(e, e + L::splat(1.0))
-    }
-    #[inline(always)]
-    fn fma(self, a: Self, b: Self) -> Self {
-        let mut slope = b.slope;
-        for (n, s) in slope.iter_mut().enumerate() {
-            *s = Lane::fma(
-                self.value,
-                a.slope[n],
-                Lane::fma(self.slope[n], a.value, *s),
-            );
-        }
-        Slopes {
-            value: Lane::fma(self.value, a.value, b.value),
-            slope,
-        }
-    }
-    #[inline(always)]
-    fn div(self, a: Self) -> Self {
-        let r = L::splat(1.0).div(a.value);
-        let value = self.value * r;
-        let mut slope = self.slope;
-        for (s, by) in slope.iter_mut().zip(a.slope) {
-            *s = (*s - value * by) * r;
-        }
-        Slopes { value, slope }
-    }
-    #[inline(always)]
-    fn any_below(self, limit: f64) -> bool {
-        self.value.any_below(limit)
-    }
-    #[inline(always)]
-    fn choose(self, limit: Self, a: Self, b: Self) -> Self {
-        let m = self.value.lt(limit.value);
-        let mut slope = a.slope;
-        for (s, b) in slope.iter_mut().zip(b.slope) {
-            *s = L::select(m, *s, b);
-        }
-        Slopes {
-            value: L::select(m, a.value, b.value),
-            slope,
-        }
+        Dual { value, slope: all }
     }
 }
 
@@ -343,10 +170,9 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_differences() {
         let (x, y) = (1.3, 0.7);
-        let first = mixed(Slopes::<f64, 2>::variable(x, 0), Slopes::variable(y, 1));
+        let first = mixed(Slopes::<f64, 2>::nth(x, 0), Slopes::nth(y, 1));
         let both = mixed(Curved::<2>::variable(x, 0), Curved::variable(y, 1));
-        let slope =
-            |x: f64, y: f64| mixed(Slopes::<f64, 2>::variable(x, 0), Slopes::variable(y, 1)).slope;
+        let slope = |x: f64, y: f64| mixed(Slopes::<f64, 2>::nth(x, 0), Slopes::nth(y, 1)).slope;
         assert!((both.value - mixed(x, y)).abs() < 1e-14);
         for n in 0..2 {
             assert!((both.slope[n] - first.slope[n]).abs() < 1e-13);

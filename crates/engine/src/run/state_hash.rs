@@ -6,7 +6,7 @@
 use super::system::System;
 use crate::body::view;
 use crate::columns::{Life, On};
-use crate::interaction::history;
+use crate::interaction::{BondStatus, history};
 use crate::observe::state_hash::{Words, hash_of_name};
 use crate::observe::{Ledger, StateHash};
 use crate::transfer::TransferAccount;
@@ -165,10 +165,14 @@ fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
         words: Words::default(),
     };
     let whole = hash_of_name(history::WHOLE);
-    system.interaction.each_gone(&system.body, &mut |i, j, xi| {
-        bonds.add(whole, [i, j], xi, &[]);
-        bonds.add(whole, [j, i], xi.map(|x| -x), &[]);
-    });
+    system
+        .interaction
+        .each_bond(&system.body, &mut |i, j, xi, state| {
+            if state != BondStatus::Whole {
+                bonds.add(whole, [i, j], xi, &[]);
+                bonds.add(whole, [j, i], xi.map(|x| -x), &[]);
+            }
+        });
     for (name, each) in declared(system, On::Bonds).filter(|c| c.0 != history::WHOLE) {
         let hash = hash_of_name(&name);
         let values = of_law(system, &name);

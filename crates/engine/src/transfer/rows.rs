@@ -135,7 +135,7 @@ impl Rows {
                 next[row] += 1;
                 conductance[at] = match state {
                     BondStatus::Whole => 1.0,
-                    BondStatus::Broken => 0.0,
+                    BondStatus::Broken | BondStatus::Absent => 0.0,
                 };
                 moment[row] += conductance[at] * part[at];
             }

@@ -34,8 +34,20 @@ fn block<'a>(text: &'a str, begin: &str) -> &'a str {
     &text[at..at + end]
 }
 
-/// Methods of the contract that check what they are given and ask another, and the sum over [`Interaction::each_force`](peridyne::interaction::Interaction::each_force).
-const FOLLOW: [&str; 6] = ["check", "energy", "forces", "observe", "tangents", "virial"];
+/// Methods of the contract that check what they are given and ask another, and the sum over [`Interaction::each_force`](peridyne::interaction::Interaction::each_force);
+/// and those of who holds bonds itself.
+const FOLLOW: [&str; 10] = [
+    "bonds",
+    "bonds_mut",
+    "check",
+    "energy",
+    "forces",
+    "look_bits",
+    "look_critical",
+    "observe",
+    "tangents",
+    "virial",
+];
 
 /// What one body answers by default, several must ask each of them.
 #[test]

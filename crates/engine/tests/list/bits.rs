@@ -130,7 +130,7 @@ fn what_is_broken_heals_and_what_is_absent_does_not() {
         let (mut broken, mut gone) = (0, 0);
         it.each_broken(&body, &mut |_, _, _| broken += 1);
         it.each_bond(&body, &mut |_, _, _, state| {
-            gone += usize::from(state == BondStatus::Broken);
+            gone += usize::from(state == BondStatus::Absent);
         });
         assert_eq!([broken, gone], [ACROSS / 2; 2]);
     }

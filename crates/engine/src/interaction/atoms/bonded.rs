@@ -6,13 +6,12 @@
 
 mod kernel;
 
-use super::super::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
-};
+use super::super::{BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally};
 use crate::body::{Body, FieldView, FieldViewMut, Identity, view, view_mut};
 use crate::columns::Declaration;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::simd::Simd;
+use crate::interaction::{EachBond, EachPair, EachTangent};
 use crate::law::blocks::Quadratic;
 use crate::law::bonded::{Tangents, special_pairs};
 use crate::spec::BondedSpec;
@@ -209,7 +208,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         let mut all = vec![];
         // SAFETY: as promised
@@ -234,18 +233,8 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
             sum.add(&of, &first.pulls, |m, n| second[m][n], 1.0);
             sum.visit(&at[..term.count], &mut |pair| {
                 let ends = [pair.a, pair.b].map(|n| term.slots[n as usize] as usize);
-                let turned = crate::array::from_fn(|a| crate::array::from_fn(|b| pair.block[b][a]));
-                for ([i, j], y, block) in [
-                    (ends, pair.y, pair.block),
-                    ([ends[1], ends[0]], pair.y.map(|y| -y), turned),
-                ] {
-                    let scale = 1.0 / body.volume.at(i);
-                    let stiffness = block.map(|row| row.map(|c| scale * c));
-                    let mut bond = BondTangent::direct(i, j, y, stiffness);
-                    bond.tension = scale * pair.pull;
-                    debug_assert!(channels == 0);
-                    all.push(bond);
-                }
+                debug_assert!(channels == 0);
+                all.extend(BondTangent::both(body, ends, &pair));
             });
         }
         all.sort_by_key(|bond| (bond.i, bond.j));
@@ -257,7 +246,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
     }
 
     /// Of atoms that do not feel each other otherwise those that are bonded.
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         self.inner.each_bond(body, visit);
         if self.bonded.is_empty() {
             return;
@@ -307,23 +296,8 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
         self.inner.columns()
     }
 
-    fn each_directed(
-        &self,
-        body: &Body<D>,
-        name: &str,
-        visit: &mut dyn FnMut(usize, usize, [f64; D]),
-    ) {
+    fn each_directed(&self, body: &Body<D>, name: &str, visit: &mut EachPair<D>) {
         self.inner.each_directed(body, name, visit);
-    }
-
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
-        self.tangents(body, u, &mut |bond| visit(bond.force()));
-        true
     }
 
     fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {

@@ -19,9 +19,9 @@ use crate::family::neighbours::near::NearList;
 use crate::interaction::criterion::Measure;
 use crate::interaction::history::{self, crossed, damage};
 use crate::interaction::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondStatus, Crosses, EachBond, EachForce, EachPair, EachTangent, Gradient, Heals, Interaction,
+    Motion, PointEnergiesMut, Released, Sweep, Tally, Toughness,
 };
-use crate::interaction::{Motion, Released, Toughness};
 use crate::spec::{CrackKind, Release};
 use crate::state::Archive;
 use kernel::{Add, Test};
@@ -381,12 +381,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         self.inner.observe(body, u, out);
     }
 
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.inner.observe_gradient(body, gradient, out);
     }
 
@@ -402,7 +397,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         self.inner.tangents(body, u, visit);
     }
@@ -411,12 +406,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         self.inner.gain(slot)
     }
 
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         self.inner.each_force(body, u, visit)
     }
 
@@ -424,7 +414,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         self.inner.virial(body, u)
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         self.each_place(body, |i, j, xi, place| {
             if i < j {
                 let state = match self.is_whole(place) {
@@ -436,12 +426,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         });
     }
 
-    fn mend(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        heals: &dyn Fn(usize, usize, f64) -> bool,
-    ) -> Option<u64> {
+    fn mend(&mut self, body: &Body<D>, u: FieldView<D>, heals: &Heals) -> Option<u64> {
         self.check(body, &[u]);
         let position = self.inner.list().positions_at(u, self.simd)?;
         let mut places = vec![];
@@ -482,12 +467,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         }
     }
 
-    fn cut(
-        &mut self,
-        body: &Body<D>,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
+    fn cut(&mut self, body: &Body<D>, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
         let mut places = vec![];
         self.each_place(body, |i, j, xi, place| {
             let [from, to] = [i, j].map(|slot| {
@@ -547,12 +527,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         true
     }
 
-    fn each_directed(
-        &self,
-        body: &Body<D>,
-        _: &str,
-        visit: &mut dyn FnMut(usize, usize, [f64; D]),
-    ) {
+    fn each_directed(&self, body: &Body<D>, _: &str, visit: &mut EachPair<D>) {
         self.each_place(body, |i, j, xi, _| visit(i, j, xi));
     }
 

@@ -12,7 +12,8 @@ use crate::execute::simd::Simd;
 use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondStatus, BondTangent, EachBond, EachTangent, Gradient, Interaction, PointEnergiesMut, Sweep,
+    Tally,
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
@@ -306,12 +307,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         }
     }
 
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
         let rest = body.at_rest();
         let strain = |mut position: Vec<[f64; 4]>| {
@@ -336,16 +332,6 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         }
     }
 
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
-        self.tangents(body, u, &mut |bond| visit(bond.force()));
-        true
-    }
-
     fn is_potential(&self) -> bool {
         true
     }
@@ -354,7 +340,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         self.ready(body, u);
         let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
@@ -378,7 +364,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     }
 
     /// Pairs of the current list that are within the cut-off now.
-    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, _: &Body<D>, visit: &mut EachBond<D>) {
         self.each_near(|near| {
             if near.slot < near.other {
                 visit(near.slot, near.other, near.y, BondStatus::Whole);

@@ -20,7 +20,8 @@ use crate::execute::simd::{Kernel, Simd};
 use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondStatus, BondTangent, EachBond, EachTangent, Gradient, Interaction, PointEnergiesMut, Sweep,
+    Tally,
 };
 use crate::law::fan::{Fan, tangents};
 use crate::law::terms::Near;
@@ -305,12 +306,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         }
     }
 
-    fn observe_gradient(
-        &self,
-        body: &Body<3>,
-        gradient: &[[f64; 3]; 3],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<3>, gradient: &Gradient<3>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
         let rest = body.at_rest();
         let strain = |mut position: Vec<[f64; 4]>| {
@@ -335,17 +331,6 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         }
     }
 
-    /// Pairs of the same fan as well as bonds: forces are central between them.
-    fn each_force(
-        &mut self,
-        body: &Body<3>,
-        u: FieldView<3>,
-        visit: &mut dyn FnMut(BondForce<3>),
-    ) -> bool {
-        self.tangents(body, u, &mut |bond| visit(bond.force()));
-        true
-    }
-
     fn is_potential(&self) -> bool {
         true
     }
@@ -354,11 +339,12 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         true
     }
 
+    /// Pairs of the same fan as well as bonds: forces are central between them.
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<3>,
         u: FieldView<3>,
-        visit: &mut dyn FnMut(BondTangent<3>),
+        visit: &mut EachTangent<3>,
     ) {
         self.ready(body, u);
         let mut all: Vec<BondTangent<3>> = vec![];
@@ -369,19 +355,8 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
             };
             let kind = u32::from(self.kinds[slot]);
             tangents(&self.fan, kind, near, &mut |pair| {
-                let (i, j) = (of(pair.a), of(pair.b));
-                let transposed =
-                    crate::array::from_fn(|a| crate::array::from_fn(|b| pair.block[b][a]));
-                for (i, j, y, block) in [
-                    (i, j, pair.y, pair.block),
-                    (j, i, pair.y.map(|y| -y), transposed),
-                ] {
-                    let scale = 1.0 / body.volume.at(i);
-                    let stiffness = block.map(|row| row.map(|c| scale * c));
-                    let mut bond = BondTangent::direct(i, j, y, stiffness);
-                    bond.tension = scale * pair.pull;
-                    all.push(bond);
-                }
+                let ends = [pair.a, pair.b].map(of);
+                all.extend(BondTangent::both(body, ends, &pair));
             });
         });
         // in order of slots; what several fans say of a pair stays apart
@@ -390,7 +365,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     }
 
     /// Pairs of the current list that are within the cut-off now.
-    fn each_bond(&self, _: &Body<3>, visit: &mut dyn FnMut(usize, usize, [f64; 3], BondStatus)) {
+    fn each_bond(&self, _: &Body<3>, visit: &mut EachBond<3>) {
         self.each_near(&mut |slot, near, slots| {
             for (near, &j) in near.iter().zip(slots) {
                 if slot < j {

@@ -9,11 +9,11 @@ use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::simd::Simd;
 use crate::family::links::{Links, Tiles};
 use crate::interaction::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally,
+    BondStatus, BondTangent, EachBond, EachForce, EachTangent, Interaction, PointEnergiesMut,
+    Sweep, Tally,
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
-use crate::state::Archive;
 use kernel::{Density, Energies, Forces, View};
 
 /// A potential on a stencil.
@@ -170,7 +170,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         if P::EMBEDDED {
             self.embed(body, u);
@@ -204,12 +204,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         self.curvatures = Curvatures::of(density.iter().enumerate().map(of));
     }
 
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         if self.potential.kinds() > 1 {
             self.tangents(body, u, &mut |bond| visit(bond.force()));
             return true;
@@ -235,7 +230,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         self.curvatures.at(slot)
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         self.links
             .each(body, &mut |i, j, xi| visit(i, j, xi, BondStatus::Whole));
     }
@@ -247,9 +242,6 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
         self.links.family_size(body, slot)
     }
-
-    /// Nothing is remembered.
-    fn archive(&mut self, _: &Body<D>, _: &mut Archive<'_>) {}
 
     fn bytes(&self) -> usize {
         self.links.bytes() + 8 * self.slope.len()

@@ -1,7 +1,7 @@
 //! What a line of pairs says: pairs of one pair of kinds, or of each lane its own; and what atoms gather of it.
 
 use crate::execute::lane::Lane;
-use crate::interaction::VIRIAL;
+use crate::interaction::bond::VIRIAL;
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 use crate::law::potential::constants::{MOST, Rows};

@@ -16,7 +16,8 @@ use crate::body::{Body, Field, FieldView, FieldViewMut, Identity, view, view_mut
 use crate::execute::blocks::for_each_piece;
 use crate::family::nodes::Nodes;
 use crate::interaction::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
+    BondForce, BondStatus, BondTangent, Crosses, EachBond, EachForce, EachTangent, Gradient,
+    Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
 };
 use crate::spec::CrackKind;
 use crate::state::Archive;
@@ -245,12 +246,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
     }
 
     /// Linear fields are reproduced: the atoms have the same gradient.
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
         let mut seen = PointEnergies::default();
         self.inner
@@ -267,7 +263,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         let moved = self.carried(u);
         let mut bonds: Vec<BondTangent<D>> = vec![];
@@ -338,7 +334,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
     }
 
     /// Nodes that feel each other: a bond is as long as that to the nearest image, and whole as long as a whole bond of atoms ties them.
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         let whole = |state| state == BondStatus::Whole;
         let tied = self
             .breaks
@@ -365,22 +361,12 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
     }
 
     /// Bonds between atoms are what is cut.
-    fn cut(
-        &mut self,
-        _: &Body<D>,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
+    fn cut(&mut self, _: &Body<D>, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
         self.inner.cut(&self.atoms, kind, crosses)
     }
 
     /// `T̄[x_g]⟨x_h − x_g⟩ − T̄[x_h]⟨x_g − x_h⟩ = Σ_ij w_g(X_i) w_h(X_j) f_ij` between nodes and images of nodes.
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         let moved = self.carried(u);
         let mut bonds: Vec<BondForce<D>> = vec![];
         let known = self

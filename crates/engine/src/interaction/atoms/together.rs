@@ -7,7 +7,8 @@ use crate::execute::simd::Simd;
 use crate::family::neighbours::near::NearList;
 use crate::interaction::history::damage;
 use crate::interaction::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
+    BondStatus, Crosses, EachBond, EachForce, EachTangent, Gradient, Interaction, PointEnergies,
+    PointEnergiesMut, Sweep, Tally,
 };
 use crate::spec::CrackKind;
 use crate::state::Archive;
@@ -168,12 +169,7 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
         }
     }
 
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
         out.zeros(body.len);
         for part in &self.parts {
@@ -195,7 +191,7 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         for part in &mut self.parts {
             part.tangents(body, u, visit);
@@ -208,7 +204,7 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
     }
 
     /// A pair is one bond, however many potentials it has.
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         let mut all = vec![];
         for part in &self.parts {
             part.each_bond(body, &mut |i, j, xi, state| all.push((i, j, xi, state)));
@@ -220,12 +216,7 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
         }
     }
 
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         let mut all = true;
         for part in &mut self.parts {
             all &= part.each_force(body, u, visit);
@@ -252,12 +243,7 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
         }
     }
 
-    fn cut(
-        &mut self,
-        body: &Body<D>,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
+    fn cut(&mut self, body: &Body<D>, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
         let count = |all: &Self| {
             let (mut all_of, mut whole) = (0, 0);
             all.each_bond(body, &mut |_, _, _, state| {

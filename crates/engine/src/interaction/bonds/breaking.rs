@@ -1,7 +1,6 @@
 //! Which bonds break, and the next critical stretch.
 
 use super::family::{Family, Moved, Slots, put};
-use super::law::PointLaw;
 use super::state::{BondState, Room};
 use super::view::{BLOCK, BondView, grown};
 use crate::body::{Body, FieldView};
@@ -323,12 +322,12 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     }
 
     /// How stiff some points are now by their families, of torn ones or of `all`, and the most of all beside the body as it was prepared.
-    pub fn look_stiffness(&mut self, body: &Body<D>, all: bool, law: &dyn PointLaw<D>) {
+    pub fn look_stiffness(&mut self, body: &Body<D>, all: bool) {
         let [whole, mut now] = std::mem::take(&mut self.stiffness);
         if now.is_empty() {
             return;
         }
-        let family = &self.family;
+        let (family, law) = (&self.family, &self.law.asked);
         for (group, l, slot) in family.points().filter(|p| all || self.torn[p.0] != 0) {
             let material = body.material_of(slot);
             let bits = family.bits(&self.alive, group);
@@ -342,24 +341,24 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     }
 
     /// What [`BondState::look_stiffness`] compares with.
-    pub fn begin_stiffness(&mut self, body: &Body<D>, law: &dyn PointLaw<D>) {
+    pub fn begin_stiffness(&mut self, body: &Body<D>) {
         if !self.law.stiffens_torn || self.critical.is_empty() {
             return;
         }
         self.stiffness = [vec![0.0; body.len], vec![0.0; body.len]];
-        self.look_stiffness(body, true, law);
+        self.look_stiffness(body, true);
         self.stiffness[0] = self.stiffness[1].clone();
         self.stiffened = 1.0;
     }
 
     /// What points know of their families, from the bonds that are whole now.
-    pub fn look(&mut self, body: &Body<D>, law: &dyn PointLaw<D>) {
-        self.look_stiffness(body, true, law);
-        self.look_forms(body, law);
+    pub fn look(&mut self, body: &Body<D>) {
+        self.look_stiffness(body, true);
+        self.look_forms(body);
     }
 
     /// Forms of points by their families.
-    pub fn look_forms(&mut self, body: &Body<D>, law: &dyn PointLaw<D>) {
+    pub fn look_forms(&mut self, body: &Body<D>) {
         let count = self.law.form;
         if count == 0 {
             return;
@@ -368,7 +367,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             true => &self.alive,
             false => &self.counted,
         };
-        let family = &self.family;
+        let (family, law) = (&self.family, &self.law.asked);
         let mut numbers = vec![0.0; count];
         for (group, l, slot) in family.points() {
             let (material, bits) = (body.material_of(slot), family.bits(bits, group));

@@ -1,9 +1,9 @@
 //! The columns of a law: declared by it, read and written by name.
 
 use super::family::Family;
-use super::law::PointLaw;
 use super::state::{Before, BondState, all_whole};
 use super::store::Store;
+use super::walks::Walks;
 use crate::body::{Body, Column};
 use crate::columns::{Declaration, Dimension, On, Shape};
 use crate::interaction::history;
@@ -24,35 +24,6 @@ enum Place {
 }
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {
-    pub fn declared(&self) -> Vec<Declaration> {
-        let Columns {
-            memory,
-            past,
-            point,
-            places,
-        } = self.law.columns.clone();
-        let mut breaks = history::columns(!self.critical.is_empty() && self.work.is_empty());
-        if !self.work.is_empty() {
-            breaks.extend(history::of_work());
-        }
-        if !self.life.is_empty() {
-            breaks.push(Declaration::of_bonds(
-                LIFE,
-                Dimension::NUMBER,
-                "What cycles of load have left of the life of a bond, 1 at first (Silling & Askari 2014).",
-            ));
-        }
-        if !self.integrity.is_empty() {
-            breaks.push(Declaration::of_points(
-                INTEGRITY,
-                Shape::Scalar,
-                Dimension::NUMBER,
-                "What is left of the energy and the force states of a point, 1 at first: what its family would store more without the bonds that broke is taken away.",
-            ));
-        }
-        [breaks, memory, past, point, places].concat()
-    }
-
     /// Where a number of points of this name is among what the law remembers of them.
     pub(super) fn past_of(&self, name: &str) -> Option<usize> {
         match self.place(name) {
@@ -96,14 +67,64 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         memory.or_else(past).or_else(point).or_else(places)
     }
 
-    /// [`read_column`](crate::interaction::Interaction::read_column)
-    pub fn read_named(
-        &self,
-        body: &Body<D>,
-        name: &str,
-        law: &dyn PointLaw<D>,
-        out: &mut Vec<f64>,
-    ) -> bool {
+    /// Where the bits of [directed](BondState::directed) bonds are: byte and lane.
+    fn bits(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.directed()
+            .map(|(group, k, l)| (self.family.byte(group, k), l))
+    }
+
+    /// Places of what they remember.
+    fn memory_of(&self, first: usize, numbers: usize) -> impl Iterator<Item = usize> {
+        self.places_of(first, numbers, self.law.memory)
+    }
+
+    /// The same of `count` numbers for each.
+    fn places_of(&self, first: usize, numbers: usize, count: usize) -> impl Iterator<Item = usize> {
+        self.directed().flat_map(move |(group, k, l)| {
+            (0..numbers).map(move |n| self.family.own(group, k, first + n, count) + l)
+        })
+    }
+}
+
+/// All that who knows neither law nor family asks of bonds: which there are, and their columns, as [`Interaction`](crate::interaction::Interaction) has them.
+pub trait AnyBonds<const D: usize>: Walks<D> {
+    fn declared(&self) -> Vec<Declaration>;
+    fn read_named(&self, body: &Body<D>, name: &str, out: &mut Vec<f64>) -> bool;
+    fn write_named(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool;
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>);
+}
+
+impl<const D: usize, F: Family<D>> AnyBonds<D> for BondState<D, F> {
+    fn declared(&self) -> Vec<Declaration> {
+        let Columns {
+            memory,
+            past,
+            point,
+            places,
+        } = self.law.columns.clone();
+        let mut breaks = history::columns(!self.critical.is_empty() && self.work.is_empty());
+        if !self.work.is_empty() {
+            breaks.extend(history::of_work());
+        }
+        if !self.life.is_empty() {
+            breaks.push(Declaration::of_bonds(
+                LIFE,
+                Dimension::NUMBER,
+                "What cycles of load have left of the life of a bond, 1 at first (Silling & Askari 2014).",
+            ));
+        }
+        if !self.integrity.is_empty() {
+            breaks.push(Declaration::of_points(
+                INTEGRITY,
+                Shape::Scalar,
+                Dimension::NUMBER,
+                "What is left of the energy and the force states of a point, 1 at first: what its family would store more without the bonds that broke is taken away.",
+            ));
+        }
+        [breaks, memory, past, point, places].concat()
+    }
+
+    fn read_named(&self, body: &Body<D>, name: &str, out: &mut Vec<f64>) -> bool {
         out.clear();
         if name == history::WHOLE {
             let bit = |(at, l): (usize, usize)| f64::from(self.alive[at] >> l & 1);
@@ -139,7 +160,10 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             Place::Reference(first) => {
                 out.resize(body.len * numbers, 0.0);
                 for slot in body.slots.iter().map(|s| *s as usize) {
-                    let all = law.at_place(body.material_of(slot), &body.position(slot));
+                    let all = self
+                        .law
+                        .asked
+                        .at_place(body.material_of(slot), &body.position(slot));
                     let own = &mut out[slot * numbers..][..numbers];
                     own.copy_from_slice(&all[first..first + numbers]);
                 }
@@ -152,14 +176,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         true
     }
 
-    /// [`write_column`](crate::interaction::Interaction::write_column)
-    pub fn write_named(
-        &mut self,
-        body: &Body<D>,
-        name: &str,
-        values: &[f64],
-        law: &dyn PointLaw<D>,
-    ) -> bool {
+    fn write_named(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
         if name == history::WHOLE {
             let bits: Vec<_> = self.bits().collect();
             if bits.len() != values.len() {
@@ -172,7 +189,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
                 }
             }
             if self.prepared {
-                self.look(body, law);
+                self.look(body);
             }
             return true;
         }
@@ -200,7 +217,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             }
             self.integrity.copy_from_slice(values);
             self.look_integrity(body);
-            self.look_stiffness(body, true, law);
+            self.look_stiffness(body, true);
             return true;
         }
         let Some((declaration, place)) = self.place(name) else {
@@ -240,8 +257,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         }
     }
 
-    /// [`archive`](crate::interaction::Interaction::archive).
-    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>, law: &dyn PointLaw<D>) {
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
         archive.all("whole", &mut self.alive);
         archive.all("past", &mut self.past.data);
         archive.all("points", &mut self.point.data);
@@ -275,26 +291,8 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
                 false => &self.counted,
             };
             self.alive.iter_mut().zip(there).for_each(|(a, t)| *a &= t);
-            self.look_forms(body, law);
+            self.look_forms(body);
         }
-    }
-
-    /// Where the bits of [directed](BondState::directed) bonds are: byte and lane.
-    fn bits(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.directed()
-            .map(|(group, k, l)| (self.family.byte(group, k), l))
-    }
-
-    /// Places of what they remember.
-    fn memory_of(&self, first: usize, numbers: usize) -> impl Iterator<Item = usize> {
-        self.places_of(first, numbers, self.law.memory)
-    }
-
-    /// The same of `count` numbers for each.
-    fn places_of(&self, first: usize, numbers: usize, count: usize) -> impl Iterator<Item = usize> {
-        self.directed().flat_map(move |(group, k, l)| {
-            (0..numbers).map(move |n| self.family.own(group, k, first + n, count) + l)
-        })
     }
 }
 

@@ -3,6 +3,7 @@
 use super::law::{LawProperties, PointLaw};
 use crate::law::material::{Columns, Kin};
 use crate::space::Point;
+use std::sync::Arc;
 
 impl<const D: usize> LawProperties<D> {
     /// Of a law that is fused with its sweeps.
@@ -27,12 +28,13 @@ impl<const D: usize> LawProperties<D> {
             failure: None,
             temperature: None,
             fibres: vec![],
+            asked: Arc::new(Fused),
         }
     }
 }
 
 /// What such a law says of places and families where nobody asks its sweeps: nothing.
-pub struct Fused;
+struct Fused;
 
 impl<const D: usize> PointLaw<D> for Fused {
     fn form(&self, _: usize, _: Kin<D>, _: &mut [f64]) {}

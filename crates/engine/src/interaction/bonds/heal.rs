@@ -1,11 +1,9 @@
 //! Broken bonds that become whole again.
 
 use super::family::{Family, Slots};
-use super::law::PointLaw;
 use super::state::BondState;
-use crate::body::{Body, FieldView};
+use crate::body::Body;
 use crate::interaction::criterion::Measure;
-use crate::interaction::history;
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {
     /// Do bonds end by what they bear themselves? Plastic strain and damage are of points, which stay what they are: between such points a new bond would
@@ -14,44 +12,9 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         self.law.failure.is_none() && !matches!(self.criteria.measure, Measure::PlasticStrain(_))
     }
 
-    /// [`mend`](crate::interaction::Interaction::mend): those that damage counts, never what an absent crack took away.
-    pub fn mend(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        heals: &dyn Fn(usize, usize, f64) -> bool,
-        law: &dyn PointLaw<D>,
-    ) -> u64 {
-        let mut mended = vec![];
-        for (group, k, l) in self
-            .lost(|_| true)
-            .filter(|b| self.is_counted(b.0, b.1, b.2))
-        {
-            let i = self.family.rows(group).slot(l);
-            let end = self.family.ends(group, k).slot(l);
-            let xi = self.family.bond(group, k, l).0;
-            let eta = self.plain_eta(u, [i, end], &xi);
-            if heals(i, body.exchange.original(end), history::relative(&xi, eta)) {
-                mended.push((group, k, l));
-            }
-        }
-        if mended.is_empty() {
-            return 0;
-        }
-        for &(group, k, l) in &mended {
-            let byte = self.family.byte(group, k);
-            history::set(&mut self.alive[byte], l, true);
-        }
-        self.renew(body, &mended);
-        if self.prepared {
-            self.look(body, law);
-        }
-        mended.len() as u64
-    }
-
     /// Bonds begin anew: nothing was done to them, they remember nothing but the temperature of their point, and points with all of their bonds have lost
     /// nothing.
-    fn renew(&mut self, body: &Body<D>, bonds: &[(usize, usize, usize)]) {
+    pub(super) fn renew(&mut self, body: &Body<D>, bonds: &[(usize, usize, usize)]) {
         let count = self.law.memory;
         let warm = self.law.temperature.filter(|_| self.law.gathers);
         for &(group, k, l) in bonds {

@@ -3,6 +3,7 @@
 use crate::law::material::fibres::Fibres;
 use crate::law::material::{Columns, Kin, Material, Numbers};
 use crate::space::Point;
+use std::sync::Arc;
 
 /// What bonds ask of their law beside its functions: the same at all times.
 pub struct LawProperties<const D: usize> {
@@ -28,10 +29,12 @@ pub struct LawProperties<const D: usize> {
     pub failure: Option<usize>,
     pub temperature: Option<usize>,
     pub fibres: Vec<Fibres<D>>,
+    /// The law itself, point by point.
+    pub asked: Arc<dyn PointLaw<D>>,
 }
 
 impl<const D: usize> LawProperties<D> {
-    pub fn of<M: Material<D>>(law: &M) -> Self {
+    pub fn of<M: Material<D>>(law: &M, asked: Arc<dyn PointLaw<D>>) -> Self {
         LawProperties {
             fused: false,
             constants: <M::Constants<f64> as Numbers<f64>>::COUNT,
@@ -52,6 +55,7 @@ impl<const D: usize> LawProperties<D> {
             failure: law.failure(),
             temperature: law.temperature(),
             fibres: law.fibres(),
+            asked,
         }
     }
 }

@@ -19,5 +19,6 @@ mod warmth;
 mod wear;
 
 pub use cloud::CloudFamily;
+pub use columns::AnyBonds;
 pub use lattice::LatticeFamily;
 pub use state::BondState;

@@ -2,12 +2,12 @@
 
 use super::breaking::fibre_limit;
 use super::family::{Family, Slots};
-use super::law::PointLaw;
 use super::state::{BondState, WholeBond, all_whole};
-use crate::body::Body;
+use crate::body::{Body, FieldView};
 use crate::execute::lane::TILE;
-use crate::interaction::history::Crosses;
-use crate::interaction::{BondStatus, PointEnergiesMut, history};
+use crate::interaction::{
+    BondStatus, Crosses, EachBond, EachPair, Heals, PointEnergiesMut, history,
+};
 use crate::spec::CrackKind;
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {
@@ -58,86 +58,34 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         })
     }
 
-    /// [`each_directed`](crate::interaction::Interaction::each_directed)
-    pub fn each_directed(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        for (group, k, l) in self.directed() {
-            let i = self.family.rows(group).slot(l);
-            let j = body.exchange.original(self.family.ends(group, k).slot(l));
-            visit(i, j, self.family.bond(group, k, l).0);
-        }
-    }
-
-    /// [`each_bond`](crate::interaction::Interaction::each_bond)
-    pub fn each_bond(
-        &self,
-        body: &Body<D>,
-        visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
-    ) {
-        self.each_of(self.counted(), body, visit);
-    }
-
-    /// The same of every bond that the family ever had: those of absent cracks are broken, too.
-    pub fn each_pair(
-        &self,
-        body: &Body<D>,
-        visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
-    ) {
-        self.each_of(self.pairs(), body, visit);
-    }
-
-    fn each_of(
-        &self,
-        bonds: impl Iterator<Item = (usize, usize, usize)>,
-        body: &Body<D>,
-        visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus),
-    ) {
-        self.each_half_of(bonds, body, &mut |[group, k, l], [i, j], status| {
-            visit(i, j, self.family.bond(group, k, l).0, status);
-        });
-    }
-
-    /// Every undirected bond that damage counts: group, bond and place, and both ends.
-    pub fn each_half(
-        &self,
-        body: &Body<D>,
-        visit: &mut dyn FnMut([usize; 3], [usize; 2], BondStatus),
-    ) {
-        self.each_half_of(self.counted(), body, visit);
-    }
-
-    fn each_half_of(
-        &self,
-        bonds: impl Iterator<Item = (usize, usize, usize)>,
-        body: &Body<D>,
-        visit: &mut dyn FnMut([usize; 3], [usize; 2], BondStatus),
-    ) {
-        for (group, k, l) in bonds {
-            let i = self.family.rows(group).slot(l);
-            let end = self.family.ends(group, k).slot(l);
-            let j = body.exchange.original(end);
-            // a bond between a point and its own image counts from one side only
-            if i < j || (i == j && end > i) {
-                let status = BondStatus::of(self.is_whole(group, k, l));
-                visit([group, k, l], [i, j], status);
-            }
-        }
-    }
-
-    /// [`each_broken`](crate::interaction::Interaction::each_broken)
-    pub fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        self.each_broken_of(body, |_| true, visit);
-    }
-
     /// Of those groups alone that may have lost a bond.
     pub fn each_broken_of(
         &self,
         body: &Body<D>,
         torn: impl Fn(usize) -> bool,
-        visit: &mut dyn FnMut(usize, usize, [f64; D]),
+        visit: &mut EachPair<D>,
     ) {
-        self.each_half_of(self.lost(torn), body, &mut |[group, k, l], [i, j], _| {
+        self.each_half(self.lost(torn), body, &mut |[group, k, l], [i, j]| {
             visit(i, j, self.family.bond(group, k, l).0);
         });
+    }
+
+    /// Of directed bonds one of each pair: group, bond and place, and both ends.
+    pub fn each_half(
+        &self,
+        bonds: impl Iterator<Item = (usize, usize, usize)>,
+        body: &Body<D>,
+        visit: &mut dyn FnMut([usize; 3], [usize; 2]),
+    ) {
+        for (group, k, l) in bonds {
+            let i = self.family.rows(group).slot(l);
+            let end = self.family.ends(group, k).slot(l);
+            let j = body.exchange.original(end);
+            // a bond between a point and its own copy counts from one side only
+            if i < j || (i == j && end > i) {
+                visit([group, k, l], [i, j]);
+            }
+        }
     }
 
     /// Every directed bond of the family that is not whole, those of absent cracks too, of groups that may have lost one: group, bond, place.
@@ -169,11 +117,6 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         history::limit(of(0), of(1))
     }
 
-    /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot.
-    pub fn damage(&self, body: &Body<D>, out: &mut [f64]) {
-        self.damage_of(body, |j| body.volume.at(j), out);
-    }
-
     /// The same with what bonds to a point count for.
     pub fn damage_of(&self, body: &Body<D>, counts: impl Fn(usize) -> f64, out: &mut [f64]) {
         out.fill(0.0);
@@ -193,57 +136,6 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             }
             out[i] = history::damage(whole, family);
         }
-    }
-
-    /// [`cut`](crate::interaction::Interaction::cut). A bond through a periodic face is in two places, and either end must see the same: `twice` of an end and its
-    /// original says which bonds are looked at from both.
-    pub fn cut(
-        &mut self,
-        body: &Body<D>,
-        kind: CrackKind,
-        crosses: &Crosses<D>,
-        twice: impl Fn(usize, usize) -> bool,
-        law: &dyn PointLaw<D>,
-    ) -> u64 {
-        let mut cut = vec![];
-        for (group, k, l) in self.counted().filter(|b| self.is_whole(b.0, b.1, b.2)) {
-            let (xi, _) = self.family.bond(group, k, l);
-            let at = |slot: usize| -> [f64; D] {
-                let x = body.position(slot);
-                crate::array::from_fn(|a| x[a])
-            };
-            let from = at(self.family.rows(group).slot(l));
-            let end = self.family.ends(group, k).slot(l);
-            let j = body.exchange.original(end);
-            if history::crossed(crosses, from, xi, twice(end, j).then(|| at(j))) {
-                cut.push((self.family.byte(group, k), 1u8 << l));
-            }
-        }
-        if kind == CrackKind::Absent && self.counted.is_empty() && !cut.is_empty() {
-            (self.counted, _) = all_whole(&self.family);
-        }
-        for (byte, bit) in &cut {
-            self.alive[*byte] &= !bit;
-            if kind == CrackKind::Absent {
-                self.counted[*byte] &= !bit;
-            }
-        }
-        if kind == CrackKind::Absent {
-            self.directed -= cut.len() as u64;
-        }
-        if self.prepared {
-            self.look(body, law);
-        }
-        cut.len() as u64
-    }
-
-    pub fn family_size(&self, slot: usize) -> usize {
-        let Some((group, l)) = self.family.find(slot) else {
-            return 0;
-        };
-        (0..self.family.bonds(group))
-            .filter(|k| self.is_counted(group, *k, l))
-            .count()
     }
 
     /// Dilatations from `Σ ω ν V |ξ|² s` over the whole bonds: over the weighted volume of those that count, broken or not, where the law
@@ -282,5 +174,149 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             self.family
                 .fill_memory(&body.exchange, &mut self.memory, count);
         }
+    }
+}
+
+/// Who is bonded with whom, as [`Interaction`](crate::interaction::Interaction) says it of any law.
+pub trait Walks<const D: usize> {
+    fn kind(&self) -> &'static str;
+    fn directed_bonds(&self) -> u64;
+    fn near_horizon(&self) -> u64;
+    fn family_size(&self, slot: usize) -> usize;
+    fn joins(&self, body: &Body<D>, i: usize, j: usize) -> bool;
+    /// Bits of whole bonds and critical values, as they are laid out.
+    fn memory(&self) -> (&[u8], &[f64]);
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>);
+    fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>);
+    fn each_directed(&self, body: &Body<D>, visit: &mut EachPair<D>);
+    fn damage(&self, body: &Body<D>, out: &mut [f64]);
+    fn cut(&mut self, body: &Body<D>, kind: CrackKind, crosses: &Crosses<D>) -> u64;
+    /// Those that damage counts, never what an absent crack took away; `None`: what they break by is of points.
+    fn mend(&mut self, body: &Body<D>, u: FieldView<D>, heals: &Heals) -> Option<u64>;
+}
+
+impl<const D: usize, F: Family<D>> Walks<D> for BondState<D, F> {
+    fn kind(&self) -> &'static str {
+        self.kind
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.directed
+    }
+
+    fn near_horizon(&self) -> u64 {
+        self.near_horizon
+    }
+
+    fn family_size(&self, slot: usize) -> usize {
+        let Some((group, l)) = self.family.find(slot) else {
+            return 0;
+        };
+        (0..self.family.bonds(group))
+            .filter(|k| self.is_counted(group, *k, l))
+            .count()
+    }
+
+    fn joins(&self, body: &Body<D>, i: usize, j: usize) -> bool {
+        self.family.joins(body, i, j)
+    }
+
+    fn memory(&self) -> (&[u8], &[f64]) {
+        (&self.alive, &self.critical)
+    }
+
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        self.each_half(self.pairs(), body, &mut |[group, k, l], [i, j]| {
+            let status = if self.is_whole(group, k, l) {
+                BondStatus::Whole
+            } else if self.is_counted(group, k, l) {
+                BondStatus::Broken
+            } else {
+                BondStatus::Absent
+            };
+            visit(i, j, self.family.bond(group, k, l).0, status);
+        });
+    }
+
+    fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>) {
+        self.each_broken_of(body, |_| true, visit);
+    }
+
+    fn each_directed(&self, body: &Body<D>, visit: &mut EachPair<D>) {
+        for (group, k, l) in self.directed() {
+            let i = self.family.rows(group).slot(l);
+            let j = body.exchange.original(self.family.ends(group, k).slot(l));
+            visit(i, j, self.family.bond(group, k, l).0);
+        }
+    }
+
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        self.damage_of(body, |j| body.volume.at(j), out);
+    }
+
+    fn cut(&mut self, body: &Body<D>, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
+        // a bond through a periodic face is in two places, and either end must see the same
+        let twice = body.period.iter().any(Option::is_some);
+        let mut cut = vec![];
+        for (group, k, l) in self.counted().filter(|b| self.is_whole(b.0, b.1, b.2)) {
+            let (xi, _) = self.family.bond(group, k, l);
+            let at = |slot: usize| -> [f64; D] {
+                let x = body.position(slot);
+                crate::array::from_fn(|a| x[a])
+            };
+            let from = at(self.family.rows(group).slot(l));
+            let end = self.family.ends(group, k).slot(l);
+            let j = body.exchange.original(end);
+            if history::crossed(crosses, from, xi, twice.then(|| at(j))) {
+                cut.push((self.family.byte(group, k), 1u8 << l));
+            }
+        }
+        if kind == CrackKind::Absent && self.counted.is_empty() && !cut.is_empty() {
+            (self.counted, _) = all_whole(&self.family);
+        }
+        for (byte, bit) in &cut {
+            self.alive[*byte] &= !bit;
+            if kind == CrackKind::Absent {
+                self.counted[*byte] &= !bit;
+            }
+        }
+        if kind == CrackKind::Absent {
+            self.directed -= cut.len() as u64;
+        }
+        if self.prepared {
+            self.look(body);
+        }
+        cut.len() as u64
+    }
+
+    fn mend(&mut self, body: &Body<D>, u: FieldView<D>, heals: &Heals) -> Option<u64> {
+        if !self.ends_by_bonds() {
+            return None;
+        }
+        let mut mended = vec![];
+        for (group, k, l) in self
+            .lost(|_| true)
+            .filter(|b| self.is_counted(b.0, b.1, b.2))
+        {
+            let i = self.family.rows(group).slot(l);
+            let end = self.family.ends(group, k).slot(l);
+            let xi = self.family.bond(group, k, l).0;
+            let eta = self.plain_eta(u, [i, end], &xi);
+            if heals(i, body.exchange.original(end), history::relative(&xi, eta)) {
+                mended.push((group, k, l));
+            }
+        }
+        if mended.is_empty() {
+            return Some(0);
+        }
+        for &(group, k, l) in &mended {
+            let byte = self.family.byte(group, k);
+            history::set(&mut self.alive[byte], l, true);
+        }
+        self.renew(body, &mended);
+        if self.prepared {
+            self.look(body);
+        }
+        Some(mended.len() as u64)
     }
 }

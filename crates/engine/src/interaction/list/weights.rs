@@ -1,18 +1,29 @@
-//! What depends on the whole families of points: weighted volumes, and what follows.
+//! What depends on the bonds one by one: factors, weighted volumes, and what follows.
 
 use super::ListInteraction;
 use crate::body::Body;
-use crate::interaction::PointConstants;
-use crate::interaction::bonds::family::Family;
-use crate::interaction::point_constants::unlike;
-use crate::law::{BondFactors, Law};
+use crate::interaction::bonds::family::{Family, Slots};
+use crate::interaction::{FactorsOf, PointConstants};
+use crate::law::Law;
 
 impl<const D: usize, W: Law> ListInteraction<D, W> {
+    /// Every directed bond of the list: place, in order of rows; is it whole; slots.
+    pub(super) fn each_line(&self, mut visit: impl FnMut(usize, bool, [usize; 2])) {
+        let family = &self.bonds.family;
+        for (group, k, l) in self.bonds.pairs() {
+            let ends = [family.rows(group), family.ends(group, k)].map(|s| s.slot(l));
+            let whole = self.bonds.is_whole(group, k, l);
+            visit(family.own(group, k, 0, 1) + l, whole, ends);
+        }
+    }
+
+    /// Fields of a point.
+    pub(super) fn field(&self, slot: usize) -> [f64; 2] {
+        [0, 1].map(|n| self.fields.get(2 * slot + n).copied().unwrap_or(0.0))
+    }
+
     /// Multiply the factors of bonds.
-    pub(super) fn multiply_factors(
-        &mut self,
-        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) {
+    pub(super) fn multiply_factors(&mut self, factors: &FactorsOf<D>) {
         let mut scale = std::mem::take(&mut self.scale);
         scale.resize(self.bonds.family.memory(), 1.0);
         // points of a list know no cells
@@ -29,38 +40,21 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
 
     /// Weighted volumes, and what follows.
     pub(super) fn weigh(&mut self, body: &Body<D>) {
-        match &self.point_constants {
-            PointConstants::None => {}
-            PointConstants::PerMaterial(c) => {
-                for (slot, field) in self.fields.chunks_mut(2).enumerate() {
-                    field[0] = c[body.material_of(slot)];
+        let mut m = vec![0.0; body.len];
+        if matches!(self.point_constants, PointConstants::Solid(_)) {
+            let view = self.view(self.moved());
+            self.each_line(|_, whole, [i, j]| {
+                if whole {
+                    m[i] += view.constant(i, j).1;
                 }
-            }
-            PointConstants::PerPoint(all) => {
-                for (field, own) in self.fields.chunks_mut(2).zip(all) {
-                    field.copy_from_slice(own);
-                }
-            }
-            PointConstants::Solid(solids) => {
-                let of = |s: usize| solids[body.material_of(s)];
-                let view = self.view(self.moved());
-                let mut per_m = vec![0.0; body.len];
-                self.each_line(|_, whole, [i, j]| {
-                    if whole {
-                        per_m[i] += view.constant(i, j).1;
-                    }
-                });
-                for (i, m) in per_m.iter_mut().enumerate() {
-                    *m = if *m > 0.0 { of(i).beta / *m } else { 0.0 };
-                }
-                let ratio = |(s, b): (usize, &f64)| of(s).ratio() * b * b;
-                if unlike(solids) {
-                    self.pressure = per_m.iter().enumerate().map(ratio).collect();
-                }
-                for (field, b) in self.fields.chunks_mut(2).zip(per_m) {
-                    field.copy_from_slice(&[0.0, b]);
-                }
-            }
+            });
+        }
+        self.pressure.clear();
+        for (slot, field) in self.fields.chunks_mut(2).enumerate() {
+            let material = body.material_of(slot);
+            let (own, pressure) = self.point_constants.fields(slot, material, m[slot]);
+            field.copy_from_slice(&own);
+            self.pressure.extend(pressure);
         }
     }
 }

@@ -3,23 +3,30 @@
 use super::MaterialInteraction;
 use super::tangents::Tangents;
 use crate::body::{Body, FieldView, FieldViewMut, Identity};
-use crate::columns::Declaration;
 use crate::error::BuildError;
-use crate::interaction::bonds::family::Family;
+use crate::execute::lane::TILE;
+use crate::interaction::bonds::AnyBonds;
+use crate::interaction::bonds::family::{Family, Slots};
+use crate::interaction::bonds::view::{BondView, grown};
 use crate::interaction::{
-    BondForce, BondStatus, BondTangent, Interaction, PointEnergiesMut, Sweep, Tally, Wearing,
+    BondForce, EachForce, EachTangent, FactorsOf, Gradient, Interaction, PointEnergiesMut, Sweep,
+    Tally, Wearing,
 };
-use crate::law::BondFactors;
-use crate::spec::{CrackKind, Cycles};
-use crate::state::Archive;
+use crate::law::material::part_of;
+use crate::spec::Cycles;
+use std::collections::HashMap;
 
 impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> {
     fn made_for(&self) -> Identity {
         self.bonds.body
     }
 
-    fn family(&self) -> &'static str {
-        self.bonds.kind
+    fn bonds(&self) -> Option<&dyn AnyBonds<D>> {
+        Some(&self.bonds)
+    }
+
+    fn bonds_mut(&mut self) -> Option<&mut dyn AnyBonds<D>> {
+        Some(&mut self.bonds)
     }
 
     unsafe fn forces_unchecked(
@@ -36,7 +43,7 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
     /// How stiff its points are then.
     fn begin_steps(&mut self, body: &Body<D>) {
         self.check(body, &[]);
-        self.bonds.begin_stiffness(body, &*self.law);
+        self.bonds.begin_stiffness(body);
     }
 
     fn shortest(&mut self, body: &Body<D>, u: FieldView<D>) -> f64 {
@@ -65,21 +72,32 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         self.seen(body, u, &self.look_room(u), out);
     }
 
-    fn observe_gradient(
-        &self,
-        body: &Body<D>,
-        gradient: &[[f64; D]; D],
-        out: &mut PointEnergiesMut,
-    ) {
+    fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
-        self.strained(body, gradient, out);
+        out.zeros(body.len);
+        let constants = self.constants().constants;
+        let bonds = &self.bonds;
+        for (group, l, slot) in bonds.family.points() {
+            let at = bonds.plain_point(&constants, slot);
+            let whole = bonds.bonds_of(group, l).into_iter();
+            let whole = whole.map(|b| {
+                let end = bonds.family.ends(group, b.0).slot(l);
+                let others = bonds.plain_constants(&constants, end);
+                (b, [bonds.memory_at(group, b.0, l), others])
+            });
+            let found = (self.law).strained(&at, &whole.collect::<Vec<_>>(), gradient);
+            out.strain[slot] = part_of(bonds.integrity_at(slot), found[0]);
+            out.dilatation[slot] = found[1];
+            out.whole[slot] = found[2];
+        }
+        bonds.dilate(out);
     }
 
     unsafe fn tangents_unchecked(
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
+        visit: &mut EachTangent<D>,
     ) {
         let tangents = Tangents {
             law: &*self.law,
@@ -90,32 +108,9 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         tangents.each(body, visit);
     }
 
-    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondStatus)) {
-        self.bonds.each_bond(body, visit);
-    }
-
-    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        self.bonds.each_broken(body, visit);
-    }
-
-    fn each_gone(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        self.bonds.each_broken(body, visit);
-    }
-
     fn stress_borne(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<Vec<f64>> {
         self.check(body, &[u]);
         self.stress(body, u)
-    }
-
-    fn mend(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        heals: &dyn Fn(usize, usize, f64) -> bool,
-    ) -> Option<u64> {
-        self.check(body, &[u]);
-        let new = self.bonds.ends_by_bonds();
-        new.then(|| self.bonds.mend(body, u, heals, &*self.law))
     }
 
     fn work_borne(
@@ -132,35 +127,50 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         self.bonds.bond_limit(ends, xi, critical)
     }
 
-    fn each_force(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) -> bool {
+    fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         self.check(body, &[u]);
-        self.each_pull(body, u, visit);
+        let room = self.take_room(u, self.bonds.step);
+        self.settle(body, u, &room);
+        let law = self.asked(self.bonds.view(u, &room));
+        let family = &self.bonds.family;
+        // force states of both ends, and the own ones where they are told, of groups some of whose points are still to come: ids need not be in their order
+        let mut open: HashMap<usize, ([Vec<f64>; 2], usize)> = HashMap::new();
+        let mut free: Vec<[Vec<f64>; 2]> = vec![];
+        for &s in &body.slots {
+            let Some((group, l)) = family.find(s as usize) else {
+                continue;
+            };
+            let (all, left) = open.entry(group).or_insert_with(|| {
+                let mut all = free.pop().unwrap_or_default();
+                law.bond_forces(group, false, &mut all[0]);
+                if self.bonds.law.potential {
+                    law.bond_forces(group, true, &mut all[1]);
+                }
+                (all, family.points_of(group..group + 1).count())
+            });
+            for k in (0..family.bonds(group)).filter(|k| family.is_bond(group, *k, l)) {
+                let of = |all: &[f64], a: usize| all.get((k * D + a) * TILE + l).copied();
+                let states = [&all[0], &all[1]]
+                    .map(|all| crate::array::from_fn(|a| of(all, a).unwrap_or(0.0)));
+                let bond = self.pull_of(&law.bonds, body, [group, k, l], states);
+                if bond.force != [0.0; D] {
+                    visit(BondForce {
+                        i: s as usize,
+                        j: body.exchange.original(bond.j),
+                        ..bond
+                    });
+                }
+            }
+            *left -= 1;
+            if *left == 0 {
+                free.extend(open.remove(&group).map(|(all, _)| all));
+            }
+        }
+        self.bonds.room = room;
         true
     }
 
-    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
-        self.bonds.damage(body, out);
-    }
-
-    fn cut(
-        &mut self,
-        body: &Body<D>,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64 {
-        self.bonds.cut(body, kind, crosses, |_, _| true, &*self.law)
-    }
-
-    fn scale_bonds(
-        &mut self,
-        _: &Body<D>,
-        _: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) -> Result<(), BuildError> {
+    fn scale_bonds(&mut self, _: &Body<D>, _: &FactorsOf<D>) -> Result<(), BuildError> {
         Err(BuildError::unsupported(
             "bonds",
             "factors of bonds and corrections of surfaces multiply what a bond pulls by its own stretch and its ends' dilatation; the bonds of this body do more: they remember (work, stress or strain that they break by, plastic flow), expand, or answer to tensors",
@@ -171,23 +181,7 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
     fn prepare(&mut self, body: &Body<D>) {
         self.check(body, &[]);
         self.bonds.prepared = true;
-        self.bonds.look(body, &*self.law);
-    }
-
-    fn directed_bonds(&self) -> u64 {
-        self.bonds.directed
-    }
-
-    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
-        self.bonds.family_size(slot)
-    }
-
-    fn near_horizon(&self) -> u64 {
-        self.bonds.near_horizon
-    }
-
-    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
-        self.bonds.family.joins(body, i, j)
+        self.bonds.look(body);
     }
 
     fn expand(&mut self, body: &Body<D>, strain: &[f64]) -> bool {
@@ -199,7 +193,34 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
     fn add_stress_across(&mut self, body: &Body<D>, u: FieldView<D>, trace: &mut [f64]) -> bool {
         self.check(body, &[u]);
         assert_eq!(trace.len(), body.len, "a number for each slot");
-        self.bonds.held.is_empty() || self.add_across(body, u, trace)
+        if self.bonds.held.is_empty() {
+            return true;
+        }
+        if !self.bonds.law.across {
+            let known = self.bonds.held.iter().all(Option::is_some);
+            for &s in &body.slots {
+                let i = s as usize;
+                let [poisson, stiff] = self.bonds.elastic_across(self.bonds.material_at(i));
+                let strain = self.bonds.expansion.get(i).copied().unwrap_or(0.0);
+                trace[i] += poisson * trace[i] - self.bonds.integrity_at(i) * stiff * strain;
+            }
+            return known;
+        }
+        // bonds that remember tell their point at the end of a step, and these displacements are those of no end
+        if self.bonds.law.gathers {
+            return false;
+        }
+        let room = self.take_room(u, self.bonds.step);
+        self.settle(body, u, &room);
+        for slot in body.slots.iter().map(|s| *s as usize) {
+            if self.bonds.family.find(slot).is_some() {
+                let at = self.bonds.plain_point(&room.constants, slot);
+                let across = self.law.across(&at, &self.bonds.point.numbers(slot));
+                trace[slot] += part_of(self.bonds.integrity_at(slot), across);
+            }
+        }
+        self.bonds.room = room;
+        true
     }
 
     fn warm(&mut self, body: &Body<D>, above: &[f64]) -> bool {
@@ -227,38 +248,49 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         self.bonds.wear(bonds, cycles);
     }
 
-    fn columns(&self) -> Vec<Declaration> {
-        self.bonds.declared()
-    }
-
-    fn read_column(&self, body: &Body<D>, u: FieldView<D>, name: &str, out: &mut Vec<f64>) -> bool {
-        self.check(body, &[u]);
-        self.bonds.read_named(body, name, &*self.law, out)
-    }
-
-    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
-        self.check(body, &[]);
-        self.bonds.write_named(body, name, values, &*self.law)
-    }
-
-    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
-        self.bonds.archive(body, archive, &*self.law);
-    }
-
-    fn each_directed(
-        &self,
-        body: &Body<D>,
-        _: &str,
-        visit: &mut dyn FnMut(usize, usize, [f64; D]),
-    ) {
-        self.bonds.each_directed(body, visit);
-    }
-
-    fn memory(&self) -> (&[u8], &[f64]) {
-        (&self.bonds.alive, &self.bonds.critical)
-    }
-
     fn bytes(&self) -> usize {
         self.bonds.bytes()
+    }
+}
+
+impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
+    /// A bond with what its force states do, repulsion among it; slots are those of the family.
+    fn pull_of(
+        &self,
+        seen: &BondView<D, F>,
+        body: &Body<D>,
+        [group, k, l]: [usize; 3],
+        [mut force, mut own]: [[f64; D]; 2],
+    ) -> BondForce<D> {
+        let family = &self.bonds.family;
+        let [rows, ends] = [family.rows(group), family.ends(group, k)].map(|s| s.from(l));
+        let r = family.plain(group, k, l);
+        let whole = self.bonds.is_whole(group, k, l);
+        let weight = if whole { r.weight } else { 0.0 };
+        let mut per_length = 1.0;
+        if !seen.expansion.is_empty() {
+            // SAFETY: slots of the family
+            [_, per_length] = unsafe { grown(seen.expansion, rows, ends) };
+        }
+        for a in 0..D {
+            force[a] = per_length * (weight * force[a]);
+            own[a] *= weight * per_length;
+        }
+        let pushed = self.bonds.pushed(body);
+        if let Some(push) = { pushed }.and_then(|p| p.of(family, &seen.moved, group, k, l)) {
+            for a in 0..D {
+                force[a] += push.pull * push.y[a];
+                own[a] += 0.5 * push.pull * push.y[a];
+            }
+        }
+        // SAFETY: slots of the family
+        let [ui, uj] = [rows, ends].map(|s| unsafe { F::displacement::<f64>(&seen.moved, s) });
+        BondForce {
+            i: rows.slot(0),
+            j: ends.slot(0),
+            y: crate::array::from_fn(|a| r.xi[a] + uj[a] - ui[a]),
+            force,
+            own: self.bonds.law.potential.then_some(own),
+        }
     }
 }

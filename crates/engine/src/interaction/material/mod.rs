@@ -14,7 +14,6 @@ mod sweeps;
 mod tangents;
 mod tear;
 mod view;
-mod watch;
 
 use super::bonds::family::Family;
 use super::bonds::law::LawProperties;
@@ -25,16 +24,17 @@ use crate::law::material::{Material, Numbers};
 use crate::space::Point;
 use law::LawSweeps;
 use plain::Compiled;
+use std::sync::Arc;
 
 /// A law on a family.
 pub struct MaterialInteraction<const D: usize, F> {
     bonds: BondState<D, F>,
-    law: Box<dyn LawSweeps<D, F>>,
+    law: Arc<dyn LawSweeps<D, F>>,
 }
 
 /// A law that is not yet on a family.
 pub trait AnyLaw<const D: usize>: Sync {
-    fn properties(&self) -> LawProperties<D>;
+    fn properties(self: Arc<Self>) -> LawProperties<D>;
     /// [`Material::OF_FAMILY`]
     fn of_family(&self) -> bool;
     /// [`Material::OF_BONDS`]
@@ -50,19 +50,19 @@ pub trait AnyLaw<const D: usize>: Sync {
     /// Why there are none.
     fn constants_at(&self, material: usize, place: &Point, out: &mut [f64]) -> Result<(), String>;
 
-    fn on_lattice(self: Box<Self>) -> Box<dyn LawSweeps<D, LatticeFamily<D>>>;
+    fn on_lattice(self: Arc<Self>) -> Arc<dyn LawSweeps<D, LatticeFamily<D>>>;
 
-    fn on_cloud(self: Box<Self>) -> Box<dyn LawSweeps<D, CloudFamily<D>>>;
+    fn on_cloud(self: Arc<Self>) -> Arc<dyn LawSweeps<D, CloudFamily<D>>>;
 }
 
 /// What bonds need of a law.
-pub fn compiled<const D: usize, M: Material<D>>(law: M) -> Box<dyn AnyLaw<D>> {
-    Box::new(Compiled(law))
+pub fn compiled<const D: usize, M: Material<D>>(law: M) -> Arc<dyn AnyLaw<D>> {
+    Arc::new(Compiled(law))
 }
 
 impl<const D: usize, M: Material<D>> AnyLaw<D> for Compiled<M> {
-    fn properties(&self) -> LawProperties<D> {
-        LawProperties::of(&self.0)
+    fn properties(self: Arc<Self>) -> LawProperties<D> {
+        LawProperties::of(&self.0, self.clone())
     }
 
     fn of_family(&self) -> bool {
@@ -89,11 +89,11 @@ impl<const D: usize, M: Material<D>> AnyLaw<D> for Compiled<M> {
         Ok(())
     }
 
-    fn on_lattice(self: Box<Self>) -> Box<dyn LawSweeps<D, LatticeFamily<D>>> {
+    fn on_lattice(self: Arc<Self>) -> Arc<dyn LawSweeps<D, LatticeFamily<D>>> {
         self
     }
 
-    fn on_cloud(self: Box<Self>) -> Box<dyn LawSweeps<D, CloudFamily<D>>> {
+    fn on_cloud(self: Arc<Self>) -> Arc<dyn LawSweeps<D, CloudFamily<D>>> {
         self
     }
 }
@@ -105,10 +105,10 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     /// The slot whose place has no constants, and why.
     pub fn new(
         parts: BondParts<D, F>,
-        law: Box<dyn AnyLaw<D>>,
-        on: fn(Box<dyn AnyLaw<D>>) -> Box<dyn LawSweeps<D, F>>,
+        law: Arc<dyn AnyLaw<D>>,
+        on: fn(Arc<dyn AnyLaw<D>>) -> Arc<dyn LawSweeps<D, F>>,
     ) -> Result<Self, (usize, String)> {
-        let of = law.properties();
+        let of = law.clone().properties();
         let placed = match law.is_placed() {
             false => Store::zeros(parts.family.layout(0)),
             true => placed(&parts.family, parts.body, of.constants, &|m, place, out| {

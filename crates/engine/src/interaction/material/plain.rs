@@ -1,5 +1,6 @@
 //! A law in plain numbers: one point, or one bond. Knows no family of bonds.
 
+use crate::interaction::Gradient;
 use crate::interaction::along;
 use crate::interaction::bonds::law::PointLaw;
 use crate::interaction::bonds::points::PlainPoint;
@@ -18,7 +19,7 @@ pub trait PlainLaw<const D: usize>: PointLaw<D> {
         &self,
         at: &PlainPoint,
         bonds: &[(WholeBond<D>, [Vec<f64>; 2])],
-        gradient: &[[f64; D]; D],
+        gradient: &Gradient<D>,
     ) -> [f64; 3];
 
     /// Stress across a body in plane strain, of a point that has settled and has all of its force state.
@@ -58,7 +59,7 @@ impl<const D: usize, M: Material<D>> PlainLaw<D> for Compiled<M> {
         &self,
         at: &PlainPoint,
         bonds: &[(WholeBond<D>, [Vec<f64>; 2])],
-        gradient: &[[f64; D]; D],
+        gradient: &Gradient<D>,
     ) -> [f64; 3] {
         let constants: M::Constants<f64> = numbers(&at.constants);
         let site = Site {

@@ -13,7 +13,7 @@ use crate::interaction::bonds::state::{Before, Room};
 use crate::interaction::bonds::store::Store;
 use crate::interaction::bonds::view::BondView;
 use crate::interaction::criterion::Measure;
-use crate::interaction::{BondStatus, EnergyFields, Motion, PointEnergiesMut, Tally, history};
+use crate::interaction::{EnergyFields, Motion, PointEnergiesMut, Tally, history};
 use crate::spec::Release;
 
 impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
@@ -253,7 +253,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             torn,
         });
         self.bonds.look_integrity(body);
-        self.bonds.look_stiffness(body, false, &*self.law);
+        self.bonds.look_stiffness(body, false);
         tally
     }
 
@@ -408,15 +408,15 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             work: Shared(done.as_mut_ptr()),
         });
         let critical = &self.bonds.critical;
-        self.bonds
-            .each_half(body, &mut |[group, k, l], [i, j], status| {
-                let limit = history::limit(critical[i], critical[j]);
-                if status == BondStatus::Whole && limit.is_finite() {
-                    let at = self.bonds.family.own(group, k, 0, 1) + l;
-                    let (xi, _) = self.bonds.family.bond(group, k, l);
-                    visit(i, j, xi, done[at] / limit);
-                }
-            });
+        let bonds = &self.bonds;
+        let whole = { bonds.pairs() }.filter(|(group, k, l)| bonds.is_whole(*group, *k, *l));
+        bonds.each_half(whole, body, &mut |[group, k, l], [i, j]| {
+            let limit = history::limit(critical[i], critical[j]);
+            if limit.is_finite() {
+                let at = bonds.family.own(group, k, 0, 1) + l;
+                visit(i, j, bonds.family.bond(group, k, l).0, done[at] / limit);
+            }
+        });
         self.bonds.room = room;
         true
     }

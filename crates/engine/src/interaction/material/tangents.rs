@@ -8,7 +8,7 @@ use crate::body::{Body, FieldView};
 use crate::interaction::bonds::BondState;
 use crate::interaction::bonds::family::{Family, Slots};
 use crate::interaction::bonds::points::PlainPoint;
-use crate::interaction::{BondTangent, Channel};
+use crate::interaction::{BondTangent, Channel, EachTangent};
 
 /// A point with its bonds.
 struct Node<const D: usize> {
@@ -140,7 +140,7 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
         (stiffness, through, slopes.force.map(|x| weight * x))
     }
 
-    pub fn each(&self, body: &Body<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    pub fn each(&self, body: &Body<D>, visit: &mut EachTangent<D>) {
         let mut nodes: Vec<Option<Node<D>>> = (0..body.len).map(|_| None).collect();
         for &s in &body.slots {
             if let Some((group, l)) = self.bonds.family.find(s as usize) {

@@ -1,14 +1,18 @@
 use super::*;
 use crate::body::{view, zeros};
 use crate::execute::simd::Simd;
-use crate::interaction::PointEnergies;
+use crate::family::horizon::HorizonList;
 use crate::interaction::atoms::bonded::BondedAtoms;
 use crate::interaction::atoms::current::CurrentAtoms;
+use crate::interaction::list::{ListInteraction, ListParts};
 use crate::interaction::micromoduli::MicromoduliInteraction;
+use crate::interaction::weight::BondWeight;
+use crate::interaction::{PointConstants, PointEnergies};
 use crate::law::potential::cut::{Cut, Ends};
 use crate::law::potential::lennard_jones::LennardJones;
 use crate::law::potential::mixture::Mixture;
-use crate::spec::{BondedSpec, End, LinearBody};
+use crate::law::solid::bond_based::BondBased;
+use crate::spec::{BondedSpec, End, Influence, LinearBody};
 use std::sync::Arc;
 
 type Bonds = Option<Box<dyn Interaction<3>>>;
@@ -141,4 +145,37 @@ fn one_with_angles_has_terms_of_three() {
     };
     let (_, it) = side_by_side([ATOMS, molecules, LOOSE]);
     assert!(it.has_fans() && it.is_potential());
+}
+
+/// Between points at 0 and 1 and those at 2 and 3 two bonds are absent and the third is broken: of one whole bond and it half is lost.
+#[test]
+fn absent_bonds_between_bodies_are_no_damage() {
+    let bodies = [0.0, 2.0].map(pair);
+    let own = bodies.iter().map(|b| springs(b, [1.0; 2])).collect();
+    let body = Body::several(bodies.to_vec());
+    let place: Vec<[f64; 3]> = (0..4).map(|n| [f64::from(n), 0.0, 0.0]).collect();
+    let cloud = Body::<3>::from_cloud(&place, &[1.0; 4], &[], 1.0, [None; 3]).unwrap();
+    let side = |slot: usize| cloud.position(slot)[0] < 1.5;
+    let across = |i, j| if side(i) == side(j) { 0.0 } else { 2.1 };
+    let mut bonds = ListInteraction::new(ListParts {
+        body: &cloud,
+        list: HorizonList::within(&cloud, 2.1, across).unwrap(),
+        law: BondBased { c: 1.0 },
+        weight: BondWeight::new(Influence::Constant, 2.1, None),
+        point_constants: PointConstants::None,
+        toughness: vec![],
+        repulsion: None,
+        simd: Simd::detect(),
+    });
+    let long = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).abs() > 1.5;
+    assert_eq!(bonds.cut(&cloud, CrackKind::Absent, &long), 4);
+    let interface = Interface::new(&body, cloud, body.slots.clone(), Box::new(bonds));
+    let mut it = SeveralInteraction::new(&body, own, vec![interface]);
+    // that of the springs does not break
+    assert_eq!(it.cut(&body, CrackKind::Broken, &|_, _| true), 2);
+    it.prepare(&body);
+    let mut damage = vec![f64::NAN; body.len];
+    it.damage(&body, &mut damage);
+    let of: Vec<f64> = body.slots.iter().map(|s| damage[*s as usize]).collect();
+    assert_eq!(of, [0.0, 0.5, 0.5, 0.0]);
 }

@@ -7,7 +7,7 @@ use crate::execute::lane::Lane;
 use crate::execute::simd::Kernel;
 use crate::interaction::bonds::family::Family;
 use crate::interaction::tangent::Stretched;
-use crate::interaction::{BondForce, BondTangent, Interaction, Sweep, add_virial};
+use crate::interaction::{BondForce, Interaction, Sweep, add_virial};
 use crate::law::Law;
 use std::ops::Range;
 
@@ -39,56 +39,19 @@ impl<const D: usize, W: Law> Kernel for Virial<'_, D, W> {
 
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
     /// Tiles that have points.
-    fn tiles(&self) -> usize {
+    pub(super) fn tiles(&self) -> usize {
         self.bonds.family.groups()
     }
 
-    fn field(&self, slot: usize) -> [f64; 2] {
+    pub(super) fn field(&self, slot: usize) -> [f64; 2] {
         [0, 1].map(|n| self.fields[n].get(slot).copied().unwrap_or(0.0))
     }
 
     /// The pressures of this state.
-    fn update_pressures(&mut self, body: &Body<D>, u: FieldView<D>) {
+    pub(super) fn update_pressures(&mut self, body: &Body<D>, u: FieldView<D>) {
         if W::SHARES {
             self.forces(body, u, view_mut(&mut zeros(body.len)), Sweep::Hold, None);
         }
-    }
-
-    pub(super) fn each_tangent(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
-    ) {
-        self.update_pressures(body, u);
-        let family = &self.bonds.family;
-        for (n, l, i) in family.points() {
-            for (k, b) in self.stencil[family.sublattice(n)].iter().enumerate() {
-                if !self.bonds.is_whole(n, k, l) {
-                    continue;
-                }
-                let j = b.to(i);
-                visit(BondTangent::of_law(
-                    self.law,
-                    [i, body.exchange.original(j)],
-                    b.k,
-                    self.scale.of(n, k, l),
-                    b.back.map(|x| -x),
-                    crate::array::from_fn(|a| u[a][j] - u[a][i]),
-                    [i, j].map(|s| self.field(s)),
-                ));
-            }
-        }
-    }
-
-    pub(super) fn each_pull(
-        &mut self,
-        body: &Body<D>,
-        u: FieldView<D>,
-        visit: &mut dyn FnMut(BondForce<D>),
-    ) {
-        self.update_pressures(body, u);
-        self.pulls_of(body, u, 0..self.tiles(), visit);
     }
 
     /// Σ of distance times force over the pairs, on threads.
@@ -99,7 +62,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     }
 
     /// What points of some tiles get from their bonds, as pressures are.
-    fn pulls_of(
+    pub(super) fn pulls_of(
         &self,
         body: &Body<D>,
         u: FieldView<D>,

@@ -4,17 +4,13 @@ use super::StencilInteraction;
 use super::kernel::{ALIKE, WHOLE};
 use crate::body::{Body, Column, field};
 use crate::execute::lane::TILE;
-use crate::interaction::PointConstants;
 use crate::interaction::bonds::family::{Family, Slots};
-use crate::interaction::point_constants::unlike;
 use crate::interaction::scale::Scale;
+use crate::interaction::{FactorsOf, PointConstants};
 use crate::law::{BondFactors, Law};
 
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
-    pub(super) fn multiply_factors(
-        &mut self,
-        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
-    ) {
+    pub(super) fn multiply_factors(&mut self, factors: &FactorsOf<D>) {
         let family = &self.bonds.family;
         let old = std::mem::take(&mut self.scale);
         self.scale = Scale::new(family.groups(), family.width, W::SHARES, |n, k, l| {
@@ -41,58 +37,41 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
 
     /// Weighted volumes, and what follows.
     pub(super) fn weigh(&mut self, body: &Body<D>) {
-        let column = |n: usize| Column::new(body.len, 0.0, field::line(4 + n));
-        let per_slot = |n: usize, value: &dyn Fn(usize) -> f64| {
-            let mut field = column(n);
-            body.set_points(&mut field, value);
-            field
-        };
-        match &self.point_constants {
-            PointConstants::None => {}
-            PointConstants::PerPoint(all) => {
-                for n in 0..2 {
-                    self.fields[n] = per_slot(n, &|s| all[s][n]);
-                }
-            }
-            PointConstants::PerMaterial(c) => {
-                self.fields[0] = per_slot(0, &|s| c[body.material_of(s)])
-            }
-            PointConstants::Solid(solids) => {
-                let mut m = vec![0.0; body.len];
-                let family = &self.bonds.family;
-                for n in 0..family.groups() {
-                    let first = family.rows(n).slot(0);
-                    let bonds = &self.stencil[family.sublattice(n)];
-                    let whole = !self.scale.is_empty();
-                    for (b, bits) in bonds.iter().zip(family.bits(&self.bonds.alive, n)) {
-                        for l in 0..TILE {
-                            if whole || bits >> l & 1 == 1 {
-                                m[first + l] += b.share;
-                            }
+        let mut m = vec![0.0; body.len];
+        if matches!(self.point_constants, PointConstants::Solid(_)) {
+            let family = &self.bonds.family;
+            for n in 0..family.groups() {
+                let first = family.rows(n).slot(0);
+                let bonds = &self.stencil[family.sublattice(n)];
+                let whole = !self.scale.is_empty();
+                for (b, bits) in bonds.iter().zip(family.bits(&self.bonds.alive, n)) {
+                    for l in 0..TILE {
+                        if whole || bits >> l & 1 == 1 {
+                            m[first + l] += b.share;
                         }
                     }
                 }
-                let of = |s: usize| solids[body.material_of(s)];
-                let per_m = |s: usize, x: f64| if m[s] > 0.0 { x / m[s] } else { 0.0 };
-                self.fields[0] = column(0);
-                self.fields[1] = per_slot(1, &|s| per_m(s, of(s).beta));
-                if unlike(solids) {
-                    self.pressure = per_slot(2, &|s| {
-                        of(s).ratio() * self.fields[1][s] * self.fields[1][s]
-                    });
+            }
+        }
+        for slot in body.slots.iter().map(|s| *s as usize) {
+            let material = body.material_of(slot);
+            let (own, pressure) = self.point_constants.fields(slot, material, m[slot]);
+            for (field, x) in self.fields.iter_mut().zip(own).take(W::FIELDS) {
+                field[slot] = x;
+            }
+            if let Some(q) = pressure {
+                if self.pressure.is_empty() {
+                    self.pressure = Column::new(body.len, 0.0, field::line(6));
                 }
+                self.pressure[slot] = q;
+            }
+        }
+        for column in self.fields.iter_mut().chain([&mut self.pressure]) {
+            if !column.is_empty() {
+                body.exchange.fill(column);
             }
         }
         self.look();
-    }
-
-    /// What follows from critical stretches, whose images are those of originals.
-    pub(super) fn look_critical(&mut self, body: &Body<D>) {
-        let critical = &self.bonds.critical;
-        let known = body.slots.iter().map(|s| critical.get(*s as usize));
-        let known = known.flatten().copied();
-        self.least_critical = known.fold(f64::INFINITY, f64::min);
-        self.settled = false;
     }
 
     /// Find the tiles whose bonds are all whole, and those of them whose ends are alike.

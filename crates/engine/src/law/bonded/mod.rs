@@ -99,7 +99,7 @@ impl Form {
     }
 
     fn slopes<const C: usize>(&self, xi: &[f64]) -> Pulls {
-        let of: [Slopes<f64, C>; C] = crate::array::from_fn(|n| Slopes::variable(xi[n], n));
+        let of: [Slopes<f64, C>; C] = crate::array::from_fn(|n| Slopes::nth(xi[n], n));
         let found = self.energy(&of);
         let mut pulls = [0.0; 6];
         pulls[..C].copy_from_slice(&found.slope);

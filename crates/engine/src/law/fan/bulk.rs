@@ -11,7 +11,7 @@ use crate::law::terms::{Near, Sites};
 pub fn pair<F: Fan>(fan: &F, distance: f64) -> f64 {
     let row = fan.table().at([0; 3]);
     let arm = fan.arm::<f64, _>(Dual::variable(0.5 * distance * distance), row);
-    let zeta = Slopes::<f64, 2>::variable(0.0, 1);
+    let zeta = Slopes::<f64, 2>::nth(0.0, 1);
     2.0 * fan.bond::<f64, _>(&arm.along(0), zeta, row).value
 }
 

@@ -1,7 +1,8 @@
 //! What a fan says of itself, its constants as rows of a file or as keys, and those that are known by their names.
 
 use super::{Fan, each};
-use crate::law::descriptor::{Descriptor, Key, Need, Value, Wrong};
+use crate::columns::Dimension;
+use crate::law::descriptor::{Bounds, Descriptor, Key, Need, Value, Wrong, number};
 use crate::law::potential::mixture::{Between, Given};
 use crate::law::scaled::by_dimension;
 use crate::spec::{Parameter, Parameters, PotentialSpec};
@@ -23,6 +24,11 @@ pub trait Described: Fan {
 /// Who wants to see all kinds of fans ([`each`]).
 pub trait Kinds {
     fn fan<F: Described>(&mut self);
+}
+
+/// A column of a file of constants.
+pub(super) const fn constant(name: &'static str, dimension: Dimension, doc: &'static str) -> Key {
+    number(name, dimension, Bounds::ANY, doc)
 }
 
 /// Key of rows of constants.

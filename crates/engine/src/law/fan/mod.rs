@@ -104,7 +104,7 @@ pub trait Fan: Clone + Send + Sync + 'static {
         closing: L,
         of: impl Row,
     ) -> Slopes<L, 3> {
-        let closing = Slopes::variable(closing, 2);
+        let closing = Slopes::nth(closing, 2);
         self.share::<L, _>(&ij.along(0), &ik.along(1), closing, of)
     }
 

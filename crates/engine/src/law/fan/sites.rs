@@ -52,7 +52,7 @@ impl<F: Fan> FanSites<F> {
     /// z of two ends, by ξ of both and of what closes the triangle.
     fn share(&self, kind: usize, j: &End, k: &End) -> Slopes<f64, 3> {
         let kinds = [kind, self.place(j.near.kind), self.place(k.near.kind)];
-        let closing = Slopes::variable(closing(j.near, k.near), 2);
+        let closing = Slopes::nth(closing(j.near, k.near), 2);
         let (ij, ik) = (j.arm.along(0), k.arm.along(1));
         self.0
             .share::<f64, _>(&ij, &ik, closing, self.0.table().at(kinds))
@@ -63,7 +63,7 @@ impl<F: Fan> FanSites<F> {
         let other = self.place(j.near.kind);
         let row = self.0.table().at([kind, other, other]);
         self.0
-            .bond::<f64, _>(&j.arm.along(0), Slopes::variable(zeta, 1), row)
+            .bond::<f64, _>(&j.arm.along(0), Slopes::nth(zeta, 1), row)
     }
 }
 

@@ -2,19 +2,15 @@
 //!
 //! `φ₂ = A ε [B (σ/r)ᵖ − (σ/r)^q] exp(σ/(r − aσ))`, `φ₃ = λ ε (cos θ − cos θ₀)² exp(γσ/(r_ij − aσ)) exp(γσ/(r_ik − aσ))`.
 
-use super::described::{Described, Entries, alike};
+use super::described::{Described, Entries, alike, constant};
 use super::table::{Row, Table};
 use super::{Arm, Fan};
 use crate::columns::Dimension;
 use crate::execute::lane::Lane;
-use crate::law::descriptor::{Bounds, Descriptor, Key, Wrong, number};
+use crate::law::descriptor::{Descriptor, Key, Wrong};
 use crate::law::number::{Dual, Over};
 use crate::law::slopes::Slopes;
 use crate::spec::Parameters;
-
-const fn constant(name: &'static str, dimension: Dimension, doc: &'static str) -> Key {
-    number(name, dimension, Bounds::ANY, doc)
-}
 
 /// As a line of a `.sw` file has them.
 pub const COLUMNS: [Key; 11] = [

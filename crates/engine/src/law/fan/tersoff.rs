@@ -3,18 +3,14 @@
 //! `b = (1 + (β ζ)ⁿ)^(−1/2n)`, `ζ_ij = Σ_k f_C(r_ik) g(θ_jik) exp[(λ₃ (r_ij − r_ik))^m]`,
 //! `g = γ [1 + c²/d² − c²/(d² + (cos θ − cos θ₀)²)]`, `f_C` falls from 1 at R − D to 0 at R + D as ½ − ½ sin(½π (r − R)/D).
 
-use super::described::{Described, Entries, alike};
+use super::described::{Described, Entries, alike, constant};
 use super::table::{Row, Table};
 use super::{Arm, Fan};
 use crate::columns::Dimension;
 use crate::execute::lane::Lane;
-use crate::law::descriptor::{Bounds, Descriptor, Key, Wrong, number};
+use crate::law::descriptor::{Descriptor, Key, Wrong};
 use crate::law::number::{Number, Over};
 use crate::spec::Parameters;
-
-const fn constant(name: &'static str, dimension: Dimension, doc: &'static str) -> Key {
-    number(name, dimension, Bounds::ANY, doc)
-}
 
 /// As a line of a `.tersoff` file has them.
 pub const COLUMNS: [Key; 14] = [

@@ -219,8 +219,8 @@ impl Shelved for BondRotation {
     }
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
-        let of = |(n, m): (usize, &Given)| {
-            let moduli = descriptor::moduli(m.parameters).map_err(|why| (n, why))?;
+        let of = |m: &Given| {
+            let moduli = descriptor::moduli(m.parameters)?;
             let lambda = moduli.lame_of(d, plane);
             let mut made = BondRotationConstants::new(d, lambda, moduli.shear(), m.first_moment);
             // what rounding of a quarter or a third leaves
@@ -233,20 +233,15 @@ impl Shelved for BondRotation {
                     (2, Plane::Strain) => ("1/4", "plane strain"),
                     _ => ("1/4", "three dimensions"),
                 };
-                return Err((
-                    n,
-                    format!(
-                        "a Poisson's ratio of {} asks for bonds that push aside when they turn, and torn families of such bonds are not stable: in {what} it is at most {most}; take lps for more",
-                        crate::quantity::rounded(moduli.poisson, 6)
-                    ),
+                return Err(format!(
+                    "a Poisson's ratio of {} asks for bonds that push aside when they turn, and torn families of such bonds are not stable: in {what} it is at most {most}; take lps for more",
+                    crate::quantity::rounded(moduli.poisson, 6)
                 ));
             }
             Ok(made)
         };
-        let made = materials.iter().enumerate().map(of);
-        Ok(BondRotation {
-            materials: made.collect::<Result<_, _>>()?,
-        })
+        let materials = descriptor::each(materials, of)?;
+        Ok(BondRotation { materials })
     }
 }
 

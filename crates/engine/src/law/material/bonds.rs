@@ -1,7 +1,7 @@
 //! Laws of bonds that know nothing but their own stretch: two functions, and all else follows.
 
 use super::{Along, Bond, End, Material};
-use crate::law::descriptor::{Descriptor, Given, Key, Shelved};
+use crate::law::descriptor::{self, Descriptor, Given, Key, Shelved};
 use crate::law::number::Number;
 use crate::law::solid::linear::{ONE_STIFFNESS, stiffness};
 use crate::spec::{InterfaceRule, LawSpec, Parameters, Plane};
@@ -93,16 +93,12 @@ impl<L: BondLaw<K>, const K: usize> Shelved for Bonds<L, K> {
     }
 
     fn make(_: usize, _: Plane, all: &[Given]) -> Result<Self, (usize, String)> {
-        let of = |(n, given): (usize, &Given)| {
-            let wrong = |message: String| (n, message);
-            let c = given
-                .micromodulus
-                .ok_or_else(|| wrong("the law has no micromodulus".into()))?;
-            let numbers = given.parameters.all(L::NUMBERS.map(|k| k.name));
-            Ok(([0.5 * c], numbers.map_err(wrong)?))
+        let of = |given: &Given| {
+            let c = { given.micromodulus }.ok_or("the law has no micromodulus")?;
+            Ok(([0.5 * c], given.parameters.all(L::NUMBERS.map(|k| k.name))?))
         };
         Ok(Bonds {
-            materials: all.iter().enumerate().map(of).collect::<Result<_, _>>()?,
+            materials: descriptor::each(all, of)?,
             rule: InterfaceRule::Parallel,
             law: PhantomData,
         })

@@ -17,7 +17,7 @@
 use super::section::{self, Section};
 use super::{Along, Bond, Columns, End, Kin, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Memory, Shelved};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Memory, Shelved};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
@@ -350,33 +350,27 @@ impl<N: Number> Return<N> {
     }
 }
 
+const HARDENS: Key = descriptor::number(
+    "hardening",
+    Dimension::PRESSURE,
+    Bounds::NOT_NEGATIVE,
+    "Hardening modulus H = dσ_y/dε̄; 0 is perfect plasticity.",
+)
+.or(0.0);
+
 impl Shelved for ElasticPlastic {
     fn descriptor() -> Descriptor {
-        let mut keys = MODULI.to_vec();
-        keys.push(descriptor::number(
-            "yield_stress",
-            Dimension::PRESSURE,
-            Bounds::POSITIVE,
-            "Yield stress σ_y in tension (von Mises).",
-        ));
-        keys.push(
-            descriptor::number(
-                "hardening",
-                Dimension::PRESSURE,
-                Bounds::NOT_NEGATIVE,
-                "Hardening modulus H = dσ_y/dε̄; 0 is perfect plasticity.",
-            )
-            .or(0.0),
-        );
-        Descriptor {
-            name: "elastic_plastic".into(),
-            doc: "Linear peridynamic solid whose deviatoric extensions flow: ½ Σ t²/ω = n(n+2) σ_y²/(6m), ė^p = λ t/ω. Two of young, poisson, bulk, shear.".into(),
-            source: "Mitchell 2011, SAND2011-3166".into(),
-            example: "{ young = \"200 GPa\", poisson = 0.3, yield_stress = \"250 MPa\", hardening = \"1 GPa\" }".into(),
-            influence: Influence::Inverse,
-            memory: Memory::Path,
-            keys,
-        }
+        Descriptor::new(
+            "elastic_plastic",
+            "Linear peridynamic solid whose deviatoric extensions flow: ½ Σ t²/ω = n(n+2) σ_y²/(6m), ė^p = λ t/ω. Two of young, poisson, bulk, shear.",
+        )
+        .source("Mitchell 2011, SAND2011-3166")
+        .example("{ young = \"200 GPa\", poisson = 0.3, yield_stress = \"250 MPa\", hardening = \"1 GPa\" }")
+        .influence(Influence::Inverse)
+        .memory(Memory::Path)
+        .keys(&MODULI)
+        .number("yield_stress", Dimension::PRESSURE, Bounds::POSITIVE, "Yield stress σ_y in tension (von Mises).")
+        .keys(&[HARDENS])
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
@@ -384,21 +378,17 @@ impl Shelved for ElasticPlastic {
     }
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
-        let mut made = vec![];
-        for (n, m) in materials.iter().enumerate() {
-            let Some(solid) = m.solid else {
-                return Err((n, "an elastic-plastic solid needs its moduli".into()));
-            };
-            let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
+        let of = |m: &Given| {
             let number = |key| m.parameters.number(key).unwrap_or(0.0);
-            made.push(ElasticPlasticConstants {
-                solid,
-                section: section::of(d, plane, &moduli),
+            Ok(ElasticPlasticConstants {
+                solid: { m.solid }.ok_or("an elastic-plastic solid needs its moduli")?,
+                section: section::of(d, plane, &descriptor::moduli(m.parameters)?),
                 weighted_volume: m.weighted_volume,
                 yield_stress: number("yield_stress"),
                 hardening: number("hardening"),
-            });
-        }
-        Ok(ElasticPlastic { materials: made })
+            })
+        };
+        let materials = descriptor::each(materials, of)?;
+        Ok(ElasticPlastic { materials })
     }
 }

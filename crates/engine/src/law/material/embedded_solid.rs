@@ -8,13 +8,11 @@
 use super::{Along, Bond, End, Kin, Material, Site};
 use crate::columns::Dimension;
 use crate::expression::Expression;
-use crate::law::descriptor::{
-    Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value, number,
-};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Shelved, Value, number};
 use crate::law::function::Function;
 use crate::law::number::Number;
 use crate::law::partner::Partner;
-use crate::spec::{Influence, LawSpec, Parameters, Plane};
+use crate::spec::{LawSpec, Parameters, Plane};
 
 /// Variables of the functions.
 const OF_VOLUME: &[&str] = &["theta", "theta0"];
@@ -266,15 +264,13 @@ impl Shelved for EmbeddedSolid {
     const PULLS_AT_REST: bool = true;
 
     fn descriptor() -> Descriptor {
-        Descriptor {
-            name: EmbeddedSolid::NAME.into(),
-            doc: "EAM-like, of any functions: W = E(ϑ) + ½ Σ w ν V, ϑ = Σ j ν V, which are expressions with + − * / ^ exp ln sqrt abs min max, comparisons, choices and [constants]; what carries no unit is in the deck's units. lps and structured and structureless embedded atoms are such solids.".into(),
-            source: "Silling 2000; seleson2014 (A.9)–(A.13), (A.19)–(A.21)".into(),
-            example: "{ energy = \"0.5*c*(theta/theta0 - 1)^2\", weight = \"omega*r0*r\", pair = \"0.5*k*omega*(r - r0)^2/theta0\", bulk = \"1 GPa\" }".into(),
-            influence: Influence::Constant,
-            memory: Memory::Nothing,
-            keys: KEYS.to_vec(),
-        }
+        Descriptor::new(
+            EmbeddedSolid::NAME,
+            "EAM-like, of any functions: W = E(ϑ) + ½ Σ w ν V, ϑ = Σ j ν V, which are expressions with + − * / ^ exp ln sqrt abs min max, comparisons, choices and [constants]; what carries no unit is in the deck's units. lps and structured and structureless embedded atoms are such solids.",
+        )
+        .source("Silling 2000; seleson2014 (A.9)–(A.13), (A.19)–(A.21)")
+        .example("{ energy = \"0.5*c*(theta/theta0 - 1)^2\", weight = \"omega*r0*r\", pair = \"0.5*k*omega*(r - r0)^2/theta0\", bulk = \"1 GPa\" }")
+        .keys(&KEYS)
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
@@ -293,14 +289,9 @@ impl Shelved for EmbeddedSolid {
     }
 
     fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
-        let of = |(n, m): (usize, &Given)| functions(m).map_err(|why| (n, why));
         Ok(EmbeddedSolid {
             horizon: materials.first().map_or(0.0, |m| m.horizon),
-            materials: materials
-                .iter()
-                .enumerate()
-                .map(of)
-                .collect::<Result<_, _>>()?,
+            materials: descriptor::each(materials, functions)?,
         })
     }
 }

@@ -322,10 +322,7 @@ impl Shelved for Lamina {
     }
 
     fn make(d: usize, plane: Plane, all: &[Given]) -> Result<Self, (usize, String)> {
-        let each = all.iter().enumerate();
-        let made = each.map(|(n, given)| constants(d, plane, given).map_err(|why| (n, why)));
-        Ok(Lamina {
-            materials: made.collect::<Result<_, _>>()?,
-        })
+        let materials = descriptor::each(all, |given| constants(d, plane, given))?;
+        Ok(Lamina { materials })
     }
 }

@@ -313,21 +313,16 @@ impl Shelved for PositionAware {
     }
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
-        let of = |(n, m): (usize, &Given)| {
-            let moduli = descriptor::moduli(m.parameters).map_err(|why| (n, why))?;
+        let of = |m: &Given| {
+            let moduli = descriptor::moduli(m.parameters)?;
             Ok(PositionAwareConstants {
                 bulk: moduli.lame_of(d, plane) + 2.0 / d as f64 * moduli.shear(),
                 shear: moduli.shear(),
                 trial: m.parameters.number("trial"),
             })
         };
-        Ok(PositionAware {
-            materials: materials
-                .iter()
-                .enumerate()
-                .map(of)
-                .collect::<Result<_, _>>()?,
-        })
+        let materials = descriptor::each(materials, of)?;
+        Ok(PositionAware { materials })
     }
 }
 

@@ -12,7 +12,7 @@ use super::{Along, Bond, Columns, End, Material};
 use crate::columns::{Declaration, Dimension};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};
 use crate::law::number::Number;
-use crate::spec::{Influence, LawSpec, Parameters, Plane, PmbStiffness};
+use crate::spec::{LawSpec, Parameters, Plane, PmbStiffness};
 
 /// Constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -219,63 +219,62 @@ impl Shelved for Softening {
     const FADES: bool = true;
 
     fn descriptor() -> Descriptor {
-        Descriptor {
-            name: "softening".into(),
-            doc: "Bond-based, f = c ω ν V (1 − d) s: linear up to the onset, then falling to nothing at the critical stretch, along a line, two lines or an exponential; Poisson ratio 1/4, plane stress 1/3. With a fracture energy the critical stretch follows from the area under the curve.".into(),
-            source: "cohesive laws, Petersson 1981; Cornelissen, Hordijk & Reinhardt 1986; on bonds Zaccariotto, Luongo, Sarego & Galvanetto 2015; Yang, Dong, Liu, Yi & Hu 2018".into(),
-            example: "{ young = \"30 GPa\", onset = 0.1 }".into(),
-            influence: Influence::Constant,
-            memory: Memory::Path,
-            keys: vec![
-                descriptor::number(
-                    "young",
-                    Dimension::PRESSURE,
-                    Bounds::POSITIVE,
-                    "Young's modulus E.",
-                ),
-                descriptor::number(
-                    "onset",
+        Descriptor::new(
+            "softening",
+            "Bond-based, f = c ω ν V (1 − d) s: linear up to the onset, then falling to nothing at the critical stretch, along a line, two lines or an exponential; Poisson ratio 1/4, plane stress 1/3. With a fracture energy the critical stretch follows from the area under the curve.",
+        )
+        .source("cohesive laws, Petersson 1981; Cornelissen, Hordijk & Reinhardt 1986; on bonds Zaccariotto, Luongo, Sarego & Galvanetto 2015; Yang, Dong, Liu, Yi & Hu 2018")
+        .example("{ young = \"30 GPa\", onset = 0.1 }")
+        .memory(Memory::Path)
+        .keys(&[
+            descriptor::number(
+                "young",
+                Dimension::PRESSURE,
+                Bounds::POSITIVE,
+                "Young's modulus E.",
+            ),
+            descriptor::number(
+                "onset",
+                Dimension::NUMBER,
+                Bounds {
+                    most: 1.0 - 1e-9,
+                    ..Bounds::PART
+                },
+                "Stretch at which softening begins, over the critical stretch.",
+            ),
+            descriptor::word(
+                "curve",
+                &[
+                    ("linear", "a line to the critical stretch"),
+                    ("trilinear", "two lines by way of `kink`"),
+                    ("exponential", "(e^(−ax) − e^(−a))/(1 − e^(−a)), x from 0 at the onset to 1 at the critical stretch, with `steepness` a"),
+                ],
+                "How the bond softens.",
+            ),
+            Key {
+                name: "kink",
+                value: Value::List(
+                    2,
                     Dimension::NUMBER,
                     Bounds {
-                        most: 1.0 - 1e-9,
+                        below: true,
                         ..Bounds::PART
                     },
-                    "Stretch at which softening begins, over the critical stretch.",
                 ),
-                descriptor::word(
-                    "curve",
-                    &[
-                        ("linear", "a line to the critical stretch"),
-                        ("trilinear", "two lines by way of `kink`"),
-                        ("exponential", "(e^(−ax) − e^(−a))/(1 − e^(−a)), x from 0 at the onset to 1 at the critical stretch, with `steepness` a"),
-                    ],
-                    "How the bond softens.",
-                ),
-                Key {
-                    name: "kink",
-                    value: Value::List(
-                        2,
-                        Dimension::NUMBER,
-                        Bounds {
-                            below: true,
-                            ..Bounds::PART
-                        },
-                    ),
-                    need: Need::Optional,
-                    doc: "[x, g] of trilinear: where the lines meet, from 0 at the onset to 1 at the critical stretch, and the force there over that at the onset; below the straight line, x + g < 1.",
+                need: Need::Optional,
+                doc: "[x, g] of trilinear: where the lines meet, from 0 at the onset to 1 at the critical stretch, and the force there over that at the onset; below the straight line, x + g < 1.",
+            },
+            descriptor::number(
+                "steepness",
+                Dimension::NUMBER,
+                Bounds {
+                    most: 50.0,
+                    ..Bounds::POSITIVE
                 },
-                descriptor::number(
-                    "steepness",
-                    Dimension::NUMBER,
-                    Bounds {
-                        most: 50.0,
-                        ..Bounds::POSITIVE
-                    },
-                    "a of exponential.",
-                )
-                .need(Need::Optional),
-            ],
-        }
+                "a of exponential.",
+            )
+            .need(Need::Optional),
+        ])
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
@@ -293,24 +292,21 @@ impl Shelved for Softening {
     }
 
     fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
-        let mut made = vec![];
-        for (n, m) in materials.iter().enumerate() {
+        let of = |m: &Given| {
             let (Some(c), Some(onset)) = (m.micromodulus, m.parameters.number("onset")) else {
-                return Err((n, "a softening bond needs young and onset".into()));
+                return Err("a softening bond needs young and onset".into());
             };
             if !m.critical_stretch.is_finite() {
-                return Err((
-                    n,
-                    "a softening bond ends at its critical stretch: give the material a fracture with critical_stretch or energy".into(),
-                ));
+                return Err("a softening bond ends at its critical stretch: give the material a fracture with critical_stretch or energy".into());
             }
-            made.push(SofteningConstants {
+            Ok(SofteningConstants {
                 micromodulus: c,
                 onset: onset * m.critical_stretch,
                 critical: m.critical_stretch,
-                curve: curve(m.parameters).map_err(|message| (n, message))?,
-            });
-        }
+                curve: curve(m.parameters)?,
+            })
+        };
+        let made = descriptor::each(materials, of)?;
         let exponential = |m: &SofteningConstants| matches!(m.curve, Curve::Exponential(_));
         let first = made.first().is_some_and(exponential);
         if let Some(n) = made.iter().position(|m| exponential(m) != first) {

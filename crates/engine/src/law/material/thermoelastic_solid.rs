@@ -147,16 +147,8 @@ impl Shelved for ThermoelasticSolid {
     }
 
     fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
-        let of = |(n, m): (usize, &Given)| {
-            m.solid
-                .ok_or_else(|| (n, "a state-based solid needs its moduli".into()))
-        };
-        Ok(ThermoelasticSolid {
-            materials: materials
-                .iter()
-                .enumerate()
-                .map(of)
-                .collect::<Result<_, _>>()?,
-        })
+        let of = |m: &Given| m.solid.ok_or("a state-based solid needs its moduli".into());
+        let materials = descriptor::each(materials, of)?;
+        Ok(ThermoelasticSolid { materials })
     }
 }

@@ -387,22 +387,21 @@ pub fn one_branch(parameters: &Parameters) -> bool {
 
 impl<const B: usize> Shelved for Viscoelastic<B> {
     fn descriptor() -> Descriptor {
-        let mut keys = MODULI.to_vec();
-        keys.push(Key {
+        Descriptor::new(
+            "viscoelastic",
+            "Linear peridynamic solid whose shear relaxes, G(t) = G (1 − Σλ + Σλ e^(−t/τ)). Two of young, poisson, bulk, shear of the unrelaxed solid.",
+        )
+        .source("Mitchell 2011, SAND2011-8064")
+        .example("{ young = \"3 GPa\", poisson = 0.35, branches = [[0.5, \"1 ms\"], [0.2, \"0.1 s\"]] }")
+        .influence(Influence::Inverse)
+        .memory(descriptor::Memory::Time)
+        .keys(&MODULI)
+        .keys(&[Key {
             name: "branches",
             value: Value::Rows(&BRANCH),
             need: Need::Given,
             doc: "[part λ, time τ] of each branch of the shear modulus G (1 − Σλ + Σλ e^(−t/τ)); up to four, Σλ at most 1.",
-        });
-        Descriptor {
-            name: "viscoelastic".into(),
-            doc: "Linear peridynamic solid whose shear relaxes, G(t) = G (1 − Σλ + Σλ e^(−t/τ)). Two of young, poisson, bulk, shear of the unrelaxed solid.".into(),
-            source: "Mitchell 2011, SAND2011-8064".into(),
-            example: "{ young = \"3 GPa\", poisson = 0.35, branches = [[0.5, \"1 ms\"], [0.2, \"0.1 s\"]] }".into(),
-            influence: Influence::Inverse,
-            memory: descriptor::Memory::Time,
-            keys,
-        }
+        }])
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
@@ -410,33 +409,28 @@ impl<const B: usize> Shelved for Viscoelastic<B> {
     }
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
-        let mut made = vec![];
-        for (n, m) in materials.iter().enumerate() {
-            let refused = |message: String| Err((n, message));
+        let of = |m: &Given| {
             let rows = m.parameters.rows("branches").unwrap_or(&[]);
             if rows.is_empty() || rows.len() > B {
-                return refused(format!(
+                return Err(format!(
                     "there are {} branches, expected one to {B}",
                     rows.len()
                 ));
             }
             let sum: f64 = rows.iter().map(|r| r[0]).sum();
             if sum > 1.0 + 1e-12 {
-                return refused(format!(
+                return Err(format!(
                     "the parts of the branches add up to {sum}, more than the shear modulus"
                 ));
             }
-            let Some(solid) = m.solid else {
-                return refused("a viscoelastic solid needs its moduli".into());
-            };
-            let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
-            made.push(ViscoelasticConstants {
-                solid,
-                section: section::of(d, plane, &moduli),
+            Ok(ViscoelasticConstants {
+                solid: { m.solid }.ok_or("a viscoelastic solid needs its moduli")?,
+                section: section::of(d, plane, &descriptor::moduli(m.parameters)?),
                 branches: rows.iter().map(|r| (r[0], r[1])).collect(),
-            });
-        }
-        Ok(Viscoelastic { materials: made })
+            })
+        };
+        let materials = descriptor::each(materials, of)?;
+        Ok(Viscoelastic { materials })
     }
 }
 

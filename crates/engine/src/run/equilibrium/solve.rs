@@ -7,7 +7,7 @@ use super::tried::{Inertia, Tried};
 use crate::body::{view, view_mut, zeros};
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
-use crate::interaction::Sweep;
+use crate::interaction::{BondStatus, Sweep};
 use crate::spec::Statics;
 use crate::statics::{self, Assembled, Direct, Goal, Solved, Support, Swept, norm};
 
@@ -297,7 +297,10 @@ impl<const D: usize> Problem<'_, D> {
         let mut worst = 0.0f64;
         self.system
             .interaction
-            .each_bond(&self.system.body, &mut |i, j, xi, _| {
+            .each_bond(&self.system.body, &mut |i, j, xi, state| {
+                if state == BondStatus::Absent {
+                    return;
+                }
                 let square: f64 = xi.iter().map(|c| c * c).sum();
                 let longer: f64 = (0..D)
                     .map(|a| (self.system.u[a][j] - self.system.u[a][i]) * xi[a])

@@ -5,7 +5,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::Lane;
 use crate::execute::simd::Kernel;
 use crate::family::neighbours::periods;
-use crate::interaction::VIRIAL;
+use crate::interaction::bond::VIRIAL;
 use crate::law::bonded::{Pulls, Tangents};
 use crate::spec::Form;
 

@@ -6,7 +6,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::family::neighbours::near::NearList;
-use crate::interaction::VIRIAL;
+use crate::interaction::bond::VIRIAL;
 use crate::law::fan::{Arm, Fan, Row};
 use crate::law::number::{Dual, Over};
 use crate::law::slopes::Slopes;
@@ -135,7 +135,7 @@ impl<F: Fan, const MANY: bool> Centres<'_, F, MANY> {
     /// h by ξ and ζ.
     #[inline(always)]
     fn bond<L: Lane>(&self, i: &[u8; TILE], bond: &Bond<L>) -> Slopes<L, 2> {
-        let (arm, zeta) = (bond.arm.along(0), Slopes::variable(bond.zeta, 1));
+        let (arm, zeta) = (bond.arm.along(0), Slopes::nth(bond.zeta, 1));
         let fan = self.0.fan;
         let k = &bond.kind;
         match MANY {

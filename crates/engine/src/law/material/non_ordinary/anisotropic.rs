@@ -11,11 +11,11 @@ use super::stiffness::{
 };
 use super::{Classical, Stressed, Unseen};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};
+use crate::law::descriptor::{Bounds, Descriptor, Given, Key, Need, Shelved, Value};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
 use crate::space::Point;
-use crate::spec::{Influence, LawSpec, Parameters, Plane};
+use crate::spec::{LawSpec, Parameters, Plane};
 
 /// See the module.
 #[derive(Debug, Clone)]
@@ -229,22 +229,20 @@ impl Shelved for Anisotropic {
     const ISOTROPIC: bool = false;
 
     fn descriptor() -> Descriptor {
-        Descriptor {
-            name: "anisotropic".into(),
-            doc: "Non-ordinary: S = C : E of Green's strain, orthotropic by engineering constants or with any stiffness, about axes of its own. For plies a material each; fibres that bend follow expressions of the place.".into(),
-            source: "Ting 1996; Jones 1999; Silling et al. 2007".into(),
-            example: "{ young = [\"140 GPa\", \"10 GPa\", \"10 GPa\"], poisson = [0.3, 0.3, 0.4], shear = [\"5 GPa\", \"5 GPa\", \"3.5 GPa\"], fibre = [1, 1, 0] }".into(),
-            influence: Influence::Constant,
-            memory: Memory::Nothing,
-            keys: vec![
-                list("young", MODULI, Need::OneOf, "Young's moduli E1, E2, E3 along the axes of an orthotropic solid."),
-                list("poisson", NUMBERS, Need::Optional, "ν12, ν13, ν23: contraction along the second axis under a stress along the first; with young."),
-                list("shear", MODULI, Need::Optional, "Shear moduli G12, G13, G23; with young."),
-                list("stiffness", (21, Dimension::PRESSURE, Bounds::ANY), Need::OneOf, "Upper triangle of the stiffness, C11 to C16, C22 to C26, … C66, in the order 11, 22, 33, 23, 13, 12."),
-                FIBRE,
-                NORMAL,
-            ],
-        }
+        Descriptor::new(
+            "anisotropic",
+            "Non-ordinary: S = C : E of Green's strain, orthotropic by engineering constants or with any stiffness, about axes of its own. For plies a material each; fibres that bend follow expressions of the place.",
+        )
+        .source("Ting 1996; Jones 1999; Silling et al. 2007")
+        .example("{ young = [\"140 GPa\", \"10 GPa\", \"10 GPa\"], poisson = [0.3, 0.3, 0.4], shear = [\"5 GPa\", \"5 GPa\", \"3.5 GPa\"], fibre = [1, 1, 0] }")
+        .keys(&[
+            list("young", MODULI, Need::OneOf, "Young's moduli E1, E2, E3 along the axes of an orthotropic solid."),
+            list("poisson", NUMBERS, Need::Optional, "ν12, ν13, ν23: contraction along the second axis under a stress along the first; with young."),
+            list("shear", MODULI, Need::Optional, "Shear moduli G12, G13, G23; with young."),
+            list("stiffness", (21, Dimension::PRESSURE, Bounds::ANY), Need::OneOf, "Upper triangle of the stiffness, C11 to C16, C22 to C26, … C66, in the order 11, 22, 33, 23, 13, 12."),
+            FIBRE,
+            NORMAL,
+        ])
     }
 
     /// The isotropic solid of Voigt's mean.
@@ -278,17 +276,12 @@ impl Shelved for Anisotropic {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tried::{self, SEEN, is_slope};
     use super::*;
     use crate::law::material::non_ordinary::correspondence::{Correspondence, Stress};
     use crate::spec::Moduli;
     use crate::spec::Parameter;
 
-    const SEEN: Unseen<f64> = Unseen {
-        stiffness: 0.0,
-        square: 0.0,
-        across: 0.0,
-        reach: 1.0,
-    };
     const H: [[f64; 3]; 3] = [[0.11, -0.07, 0.3], [0.2, -0.05, 0.1], [-0.15, 0.02, 0.08]];
 
     fn ply(fibre: [f64; 3], normal: [f64; 3]) -> Parameters {
@@ -302,19 +295,7 @@ mod tests {
     }
 
     fn made(d: usize, plane: Plane, parameters: &Parameters) -> Result<Anisotropic, String> {
-        let given = Given {
-            parameters,
-            solid: None,
-            micromodulus: None,
-            critical_stretch: f64::INFINITY,
-            breaks: false,
-            density: 1.0,
-            weighted_volume: None,
-            first_moment: 1.0,
-            horizon: 1.0,
-            family: &[],
-        };
-        Anisotropic::make(d, plane, &[given]).map_err(|(_, message)| message)
+        tried::made(d, plane, parameters)
     }
 
     /// Second Piola–Kirchhoff stress at small strains, over them.
@@ -330,21 +311,7 @@ mod tests {
         let law = made(3, Plane::Strain, &ply([1.0, 2.0, -0.5], [0.3, 0.0, 1.0])).unwrap();
         let energy = |h: &[[f64; 3]; 3]| law.stress(&law.materials[0], &[], h, &SEEN).energy;
         let p = law.stress(&law.materials[0], &[], &H, &SEEN).stress;
-        for r in 0..3 {
-            for s in 0..3 {
-                let at = |step: f64| {
-                    let mut h = H;
-                    h[r][s] += step;
-                    energy(&h)
-                };
-                let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;
-                assert!(
-                    (slope - p[r][s]).abs() < 1e-8,
-                    "{r}{s}: {slope} {}",
-                    p[r][s]
-                );
-            }
-        }
+        is_slope(&H, (&p, 1e-8), energy);
     }
 
     /// With the constants of an isotropic solid it is Saint Venant and Kirchhoff's, about any axes, in space and in both planes.

@@ -4,12 +4,10 @@
 use super::rest::{exp_rest, ln_rest};
 use super::{Classical, Stressed, Unseen};
 use crate::columns::Dimension;
-use crate::law::descriptor::{
-    self, Bounds, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value,
-};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Shelved, number, word};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
-use crate::spec::{Influence, LawSpec, Parameters, Plane};
+use crate::spec::{LawSpec, Parameters, Plane};
 
 /// Classical stored energy of one material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -247,46 +245,44 @@ fn thickness<N: Number>(c: &[N; 3], plane: N) -> N {
     x
 }
 
+const KEYS: [Key; 2] = [
+    word(
+        "stress",
+        &[
+            (
+                "linear",
+                "S = λ tr(E) 1 + 2μE of Green's strain E (Saint Venant-Kirchhoff)",
+            ),
+            (
+                "neo_hookean",
+                "ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 ln²J (Bonet & Wood 1997)",
+            ),
+            (
+                "mooney_rivlin",
+                "ψ = C₁₀ (J^(−2/3) I₁ − 3) + C₀₁ (J^(−4/3) I₂ − 3) + κ/2 (J − 1)², C₁₀ = μ/2 − C₀₁ (Mooney 1940; Rivlin 1948)",
+            ),
+        ],
+        "Classical law P(F).",
+    ),
+    number(
+        "second_invariant",
+        Dimension::PRESSURE,
+        Bounds::NOT_NEGATIVE,
+        "C₀₁ of mooney_rivlin, at most half the shear modulus.",
+    )
+    .or(0.0),
+];
+
 impl Shelved for Correspondence {
     fn descriptor() -> Descriptor {
-        let mut keys = MODULI.to_vec();
-        keys.push(Key {
-            name: "stress",
-            value: Value::Word(&[
-                (
-                    "linear",
-                    "S = λ tr(E) 1 + 2μE of Green's strain E (Saint Venant-Kirchhoff)",
-                ),
-                (
-                    "neo_hookean",
-                    "ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 ln²J (Bonet & Wood 1997)",
-                ),
-                (
-                    "mooney_rivlin",
-                    "ψ = C₁₀ (J^(−2/3) I₁ − 3) + C₀₁ (J^(−4/3) I₂ − 3) + κ/2 (J − 1)², C₁₀ = μ/2 − C₀₁ (Mooney 1940; Rivlin 1948)",
-                ),
-            ]),
-            need: Need::Word("linear"),
-            doc: "Classical law P(F).",
-        });
-        keys.push(
-            descriptor::number(
-                "second_invariant",
-                Dimension::PRESSURE,
-                Bounds::NOT_NEGATIVE,
-                "C₀₁ of mooney_rivlin, at most half the shear modulus.",
-            )
-            .or(0.0),
-        );
-        Descriptor {
-            name: "correspondence".into(),
-            doc: "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z what it does not see. Two of young, poisson, bulk, shear.".into(),
-            source: "Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017".into(),
-            example: "{ young = \"1 GPa\", poisson = 0.45, stress = \"neo_hookean\" }".into(),
-            influence: Influence::Constant,
-            memory: Memory::Nothing,
-            keys,
-        }
+        Descriptor::new(
+            "correspondence",
+            "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z what it does not see. Two of young, poisson, bulk, shear.",
+        )
+        .source("Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017")
+        .example("{ young = \"1 GPa\", poisson = 0.45, stress = \"neo_hookean\" }")
+        .keys(&MODULI)
+        .keys(&KEYS)
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
@@ -301,58 +297,45 @@ impl Shelved for Correspondence {
             Some(_) | None => None,
         };
         let plane_stress = d == 2 && plane == Plane::Stress;
-        let mut made = vec![];
         let Some(stress) = materials.first().and_then(word) else {
             return Err((
                 0,
                 "the stress is linear, neo_hookean or mooney_rivlin".into(),
             ));
         };
-        for (n, m) in materials.iter().enumerate() {
+        let of = |m: &Given| {
             if word(m) != Some(stress) {
-                return Err((
-                    n,
-                    "all materials of a body have the same kind of stress".into(),
-                ));
+                return Err("all materials of a body have the same kind of stress".into());
             }
-            let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
+            let moduli = descriptor::moduli(m.parameters)?;
             let second = m.parameters.number("second_invariant").unwrap_or(0.0);
             if second > 0.0 && stress != Stress::MooneyRivlin {
-                return Err((n, "`second_invariant` is of mooney_rivlin alone".into()));
+                return Err("`second_invariant` is of mooney_rivlin alone".into());
             }
             if second > 0.5 * moduli.shear() {
-                return Err((
-                    n,
-                    format!(
-                        "`second_invariant` is {:.3} of the shear modulus, expected at most half of it: C₁₀ would be negative",
-                        second / moduli.shear()
-                    ),
+                return Err(format!(
+                    "`second_invariant` is {:.3} of the shear modulus, expected at most half of it: C₁₀ would be negative",
+                    second / moduli.shear()
                 ));
             }
-            made.push(CorrespondenceConstants {
+            Ok(CorrespondenceConstants {
                 lame: moduli.lame(),
                 shear: moduli.shear(),
                 second,
-            });
-        }
+            })
+        };
         Ok(Correspondence {
             stress,
             plane_stress,
-            materials: made,
+            materials: descriptor::each(materials, of)?,
         })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::tried::{SEEN, is_slope};
     use super::*;
-
-    const SEEN: Unseen<f64> = Unseen {
-        stiffness: 0.0,
-        square: 0.0,
-        across: 0.0,
-        reach: 1.0,
-    };
 
     /// P is the slope of ψ, in plane stress too, and small strains are Hooke's.
     #[test]
@@ -370,17 +353,7 @@ mod tests {
                 };
                 let c = [1.3, 0.7, 0.2];
                 let p = law.stress(&c, &[], &h, &SEEN).stress;
-                for r in 0..2 {
-                    for s in 0..2 {
-                        let at = |step: f64| {
-                            let mut h = h;
-                            h[r][s] += step;
-                            law.stress(&c, &[], &h, &SEEN).energy
-                        };
-                        let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;
-                        assert!((slope - p[r][s]).abs() < 1e-9, "{law:?} {r}{s}: {slope}");
-                    }
-                }
+                is_slope(&h, (&p, 1e-9), |h| law.stress(&c, &[], h, &SEEN).energy);
                 let small = 1e-9;
                 let strained = law.stress(&c, &[], &[[small, 0.0], [0.0, 0.0]], &SEEN);
                 let (p, energy) = (strained.stress, strained.energy);
@@ -420,21 +393,7 @@ mod tests {
             + 0.2 * (j.powf(-4.0 / 3.0) * second - 3.0)
             + 0.5 * bulk * (j - 1.0) * (j - 1.0);
         assert!((energy - plain).abs() < 1e-14, "{energy} {plain}");
-        for r in 0..3 {
-            for s in 0..3 {
-                let at = |step: f64| {
-                    let mut h = h;
-                    h[r][s] += step;
-                    law.stress(&c, &[], &h, &SEEN).energy
-                };
-                let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;
-                assert!(
-                    (slope - p[r][s]).abs() < 1e-9,
-                    "{r}{s}: {slope} {}",
-                    p[r][s]
-                );
-            }
-        }
+        is_slope(&h, (&p, 1e-9), |h| law.stress(&c, &[], h, &SEEN).energy);
         // Hooke's, to the last digits
         let small = 1e-9;
         let made = law.stress(&c, &[], &[[small, 0.0, 0.0], [0.0; 3], [0.0; 3]], &SEEN);

@@ -10,7 +10,7 @@ use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};
 use crate::law::material::tensor::Matrix;
 use crate::law::number::Number;
-use crate::spec::{Influence, LawSpec, Moduli, Parameters, Plane};
+use crate::spec::{LawSpec, Moduli, Parameters, Plane};
 
 /// See the module. All materials have the same equation of state.
 #[derive(Debug, Clone)]
@@ -195,18 +195,16 @@ impl Shelved for Fluid {
     const ISOTROPIC: bool = false;
 
     fn descriptor() -> Descriptor {
-        let mut keys = KEYS.to_vec();
-        keys.extend(HUGONIOT);
-        keys.extend(VISCOSITY);
-        Descriptor {
-            name: "fluid".into(),
-            doc: "Non-ordinary, without shear: P = −(p + q) cof F, p of volume and internal energy (Mie-Grüneisen, perfect gas), q the viscosity of shocks; energy is kept. In the plane nothing moves across.".into(),
-            source: "Meyers 1994; von Neumann & Richtmyer 1950; Landshoff 1955; Silling et al. 2007".into(),
-            example: "{ bulk = \"138.6 GPa\", hugoniot_slope = 1.489, gruneisen = 1.96 }".into(),
-            influence: Influence::Constant,
-            memory: Memory::Shock,
-            keys,
-        }
+        Descriptor::new(
+            "fluid",
+            "Non-ordinary, without shear: P = −(p + q) cof F, p of volume and internal energy (Mie-Grüneisen, perfect gas), q the viscosity of shocks; energy is kept. In the plane nothing moves across.",
+        )
+        .source("Meyers 1994; von Neumann & Richtmyer 1950; Landshoff 1955; Silling et al. 2007")
+        .example("{ bulk = \"138.6 GPa\", hugoniot_slope = 1.489, gruneisen = 1.96 }")
+        .memory(Memory::Shock)
+        .keys(&KEYS)
+        .keys(&HUGONIOT)
+        .keys(&VISCOSITY)
     }
 
     /// What contact sees: a solid of this bulk modulus and Poisson's ratio ¼.
@@ -223,39 +221,29 @@ impl Shelved for Fluid {
             .first()
             .ok_or((0, "there is no material".into()))?;
         let kind_of = kind(first.parameters).map_err(|why| (0, why))?;
-        let mut made = vec![];
-        for (n, m) in materials.iter().enumerate() {
-            let refused = |message: String| (n, message);
+        let of = |m: &Given| {
             if d == 2 && plane == Plane::Stress {
-                return Err(refused(
-                    "a pressure is the same in all directions, and a sheet of fluid whose faces are free bears none: write plane = \"strain\"".into(),
-                ));
+                return Err("a pressure is the same in all directions, and a sheet of fluid whose faces are free bears none: write plane = \"strain\"".into());
             }
             if m.breaks {
-                return Err(refused(
-                    "a fluid has no bonds that break: its volume is that of its family, whole or not; leave `fracture` out".into(),
-                ));
+                return Err("a fluid has no bonds that break: its volume is that of its family, whole or not; leave `fracture` out".into());
             }
             if m.parameters.word("gradient") == Some("bond") {
-                return Err(refused(
-                    "a fluid has the gradient of its family: that of a bond differs in shape alone, which a pressure does not feel; leave `gradient` out".into(),
-                ));
+                return Err("a fluid has the gradient of its family: that of a bond differs in shape alone, which a pressure does not feel; leave `gradient` out".into());
             }
-            if kind(m.parameters).map_err(refused)? != kind_of {
-                return Err(refused(
-                    "all materials of a body have the same equation of state".into(),
-                ));
+            if kind(m.parameters)? != kind_of {
+                return Err("all materials of a body have the same equation of state".into());
             }
-            let [first, second] = numbers(m.parameters).map_err(refused)?;
-            made.push(match kind_of {
-                Kind::PerfectGas => EquationOfState::of_gas(m, first, second),
-                Kind::MieGruneisen => EquationOfState::of_hugoniot(m, first).map_err(refused)?,
-                Kind::Elastic => return Err(refused(NONE.into())),
-            });
-        }
+            let [first, second] = numbers(m.parameters)?;
+            match kind_of {
+                Kind::PerfectGas => Ok(EquationOfState::of_gas(m, first, second)),
+                Kind::MieGruneisen => EquationOfState::of_hugoniot(m, first),
+                Kind::Elastic => Err(NONE.into()),
+            }
+        };
         Ok(Fluid {
             kind: kind_of,
-            materials: made,
+            materials: descriptor::each(materials, of)?,
         })
     }
 }

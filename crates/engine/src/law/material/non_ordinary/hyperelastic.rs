@@ -8,10 +8,10 @@
 use super::energy::{Energy, INVARIANTS};
 use super::{Classical, Stressed, Unseen};
 use crate::columns::Dimension;
-use crate::law::descriptor::{Descriptor, Given, Key, Memory, Need, Shelved, Value};
+use crate::law::descriptor::{Descriptor, Given, Key, Need, Shelved, Value};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::{Dual, Number};
-use crate::spec::{Influence, LawSpec, Moduli, Parameters, Plane};
+use crate::spec::{LawSpec, Moduli, Parameters, Plane};
 
 /// See the module.
 #[derive(Debug, Clone)]
@@ -213,15 +213,13 @@ const ENERGY: Key = Key {
 
 impl Shelved for Hyperelastic {
     fn descriptor() -> Descriptor {
-        Descriptor {
-            name: "hyperelastic".into(),
-            doc: "Non-ordinary, of any stored energy ψ(I1, I2, J): P = 2ψ₁ F + 2ψ₂ (I₁F − FC) + ψ_J cof F. Moduli of small strains are those of the energy; in plane stress the thickness gives way.".into(),
-            source: "Holzapfel 2000; Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017".into(),
-            example: "{ energy = \"0.5 MPa*(I1 - 3 - 2*ln(J)) + 5 MPa*(J - 1)^2\" }".into(),
-            influence: Influence::Constant,
-            memory: Memory::Nothing,
-            keys: vec![ENERGY],
-        }
+        Descriptor::new(
+            "hyperelastic",
+            "Non-ordinary, of any stored energy ψ(I1, I2, J): P = 2ψ₁ F + 2ψ₂ (I₁F − FC) + ψ_J cof F. Moduli of small strains are those of the energy; in plane stress the thickness gives way.",
+        )
+        .source("Holzapfel 2000; Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017")
+        .example("{ energy = \"0.5 MPa*(I1 - 3 - 2*ln(J)) + 5 MPa*(J - 1)^2\" }")
+        .keys(&[ENERGY])
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
@@ -247,16 +245,11 @@ impl Shelved for Hyperelastic {
 #[cfg(test)]
 mod tests {
     use super::super::correspondence::{Correspondence, CorrespondenceConstants, Stress};
+    use super::super::tried::SEEN;
     use super::*;
     use crate::expression::Expression;
     use crate::spec::Parameter;
 
-    const SEEN: Unseen<f64> = Unseen {
-        stiffness: 0.0,
-        square: 0.0,
-        across: 0.0,
-        reach: 1.0,
-    };
     const LAMBDA: f64 = 1.3;
     const MU: f64 = 0.7;
     const SECOND: f64 = 0.2;

@@ -13,7 +13,7 @@ use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Descriptor, Given, MODULI, Memory, Shelved};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
-use crate::spec::{Influence, LawSpec, Parameters, Plane};
+use crate::spec::{LawSpec, Parameters, Plane};
 
 /// Constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,17 +118,15 @@ impl<const D: usize> Classical<D> for Hypoelastic {
 
 impl Shelved for Hypoelastic {
     fn descriptor() -> Descriptor {
-        let mut keys = MODULI.to_vec();
-        keys.push(INCREMENT);
-        Descriptor {
-            name: "hypoelastic".into(),
-            doc: "Non-ordinary, in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in plane stress the thickness gives way.".into(),
-            source: "Green & Naghdi 1965; Flanagan & Taylor 1987; Silling et al. 2007".into(),
-            example: "{ young = \"200 GPa\", poisson = 0.3 }".into(),
-            influence: Influence::Constant,
-            memory: Memory::Path,
-            keys,
-        }
+        Descriptor::new(
+            "hypoelastic",
+            "Non-ordinary, in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in plane stress the thickness gives way.",
+        )
+        .source("Green & Naghdi 1965; Flanagan & Taylor 1987; Silling et al. 2007")
+        .example("{ young = \"200 GPa\", poisson = 0.3 }")
+        .memory(Memory::Path)
+        .keys(&MODULI)
+        .keys(&[INCREMENT])
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
@@ -140,36 +138,28 @@ impl Shelved for Hypoelastic {
         let Some(increment) = materials.first().and_then(word) else {
             return Err((0, "the increment is middle or end".into()));
         };
-        let mut made = vec![];
-        for (n, m) in materials.iter().enumerate() {
-            let refused = |message: &str| Err((n, message.to_string()));
+        let of = |m: &Given| {
             if word(m) != Some(increment) {
-                return refused("all materials of a body have the same kind of increment");
+                return Err("all materials of a body have the same kind of increment".into());
             }
-            let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
-            made.push(HypoelasticConstants {
+            let moduli = descriptor::moduli(m.parameters)?;
+            Ok(HypoelasticConstants {
                 lame: moduli.lame(),
                 shear: moduli.shear(),
-            });
-        }
+            })
+        };
         Ok(Hypoelastic {
             increment,
             sheet: d == 2 && plane == Plane::Stress,
-            materials: made,
+            materials: descriptor::each(materials, of)?,
         })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::tried::SEEN;
     use super::*;
-
-    const SEEN: Unseen<f64> = Unseen {
-        stiffness: 0.0,
-        square: 0.0,
-        across: 0.0,
-        reach: 1.0,
-    };
 
     const LAMBDA: f64 = 1.3;
     const MU: f64 = 0.7;

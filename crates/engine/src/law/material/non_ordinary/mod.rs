@@ -17,6 +17,8 @@ pub mod rate;
 mod rest;
 pub mod stiffness;
 mod thickness;
+#[cfg(test)]
+mod tried;
 
 pub use bond::BondAssociated;
 pub use family::NonOrdinary;

@@ -78,31 +78,15 @@ mod tests {
     use super::super::hyperelastic::Hyperelastic;
     use super::super::hypoelastic::Hypoelastic;
     use super::super::hypoelastic_plastic::HypoelasticPlastic;
+    use super::super::tried::made;
     use super::super::{answered, energy};
     use super::*;
     use crate::expression::Expression;
-    use crate::law::descriptor::{Given, Shelved};
+    use crate::law::descriptor::Shelved;
     use crate::law::material::Numbers;
     use crate::law::material::tensor::Matrix;
     use crate::law::number::Dual;
     use crate::spec::{Parameter, Parameters, Plane};
-
-    fn made<L: Shelved>(d: usize, plane: Plane, parameters: &Parameters) -> L {
-        let given = Given {
-            parameters,
-            solid: None,
-            micromodulus: None,
-            critical_stretch: f64::INFINITY,
-            breaks: false,
-            density: 1.0,
-            weighted_volume: None,
-            first_moment: 1.0,
-            horizon: 1.0,
-            family: &[],
-        };
-        let checked = L::make(d, plane, &[given]);
-        checked.unwrap_or_else(|(_, why)| panic!("{why}"))
-    }
 
     fn unseen<N: Number>(across: f64) -> Unseen<N> {
         Unseen {
@@ -152,8 +136,8 @@ mod tests {
         size: f64,
     ) {
         const PARTS: u32 = 12;
-        let solid: L = made(3, Plane::Strain, parameters);
-        let plane: L = made(2, Plane::Stress, parameters);
+        let solid: L = made(3, Plane::Strain, parameters).unwrap();
+        let plane: L = made(2, Plane::Stress, parameters).unwrap();
         let constants = Classical::<3>::constants(&solid, 0, 1.0);
         let mut thick = <<L as Classical<3>>::Past<f64> as Numbers<f64>>::constant(0.0);
         let mut thin = <<L as Classical<2>>::Past<f64> as Numbers<f64>>::constant(0.0);

@@ -391,9 +391,9 @@ impl Chosen {
         &self,
         numbers: &[usize],
         place: Place<D>,
-        law: Box<dyn AnyLaw<D>>,
+        law: Arc<dyn AnyLaw<D>>,
     ) -> Bound<D> {
-        let of = law.properties();
+        let of = law.clone().properties();
         let Place {
             body,
             stencil,

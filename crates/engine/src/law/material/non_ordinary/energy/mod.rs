@@ -272,6 +272,7 @@ fn function<N: Number>(step: &Step, a: &Beyond<N>, at: &At, d: N) -> Beyond<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::material::non_ordinary::tried::slope;
     use crate::law::number::Dual;
 
     fn energy(text: &str) -> Energy {
@@ -312,7 +313,7 @@ mod tests {
                         d[k] += step;
                         at(d)
                     };
-                    let slope = (8.0 * (by(1e-3) - by(-1e-3)) - (by(2e-3) - by(-2e-3))) / 12e-3;
+                    let slope = slope(by);
                     let off = (found.slope[k] + made.slope[k] - slope).abs();
                     assert!(off < 1e-9 * (1.0 + slope.abs()), "{text} {k}: {off:e}");
                 }
@@ -337,7 +338,7 @@ mod tests {
                     d[k] += step;
                     made.beyond(&d).slope[r]
                 };
-                let slope = (8.0 * (by(1e-3) - by(-1e-3)) - (by(2e-3) - by(-2e-3))) / 12e-3;
+                let slope = slope(by);
                 assert!((found.slope[r].slope - slope).abs() < 1e-9, "{k} {r}");
             }
             // of the value beyond its first slope

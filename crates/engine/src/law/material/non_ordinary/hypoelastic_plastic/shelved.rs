@@ -10,7 +10,7 @@ use crate::law::material::non_ordinary::equation_of_state::{
 };
 use crate::law::material::non_ordinary::hardening::{self, Hardening};
 use crate::law::material::non_ordinary::rate::{INCREMENT, Increment};
-use crate::spec::{Influence, LawSpec, Parameters, Plane};
+use crate::spec::{LawSpec, Parameters, Plane};
 
 /// Keys beside the moduli and those of hardening.
 const KEYS: [Key; 5] = [
@@ -52,22 +52,20 @@ const KEYS: [Key; 5] = [
 
 impl Shelved for HypoelasticPlastic {
     fn descriptor() -> Descriptor {
-        let mut keys = MODULI.to_vec();
-        keys.push(INCREMENT);
-        keys.extend(hardening::KEYS);
-        keys.extend(KEYS);
-        keys.push(EQUATION);
-        keys.extend(HUGONIOT);
-        keys.extend(VISCOSITY);
-        Descriptor {
-            name: "hypoelastic_plastic".into(),
-            doc: "Non-ordinary, in rate form, with flow: q + a p = σ_y = g(ε̄) r(ε̄̇) (1 − T*ᵐ), von Mises, Drucker-Prager, Johnson-Cook, Needleman; under impact with an equation of state. Two of young, poisson, bulk, shear; in plane stress the thickness gives way.".into(),
-            source: "Simo & Hughes 1998; Johnson & Cook 1983, 1985; Drucker & Prager 1952; Silling et al. 2007".into(),
-            example: "{ young = \"117 GPa\", poisson = 0.35, yield_stress = \"400 MPa\", hardening = \"100 MPa\" }".into(),
-            influence: Influence::Constant,
-            memory: Memory::Path,
-            keys,
-        }
+        Descriptor::new(
+            "hypoelastic_plastic",
+            "Non-ordinary, in rate form, with flow: q + a p = σ_y = g(ε̄) r(ε̄̇) (1 − T*ᵐ), von Mises, Drucker-Prager, Johnson-Cook, Needleman; under impact with an equation of state. Two of young, poisson, bulk, shear; in plane stress the thickness gives way.",
+        )
+        .source("Simo & Hughes 1998; Johnson & Cook 1983, 1985; Drucker & Prager 1952; Silling et al. 2007")
+        .example("{ young = \"117 GPa\", poisson = 0.35, yield_stress = \"400 MPa\", hardening = \"100 MPa\" }")
+        .memory(Memory::Path)
+        .keys(&MODULI)
+        .keys(&[INCREMENT])
+        .keys(&hardening::KEYS)
+        .keys(&KEYS)
+        .keys(&[EQUATION])
+        .keys(&HUGONIOT)
+        .keys(&VISCOSITY)
     }
 
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
@@ -93,16 +91,12 @@ impl Shelved for HypoelasticPlastic {
             .ok_or((0, "there is no material".into()))?;
         let all = words(first).map_err(|m: String| (0, m))?;
         let ((kind, increment), damages, equation) = all;
-        let mut made = vec![];
-        for (n, m) in materials.iter().enumerate() {
-            let refused = |message: String| (n, message);
-            if words(m).map_err(refused)? != all {
-                return Err(refused(
-                    "all materials of a body have the same increment, hardening_law, rate_law and equation_of_state, and all melt or none, are damaged or none".into(),
-                ));
+        let of = |m: &Given| {
+            if words(m)? != all {
+                return Err("all materials of a body have the same increment, hardening_law, rate_law and equation_of_state, and all melt or none, are damaged or none".into());
             }
-            let moduli = descriptor::moduli(m.parameters).map_err(refused)?;
-            let hardening = Hardening::of(m, kind).map_err(refused)?;
+            let moduli = descriptor::moduli(m.parameters)?;
+            let hardening = Hardening::of(m, kind)?;
             let number = |key| m.parameters.number(key);
             let heating = match (number("heat_capacity"), number("heated_part")) {
                 (Some(capacity), Some(part)) => part / (m.density * capacity),
@@ -113,49 +107,45 @@ impl Shelved for HypoelasticPlastic {
                 number("dilatancy").unwrap_or(0.0),
             );
             if dilatancy > friction {
-                return Err(refused(format!(
+                return Err(format!(
                     "a dilatancy of {dilatancy} above a friction of {friction} would give energy away"
-                )));
+                ));
             }
             let state = match (equation, equation_of_state::stray(m.parameters)) {
                 (equation_of_state::Kind::Elastic, Some(key)) => {
-                    return Err(refused(format!(
+                    return Err(format!(
                         "`{key}` is of an equation of state: write equation_of_state = \"mie_gruneisen\", or leave it out"
-                    )));
+                    ));
                 }
                 (equation_of_state::Kind::Elastic, None) => EquationOfState::NONE,
                 (equation_of_state::Kind::PerfectGas, _) => {
-                    return Err(refused(
-                        "a perfect gas bears no shear: write a fluid".into(),
-                    ));
+                    return Err("a perfect gas bears no shear: write a fluid".into());
                 }
                 (equation_of_state::Kind::MieGruneisen, _) if friction > 0.0 => {
-                    return Err(refused(
-                        "`friction` reads the elastic mean stress: with an equation of state flow is von Mises's; leave it out".into(),
-                    ));
+                    return Err("`friction` reads the elastic mean stress: with an equation of state flow is von Mises's; leave it out".into());
                 }
                 (equation_of_state::Kind::MieGruneisen, _) => {
-                    EquationOfState::of_hugoniot(m, moduli.bulk()).map_err(refused)?
+                    EquationOfState::of_hugoniot(m, moduli.bulk())?
                 }
             };
-            made.push(HypoelasticPlasticConstants {
+            Ok(HypoelasticPlasticConstants {
                 lame: moduli.lame(),
                 shear: moduli.shear(),
                 friction,
                 dilatancy,
                 heating,
-                damage: damage(m.parameters, kind.heats).map_err(refused)?,
+                damage: damage(m.parameters, kind.heats)?,
                 hardening,
                 state,
-            });
-        }
+            })
+        };
         Ok(HypoelasticPlastic {
             sheet: d == 2 && plane == Plane::Stress,
             increment,
             kind,
             damages,
             state: equation,
-            materials: made,
+            materials: descriptor::each(materials, of)?,
         })
     }
 }
