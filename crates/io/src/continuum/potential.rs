@@ -204,7 +204,7 @@ fn flags(words: &Words, of: &Descriptor, units: Units) -> Result<Vec<Flag>, Mode
 pub fn of_deck(path: &Path) -> Result<(Model, Units), ModelError> {
     let (text, name) = text_of(path).map_err(|e| format!("--model {e}"))?;
     // what is wrong with the text the deck says, with its line
-    let written: toml::Table = toml::from_str(&text).unwrap_or_default();
+    let written: toml::Table = text.parse().unwrap_or_default();
     let bare = !written.contains_key("body");
     let (flags, unknown) = match bare {
         true => lacking(&written),

@@ -12,6 +12,7 @@ mod error;
 mod form;
 mod locate;
 mod lower;
+mod reader;
 pub mod reference;
 mod schema;
 mod source;
@@ -19,7 +20,6 @@ mod syntax;
 mod units;
 pub mod upscaled;
 mod value;
-mod whole;
 
 #[cfg(test)]
 mod tests;
@@ -41,12 +41,10 @@ use lower::{Entries, Files};
 use peridyne::error::BuildError;
 use peridyne::run::Info;
 use peridyne::spec::Spec;
-use serde::Deserialize;
 use source::Source;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use whole::Whole;
 
 /// A deck that was understood.
 #[derive(Debug, Clone)]
@@ -197,8 +195,7 @@ impl Deck {
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
         locate::interfaces(tree.get_mut());
-        let document = Document::deserialize(Whole(toml::de::Deserializer::from(tree)))
-            .map_err(|e| syntax::mistake(&source, e.span(), e.message()))?;
+        let document: Document = reader::read(&source, &tree)?;
         let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));
         let units = lower::units(&document);
         let mut lowered = lower::lower(&source, &document, &Files { folder })?;

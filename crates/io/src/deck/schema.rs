@@ -19,10 +19,8 @@ pub fn law_schema() -> serde_json::Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::deck::locate;
     use crate::deck::source::Source;
-    use crate::deck::whole::Whole;
-    use serde::Deserialize;
+    use crate::deck::{locate, reader};
     use serde_json::{Value, json};
     use std::path::{Path, PathBuf};
 
@@ -72,7 +70,7 @@ mod tests {
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
         locate::interfaces(tree.get_mut());
-        Document::deserialize(Whole(toml::de::Deserializer::from(tree))).is_ok()
+        reader::read::<Document>(&source, &tree).is_ok()
     }
 
     /// All decks with one fault: an unknown key in a table, a value of another type, a key left out.
@@ -174,7 +172,7 @@ mod tests {
             let text = toml::to_string(deck).unwrap();
             let source = Source::new(&text, "deck.toml", &[]);
             let tree = source.tree().unwrap();
-            LawDocument::deserialize(Whole(toml::de::Deserializer::from(tree))).is_ok()
+            reader::read::<LawDocument>(&source, &tree).is_ok()
         };
         let good = "decks/good/conservation";
         let (decks, refused) = compare(&law_schema(), good, &["decks/bad/conservation"], read);

@@ -1,3 +1,5 @@
+mod reader;
+
 use super::*;
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;

@@ -1,5 +1,6 @@
 //! Values of a deck that remember where they stand.
 
+use super::reader::{AT, OR};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -15,25 +16,44 @@ pub struct At<T> {
     pub span: Range<usize>,
 }
 
+/// The next of what a reader tells.
+fn next<'de, A: SeqAccess<'de>, T: Deserialize<'de>>(told: &mut A) -> Result<T, A::Error> {
+    let told = told.next_element()?;
+    told.ok_or_else(|| A::Error::invalid_length(0, &"a value of a deck"))
+}
+
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for At<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let spanned = toml::Spanned::<T>::deserialize(deserializer)?;
-        Ok(At {
-            span: spanned.span(),
-            value: spanned.into_inner(),
-        })
+        struct AtVisitor<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for AtVisitor<T> {
+            type Value = At<T>;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a value and its place")
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut told: A) -> Result<At<T>, A::Error> {
+                Ok(At {
+                    span: next(&mut told)?..next(&mut told)?,
+                    value: next(&mut told)?,
+                })
+            }
+        }
+        deserializer.deserialize_tuple_struct(AT, 3, AtVisitor(PhantomData))
     }
 }
 
+/// That of the value itself, made once.
 impl<T: JsonSchema> JsonSchema for At<T> {
     fn inline_schema() -> bool {
-        true
+        T::inline_schema()
     }
     fn schema_name() -> Cow<'static, str> {
         T::schema_name()
     }
+    fn schema_id() -> Cow<'static, str> {
+        T::schema_id()
+    }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        generator.subschema_for::<T>()
+        T::json_schema(generator)
     }
 }
 
@@ -208,26 +228,14 @@ impl<'de, A: Deserialize<'de>, T: Deserialize<'de>> Deserialize<'de> for Or<A, T
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 f.write_str("a value or a table")
             }
-            fn visit_bool<E: Error>(self, v: bool) -> Result<Self::Value, E> {
-                A::deserialize(serde::de::value::BoolDeserializer::new(v)).map(Or::Bare)
-            }
-            fn visit_i64<E: Error>(self, v: i64) -> Result<Self::Value, E> {
-                A::deserialize(serde::de::value::I64Deserializer::new(v)).map(Or::Bare)
-            }
-            fn visit_f64<E: Error>(self, v: f64) -> Result<Self::Value, E> {
-                A::deserialize(serde::de::value::F64Deserializer::new(v)).map(Or::Bare)
-            }
-            fn visit_str<E: Error>(self, v: &str) -> Result<Self::Value, E> {
-                A::deserialize(serde::de::value::StrDeserializer::new(v)).map(Or::Bare)
-            }
-            fn visit_seq<S: SeqAccess<'de>>(self, seq: S) -> Result<Self::Value, S::Error> {
-                A::deserialize(serde::de::value::SeqAccessDeserializer::new(seq)).map(Or::Bare)
-            }
-            fn visit_map<M: MapAccess<'de>>(self, map: M) -> Result<Self::Value, M::Error> {
-                T::deserialize(MapAccessDeserializer::new(map)).map(Or::Table)
+            fn visit_seq<S: SeqAccess<'de>>(self, mut told: S) -> Result<Self::Value, S::Error> {
+                match next::<S, usize>(&mut told)? {
+                    0 => next(&mut told).map(Or::Bare),
+                    _ => next(&mut told).map(Or::Table),
+                }
             }
         }
-        deserializer.deserialize_any(OrVisitor(PhantomData))
+        deserializer.deserialize_tuple_struct(OR, 2, OrVisitor(PhantomData))
     }
 }
 

@@ -8,15 +8,12 @@ pub(super) use document::LawDocument;
 
 use super::error::DeckError;
 use super::source::Source;
-use super::syntax;
 use super::units::UnitSystem;
-use super::whole::Whole;
-use super::{Dim, form, locate};
+use super::{Dim, form, locate, reader};
 use crate::write::folder::stays;
 use peridyne::error::BuildError;
 use peridyne_transport::exact::Reference;
 use peridyne_transport::{Evolution, Grid};
-use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::de::DeValue;
 
@@ -77,8 +74,7 @@ impl LawDeck {
         let source = Source::new(text, file_name, overrides);
         let tree = source.tree()?;
         form::names(&source, tree.get_ref())?;
-        let document = LawDocument::deserialize(Whole(toml::de::Deserializer::from(tree)))
-            .map_err(|e| syntax::mistake(&source, e.span(), e.message()))?;
+        let document: LawDocument = reader::read(&source, &tree)?;
         let lowered = lower::lower(&source, &document)?;
         let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
         Ok(LawDeck {
