@@ -500,3 +500,47 @@ fn tangents_of_the_smoothed_are_slopes_of_forces() {
         assert!(off < bound, "{off:e}");
     }
 }
+
+/// Four atoms on a line whose second neighbours pull in the reference: `f₀ − K u` is 0 between the ends, so `u₁ + u₂ = d` and
+/// `(3 k₁ + k₂)(u₂ − u₁) = (k₁ − k₂) d − 2 p₂` with `p = φ′`, `k = φ″` of first and second neighbours, and the ends bear `p₂ + k₁ (d − u₂) + k₂ (d − u₁)`.
+#[test]
+fn linear_statics_of_atoms_that_pull_in_their_reference_is_the_law_to_first_order() {
+    let (alpha, far) = (1.5f64, 0.02);
+    let e = (-alpha).exp();
+    let (first, second) = (
+        2.0 * alpha.powi(2),
+        2.0 * alpha.powi(2) * e * (2.0 * e - 1.0),
+    );
+    let pull = 2.0 * alpha * e * (1.0 - e);
+    let mut sim = model(&format!(
+        "units = \"none\"\nfamily = \"reference\"\nhorizon = 2.5\ncontact = false\n\
+         body = {{ lattice = \"chain\", spacing = 1, cells = [4] }}\n\
+         material = {{ mass = 1, law = {{ morse = {{ depth = 1, alpha = {alpha}, distance = 1, cutoff = 2.5 }} }} }}\n\
+         [sets]\nleft.where = \"x < 0.5\"\nright.where = \"x > 2.5\"\n\
+         [[condition]]\nset = \"left\"\ndisplacement = {{ x = 0 }}\n\
+         [[condition]]\nset = \"right\"\ndisplacement = {{ x = \"{far}*t\" }}\n\
+         [[probe]]\nname = \"left\"\nset = \"left\"\nmeasure = \"reaction\"\n\
+         [[probe]]\nname = \"right\"\nset = \"right\"\nmeasure = \"reaction\"\n\
+         [statics]\nmethod = \"linear\"\nincrements = 2\n"
+    ));
+    sim.start(true);
+    for t in [0.5, 1.0] {
+        sim.step().unwrap();
+        let d = far * t;
+        let apart = ((first - second) * d - 2.0 * pull) / (3.0 * first + second);
+        let (one, two) = (0.5 * (d - apart), 0.5 * (d + apart));
+        let bears = pull + first * (d - two) + second * (d - one);
+        let u: Vec<f64> = sim.displacements().iter().map(|u| u[0]).collect();
+        let reactions = sim.measure();
+        for (found, exact) in [
+            (u[1], one),
+            (u[2], two),
+            (reactions[0], -bears),
+            (reactions[1], bears),
+        ] {
+            assert!((found - exact).abs() < 1e-12, "{found} is not {exact}");
+        }
+        let off = sim.ledger().unwrap().residual();
+        assert!(off.abs() < 1e-13, "{off:e}");
+    }
+}

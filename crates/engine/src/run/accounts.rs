@@ -14,7 +14,7 @@ impl<const D: usize> System<D> {
     /// Energies of a state with whole velocities.
     pub(super) fn energy_now(&mut self) -> Ledger {
         self.refresh_images();
-        let [strain, mut contact] = match self.is_linear() {
+        let [strain, mut contact] = match self.left_linearly() {
             true => self.quadratic_energy(),
             false => self.interaction.energy(&self.body, view(&self.u)),
         };

@@ -84,6 +84,7 @@ impl<const D: usize> System<D> {
         self.prescribed.all_mut().for_each(|p| p.retain(&keep));
         self.applied.all().for_each(|x| x.retain(&keep));
         self.watch.forget();
+        self.stressed = None;
         self.refresh_images();
         self.look_again();
         // what they carried is no longer asked for

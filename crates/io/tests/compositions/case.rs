@@ -86,6 +86,11 @@ impl Case {
         self.law.strain / self.time()
     }
 
+    /// Critical stretch that the load passes.
+    pub fn limit(&self) -> f64 {
+        self.law.part * self.law.strain
+    }
+
     pub fn time(&self) -> f64 {
         3.0 * self.law.place.time
     }
@@ -105,9 +110,9 @@ impl Case {
         )
     }
 
-    /// Energy that breaking bonds may miss: what they held is known to a step, in which stretches of `strain/2` grow by `rate dt`.
+    /// Energy that breaking bonds may miss: what they held is known to a step, in which stretches of the limit grow by `rate dt`.
     pub fn jump(&self, sim: &dyn Simulation) -> f64 {
-        4.0 * self.rate() * sim.info().time_step / self.law.strain
+        2.0 * self.rate() * sim.info().time_step / self.limit()
     }
 }
 
@@ -203,12 +208,12 @@ pub fn go(sim: &mut dyn Simulation, time: f64, keeps: Keeps, [share, jump]: [f64
 }
 
 /// Energy that has come and gone.
-fn moved(first: &Ledger, l: &Ledger) -> f64 {
+pub fn moved(first: &Ledger, l: &Ledger) -> f64 {
     let stored = (l.strain - first.strain).abs() + l.kinetic + l.contact;
     stored + l.released + l.dissipated.abs() + l.work_conditions.abs()
 }
 
-fn balanced(l: &Ledger, bound: f64) -> Answer {
+pub fn balanced(l: &Ledger, bound: f64) -> Answer {
     let off = l.residual().abs();
     // of nothing, round-off
     hold(off <= bound + 1e-15, || {

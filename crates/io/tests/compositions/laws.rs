@@ -5,8 +5,13 @@ pub struct Law {
     pub name: &'static str,
     pub keys: &'static str,
     pub place: Place,
-    /// Strain of a load under which bonds end, at half of it.
+    /// Strain of a load under which bonds end.
     pub strain: f64,
+    /// Where they end, as a part of that strain: bonds of diamond turn, too, where it is pulled along an axis of its cell, `s = √(1 + (2 ε + ε²)/3) − 1`.
+    pub part: f64,
+    /// Fracture energy for the same, over `E s² δ`: a bond that softens from a tenth of its critical stretch on has a tenth of what a brittle one has, and
+    /// surfaces of crystals pass 1 when they relax.
+    pub toughness: f64,
     /// Are forces zero in the reference, at surfaces too?
     pub calm: bool,
     /// A law that is not without a fracture: that of bodies that do not break.
@@ -95,6 +100,8 @@ const fn solid(name: &'static str, keys: &'static str) -> Law {
         keys,
         place: SOLID,
         strain: 0.06,
+        part: 0.5,
+        toughness: 1.0,
         calm: true,
         fracture: None,
     }
@@ -103,6 +110,18 @@ const fn solid(name: &'static str, keys: &'static str) -> Law {
 const fn atoms(name: &'static str, keys: &'static str) -> Law {
     Law {
         place: ATOMS,
+        ..solid(name, keys)
+    }
+}
+
+/// Atoms whose surfaces relax.
+const fn crystal(place: Place, part: f64, name: &'static str, keys: &'static str) -> Law {
+    Law {
+        place,
+        strain: 0.3,
+        part,
+        toughness: 2.0,
+        calm: false,
         ..solid(name, keys)
     }
 }
@@ -126,6 +145,7 @@ pub const LAWS: &[Law] = &[
     solid("thermoelastic_solid", ELASTIC),
     Law {
         fracture: Some("critical_stretch = 0.5"),
+        toughness: 0.1,
         ..solid("softening", "young = 1, onset = 0.1")
     },
     Law {
@@ -177,31 +197,18 @@ pub const LAWS: &[Law] = &[
         "born_mayer",
         "strength = 0.6, sigma = 1, range = 0.1, dispersion = 1, cutoff = 1.6",
     ),
-    Law {
-        place: COPPER,
-        calm: false,
-        strain: 0.3,
-        ..solid("eam", "file = \"copper.eam.alloy\"")
-    },
-    Law {
-        place: COPPER,
-        calm: false,
-        strain: 0.3,
-        ..solid(
-            "eam_form",
-            "cohesive = 3.54, pair = 0.1217, alpha = 5.082, beta = 5.85, gamma = 6.82054, lambda = 12.06, density = [0.14095, -1.93222, 9.60043, -21.23718, 20.18581, -5.81656], density_scale = \"1/12\", nearest = 2.556, near = 1.75, cutoff = 1.95",
-        )
-    },
-    Law {
-        place: SILICON,
-        calm: false,
-        strain: 0.3,
-        ..solid("stillinger_weber", "file = \"Si.sw\"")
-    },
-    Law {
-        place: SILICON,
-        calm: false,
-        strain: 0.3,
-        ..solid("tersoff", "file = \"SiC.tersoff\", element = \"Si\"")
-    },
+    crystal(COPPER, 0.5, "eam", "file = \"copper.eam.alloy\""),
+    crystal(
+        COPPER,
+        0.5,
+        "eam_form",
+        "cohesive = 3.54, pair = 0.1217, alpha = 5.082, beta = 5.85, gamma = 6.82054, lambda = 12.06, density = [0.14095, -1.93222, 9.60043, -21.23718, 20.18581, -5.81656], density_scale = \"1/12\", nearest = 2.556, near = 1.75, cutoff = 1.95",
+    ),
+    crystal(SILICON, 0.2, "stillinger_weber", "file = \"Si.sw\""),
+    crystal(
+        SILICON,
+        0.2,
+        "tersoff",
+        "file = \"SiC.tersoff\", element = \"Si\"",
+    ),
 ];

@@ -76,52 +76,10 @@ const HEAD: &str = "\
 
 Every law with every feature, tried: a body of some dozen points is built and run for some steps, all numbers are finite, momentum is kept (supports
 balance), energy is accounted for to the order of the steps, and the feature did what it is there for. `✓` is that in every family that the law can have;
-a number is the reason for which it is refused, below; `?` runs, and its result is not yet what the table asks for: do not rely on it. Where a lattice
-(a stencil) and a list of bonds differ, both are said in this order. Potentials have `family = \"reference\"`.
+a number is the reason for which it is refused, below. Where a lattice (a stencil) and a list of bonds differ, both are said in this order. Potentials have `family = \"reference\"`.
 
 <!-- PERIDYNE_RENEW_TABLE=1 cargo test -p peridyne-io --test compositions writes this page anew. -->
 ";
-
-/// Cells that run and do not do what is asked here, each to be mended or asked otherwise: they may only become fewer. Some are limits of fracture that the load
-/// of this table does not reach (or that a surface which relaxes passes), others are questions to the program.
-const OPEN: &[(&str, &str)] = &[
-    ("stillinger_weber", "critical stretch"),
-    ("tersoff", "critical stretch"),
-    ("softening", "fracture energy"),
-    ("eam", "work of bonds"),
-    ("eam_form", "work of bonds"),
-    ("stillinger_weber", "work of bonds"),
-    ("tersoff", "work of bonds"),
-    ("softening", "`alpha`"),
-    ("lamina", "`alpha`"),
-    ("stillinger_weber", "`alpha`"),
-    ("tersoff", "`alpha`"),
-    ("stillinger_weber", "toughness by place"),
-    ("tersoff", "toughness by place"),
-    ("embedded_solid", "linear statics"),
-    ("lennard_jones", "linear statics"),
-    ("morse", "linear statics"),
-    ("buckingham", "linear statics"),
-    ("born_mayer", "linear statics"),
-    ("eam", "linear statics"),
-    ("eam_form", "linear statics"),
-    ("stillinger_weber", "linear statics"),
-    ("tersoff", "linear statics"),
-    ("softening", "opening"),
-    ("fluid", "expansion"),
-    ("lennard_jones", "directed influence"),
-    ("morse", "directed influence"),
-    ("buckingham", "directed influence"),
-    ("born_mayer", "directed influence"),
-    ("eam", "directed influence"),
-    ("eam_form", "directed influence"),
-    ("stillinger_weber", "directed influence"),
-    ("tersoff", "directed influence"),
-];
-
-fn is_open(law: &Law, feature: &Feature) -> bool {
-    OPEN.contains(&(law.name, feature.name))
-}
 
 /// A cell of the table, in the order of the families of its law.
 struct Row {
@@ -206,15 +164,6 @@ fn failures(tables: &[(&str, &[Feature], Vec<Row>)]) -> Vec<String> {
             let cells = rows.iter().map(|row| (row.law, &row.cells[n]));
             let mut runs = 0;
             for (law, answers) in cells {
-                if is_open(law, feature) {
-                    let wrong = |a: &Answer| matches!(a, Err(Stop::Wrong(_)));
-                    if !answers.iter().any(wrong) {
-                        let name = feature.name;
-                        all.push(format!("{} × {name} is open no longer", law.name));
-                    }
-                    runs += 1;
-                    continue;
-                }
                 for (family, answer) in law.place.families.iter().zip(answers) {
                     let why = match answer {
                         Ok(()) => {

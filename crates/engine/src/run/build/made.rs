@@ -106,6 +106,7 @@ impl<const D: usize> Made<D> {
             clock: Clock::new(dt),
             accounts: Accounts::default(),
             fault: None,
+            stressed: None,
             regime: Regime::default(),
             transfers: Transfers::default(),
         };

@@ -9,6 +9,7 @@ impl<const D: usize> Problem<'_, D> {
         let held: f64 = self.system.quadratic_energy().iter().sum();
         self.system.forces(true, self.system.clock.trial());
         if self.system.accounts.broken > broken {
+            self.system.stressed = None;
             let kept: f64 = self.system.quadratic_energy().iter().sum();
             self.system.accounts.released = released;
             self.system.accounts.released.book(held - kept);

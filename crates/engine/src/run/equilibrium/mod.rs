@@ -148,6 +148,9 @@ impl<const D: usize> Problem<'_, D> {
     /// The linear body about the reference.
     fn reference_body(&mut self) -> LinearBody<D> {
         let system = &mut *self.system;
+        if !system.at_peace() {
+            return system.stressed().tangent.clone();
+        }
         statics::linear_body(
             &system.body,
             system.interaction.as_mut(),
@@ -163,7 +166,7 @@ impl<const D: usize> Problem<'_, D> {
     ) -> Result<(Solved, Way), SolveError> {
         let mut support = self.support_now(state.options)?.support;
         let method = state.options.method;
-        let linear = method == Method::Linear && self.system.at_peace();
+        let linear = method == Method::Linear;
         // a start that is no equilibrium goes to one, whatever acts
         let mut released = self.is_unbalanced(&support, f, state.options.tolerance);
         let mut total = Solved::default();

@@ -4,10 +4,9 @@ use super::equations::solve_assembled;
 use super::problem::Problem;
 use super::state::StaticState;
 use super::tried::{Inertia, Tried};
-use crate::body::{view, view_mut, zeros};
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
-use crate::interaction::{BondStatus, Sweep};
+use crate::interaction::BondStatus;
 use crate::spec::Statics;
 use crate::statics::{self, Assembled, Direct, Goal, Solved, Support, Swept, norm};
 
@@ -45,18 +44,10 @@ impl<const D: usize> Problem<'_, D> {
     ) -> Result<Solved, SolveError> {
         let mut load = self.system.external();
         if !self.system.at_peace() {
-            let mut reference = zeros(self.system.body.len);
-            let u = self.system.body.at_rest();
-            self.system.interaction.forces(
-                &self.system.body,
-                view(&u),
-                view_mut(&mut reference),
-                Sweep::Hold,
-                None,
-            );
-            for a in 0..D {
-                for (l, r) in load[a].iter_mut().zip(reference[a].iter()) {
-                    *l += r;
+            let reference = self.system.stressed().forces.clone();
+            for (f, &s) in reference.iter().zip(&self.system.body.slots) {
+                for a in 0..D {
+                    load[a][s as usize] += f[a];
                 }
             }
         }

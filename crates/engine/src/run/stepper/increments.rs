@@ -46,6 +46,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
     fn start(&mut self, system: &mut System<D>, _: bool) {
         system.start_transfers();
         system.v.iter_mut().for_each(|c| c.fill(0.0));
+        system.stressed = None;
         forces_before(system);
         system.learn_strength();
         // energy that came in from outside counts as initial
@@ -109,6 +110,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
 
     fn changed(&mut self, system: &mut System<D>) {
         self.state.forget();
+        system.stressed = None;
         forces_before(system);
     }
 
@@ -175,7 +177,7 @@ impl<const D: usize> Increments<D> {
 /// Forces from which the next increment sets out; before the first one nothing acts but bonds.
 fn forces_before<const D: usize>(system: &mut System<D>) {
     system.refresh_images();
-    if system.is_linear() {
+    if system.left_linearly() {
         system.linear_forces();
     } else {
         let (body, u) = (&system.body, &system.u);

@@ -36,6 +36,7 @@ impl<const D: usize> System<D> {
     /// What follows from a state that was read.
     fn restored(&mut self) {
         self.info.time_step = self.clock.dt_of_motion();
+        self.stressed = None;
         self.look_again();
         if let Some(contact) = &mut self.contact {
             contact.find(&self.body, &self.u, self.interaction.as_ref());

@@ -1,9 +1,12 @@
 //! The linear body: what a linear solution means, and whether the reference is without forces. Such a solution stands for the forces `−K u` and the
 //! energy `½ uᵀK u` of the linear body about the reference, not for those of the nonlinear law at its displacements, in which it is no equilibrium.
 //! Near incompressibility the two differ by much: the small rotations of a linear solution change volumes in second order.
+//!
+//! Where bonds pull in the reference, there are `f₀ − K u` and `E₀ − f₀·u + ½ uᵀK u`: what the law says to first and second order. Points and bonds one
+//! by one have there what the law says at the displacements.
 
 use super::System;
-use crate::body::{Field, view, view_mut};
+use crate::body::{Field, view, view_mut, zeros};
 use crate::interaction::{PointEnergies, Sweep};
 use crate::law::descriptor::Memory;
 use crate::run::constitutive::Laws;
@@ -14,10 +17,48 @@ use crate::statics::{self, Support};
 /// Unknowns up to which the equations are factored, per dimension.
 const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
 
+/// A linear body whose bonds pull in the reference.
+pub struct Stressed<const D: usize> {
+    /// E₀: of bonds, and of repulsion inside families.
+    energy: [f64; 2],
+    /// `[N]` f₀ (force density).
+    pub forces: Vec<[f64; D]>,
+    pub tangent: LinearBody<D>,
+}
+
+impl<const D: usize> Stressed<D> {
+    /// `[N]` `f₀ − K u` (force density).
+    fn forces_at(&self, u: &[[f64; D]]) -> Vec<[f64; D]> {
+        let at = |i: usize| {
+            let pulled = self.tangent.force(u, i);
+            std::array::from_fn(|a| self.forces[i][a] + pulled[a])
+        };
+        (0..u.len()).map(at).collect()
+    }
+
+    fn energy_at(&self, u: &[[f64; D]]) -> [f64; 2] {
+        let forces = self.forces_at(u);
+        // the mean of the forces here and there does the work of the way
+        let work = |i: usize| {
+            let each = (0..D).map(|a| 0.5 * (self.forces[i][a] + forces[i][a]) * u[i][a]);
+            self.tangent.volume[i] * each.sum::<f64>()
+        };
+        let [bonds, repulsion] = self.energy;
+        [bonds - (0..u.len()).map(work).sum::<f64>(), repulsion]
+    }
+}
+
 impl<const D: usize> System<D> {
-    /// Does the state stand for the linear body about the reference? Laws that pull at rest (atoms) keep their own energy.
+    /// Does the state stand for the linear body about a reference without forces, point by point?
     pub fn is_linear(&self) -> bool {
         self.regime.linear && self.at_peace()
+    }
+
+    /// Do forces and energies of now stand for the linear body? Where bonds pull in the reference, law and linear body are one there, and the law's need
+    /// no tangent.
+    pub fn left_linearly(&self) -> bool {
+        let moved = || self.u.iter().flat_map(|c| c.iter()).any(|u| *u != 0.0);
+        self.regime.linear && (self.at_peace() || moved())
     }
 
     /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
@@ -85,8 +126,29 @@ impl<const D: usize> System<D> {
         seen.dilatation.iter_mut().for_each(|x| *x /= small);
     }
 
-    /// `½ uᵀK u` (energy).
+    /// The linear body about a reference in which bonds pull, found once as long as no bond breaks.
+    pub fn stressed(&mut self) -> &Stressed<D> {
+        let found = self.stressed.take().unwrap_or_else(|| {
+            let rest = self.body.at_rest();
+            let mut forces = zeros(self.body.len);
+            let out = view_mut(&mut forces);
+            self.interaction
+                .forces(&self.body, view(&rest), out, Sweep::Hold, None);
+            Stressed {
+                energy: self.interaction.energy(&self.body, view(&rest)),
+                forces: self.body.values(&forces),
+                tangent: statics::linear_body(&self.body, self.interaction.as_mut(), &rest),
+            }
+        });
+        self.stressed.insert(found)
+    }
+
+    /// `E₀ − f₀·u + ½ uᵀK u` (energy); E₀ and f₀ are 0 where nothing pulls in the reference.
     pub fn quadratic_energy(&mut self) -> [f64; 2] {
+        if !self.at_peace() {
+            let u = self.body.values(&self.u);
+            return self.stressed().energy_at(&u);
+        }
         let (u, small) = self.made_small();
         let energy = self.interaction.energy(&self.body, view(&u));
         energy.map(|e| e / small / small)
@@ -94,6 +156,16 @@ impl<const D: usize> System<D> {
 
     /// Forces `−K u` of bonds in place of those of the law; no loads.
     pub fn linear_forces(&mut self) {
+        if !self.at_peace() {
+            let u = self.body.values(&self.u);
+            let forces = self.stressed().forces_at(&u);
+            for (f, &s) in forces.iter().zip(&self.body.slots) {
+                for a in 0..D {
+                    self.f[a][s as usize] = f[a];
+                }
+            }
+            return;
+        }
         let (u, small) = self.made_small();
         self.interaction.forces(
             &self.body,

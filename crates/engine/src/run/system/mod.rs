@@ -9,6 +9,7 @@ mod watch;
 pub(super) use regime::Regime;
 pub(super) use watch::Watch;
 
+use self::linear::Stressed;
 use super::Info;
 use super::accounts::state::Accounts;
 use super::clock::Clock;
@@ -58,6 +59,8 @@ pub(super) struct System<const D: usize> {
     pub stop: fn() -> bool,
     /// The last forces mean nothing.
     pub fault: Option<Fault>,
+    /// The linear body about a reference in which bonds pull, where somebody asked for it.
+    pub stressed: Option<Stressed<D>>,
     /// What its states mean under the stepper that moves it.
     pub regime: Regime,
 }

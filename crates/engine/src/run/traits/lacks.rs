@@ -487,6 +487,9 @@ fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
                 let instead = "give critical_stretch";
                 all.push(Lack::new(Property::PresentStretch, says, instead).at(&*path));
             }
+            let says = "how strongly atoms act on each other at every distance is what their potential says";
+            let instead = "take a law of solids (pmb, lps, …)";
+            all.push(Lack::new(Property::Weighed, says, instead));
             if spec.interactions.contact.is_some() {
                 let says = "how atoms repel each other is what their potential says, and no stiffness of contact follows from it";
                 let instead = "remove contact: of family = \"neighbours\" all atoms that are near repel; or take pmb or lps";
@@ -522,6 +525,13 @@ pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
                 );
                 let instead = "leave criterion, rate and fatigue out";
                 lack(Property::OtherMeasures, says, instead);
+            }
+            if shelf.ends(name) {
+                let says = format!(
+                    "the law {name} has its critical stretch among its constants, where its bonds have softened to nothing"
+                );
+                let instead = "take a law whose bonds are brittle";
+                lack(Property::StrengthOfPressed, says, instead);
             }
             if !law.isotropic {
                 let says =

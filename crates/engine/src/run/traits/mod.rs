@@ -82,6 +82,8 @@ pub(super) enum Property {
     BondByBond,
     /// What bonds bear may be another one at every point.
     StrengthOfPoints,
+    /// What bonds bear may grow where points are pushed together.
+    StrengthOfPressed,
     /// What bonds bear may be multiplied.
     StrengthTimesFactor,
     /// Ends within the step in which it is found.
@@ -92,6 +94,8 @@ pub(super) enum Property {
     Carried,
     /// Bonds are those of a continuum.
     Continuum,
+    /// Bonds may be weighed by an influence function.
+    Weighed,
     /// All points have the horizon of the body.
     OneHorizon,
     /// Every point may have another horizon.
@@ -131,6 +135,7 @@ impl Property {
                 | Property::OtherMeasures
                 | Property::Separates
                 | Property::ConstantsOfPoints
+                | Property::Weighed
         )
     }
 }

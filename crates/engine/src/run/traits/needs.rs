@@ -3,8 +3,8 @@
 use super::{Need, Property};
 use crate::run::constitutive::{breaking, breaks};
 use crate::spec::{
-    BodySpec, Control, Criterion, FamilyChoice, FractureSpec, LawSpec, MaterialSpec, Method, Plane,
-    Spec, Statics, Stepper, ToughnessFactor,
+    BodySpec, Control, Criterion, FamilyChoice, FractureSpec, Influence, LawSpec, MaterialSpec,
+    Method, Plane, Spec, Statics, Stepper, ToughnessFactor,
 };
 
 pub(super) fn of(spec: &Spec) -> Vec<Need> {
@@ -30,6 +30,11 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
     if !spec.bonds.factors.is_empty() {
         let why = ", and factors of bonds need a bond-based law";
         all.push(Need::new(Property::BondByBond, "bonds[0]", why, ""));
+    }
+    if spec.bonds.influence != Influence::Constant {
+        let why = ", and an influence function weighs bonds of a continuum";
+        let instead = "leave influence out";
+        all.push(Need::new(Property::Weighed, "influence", why, instead));
     }
     if spec.interactions.contact.is_some() || breaks(spec) {
         all.push(Need::new(Property::Separates, "materials", "", ""));
@@ -118,6 +123,11 @@ pub(super) fn of_fracture(spec: &Spec, fracture: Option<FractureSpec>, path: &st
     if fracture.remembers() {
         let why = ", and more than the stretch of now is asked for";
         all.push(Need::new(Property::OtherMeasures, path, why, ""));
+    }
+    if fracture.alpha != 0.0 {
+        let why = ", and strengthening under compression (alpha) would raise it";
+        let instead = "leave alpha out";
+        all.push(Need::new(Property::StrengthOfPressed, path, why, instead));
     }
     let in_plane_strain = spec.space.dimension == 2 && spec.space.plane == Plane::Strain;
     match fracture.criterion {
