@@ -2,7 +2,7 @@
 
 use std::mem::MaybeUninit;
 
-/// As [`crate::array::from_fn`], in one small function for each closure: the standard one is five, and with some 1,600 closures they were a
+/// As [`std::array::from_fn`], in one small function for each closure: the standard one is five, and with some 1,600 closures they were a
 /// twentieth of what this crate had the compiler do. Elements that are made when `make` panics are leaked.
 #[inline]
 pub(crate) fn from_fn<T, const N: usize, F: FnMut(usize) -> T>(mut make: F) -> [T; N] {

@@ -590,6 +590,27 @@ fn glue_breaks_in_turn_by_its_work() {
     assert!((l.strain - 20.0 * 1e-4).abs() < 1e-13, "{l:?}");
 }
 
+/// A half that breaks at a stretch of 1 % beside one that never does: the chain of 20 springs bears 20 times that.
+#[test]
+fn halves_break_in_turn_beside_halves_that_do_not() {
+    let law = LawSpec::Pmb(PmbStiffness::Micromodulus(2.0));
+    let mut spec = chain(&law, "3*t");
+    spec.materials = ["left", "right"]
+        .map(|n| material(n, 1.0, law.clone()))
+        .into();
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.01)));
+    spec.sets.extend(["left", "right"].map(within));
+    spec.run.schedule.steps = 1;
+    spec.run.schedule.stepper = Stepper::Statics(Statics {
+        control: Control::Breaking,
+        ..Statics::default()
+    });
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    sim.step().unwrap();
+    assert!((sim.time() - 0.2 / 3.0).abs() < 1e-12, "{}", sim.time());
+}
+
 /// The one bond of the glue of a chain that is pulled to a hundredth of its length wears by `a ((1 − R) s)^m` a cycle, and is broken in the second increment.
 #[test]
 fn glue_wears_in_cycles() {

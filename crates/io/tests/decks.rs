@@ -224,14 +224,10 @@ fn fused_kernels_or_general_sweeps_are_said_with_the_reason() {
             "units = \"none\"\nplane = \"strain\"\nhorizon = 3.3\ncontact = false\n{top}\n\
              [body]\nlattice = \"square\"\nspacing = 1\ncells = [8, 8]\n\
              [material]\ndensity = 1\nlaw = {law}\n{of_material}\n\
-             [[condition]]\nregion = {{ block = {{ low = 0, high = [8, 1] }} }}\ndisplacement = [0, 0]\n{end}\n"
+             [[condition]]\nregion = {{ block = {{ low = [0, 0], high = [8, 1] }} }}\ndisplacement = [0, 0]\n{end}\n"
         );
         let deck = Deck::parse(&text, "deck.toml", &[]).unwrap_or_else(|e| panic!("{e}\n{text}"));
-        let options = Options {
-            trust_time_step: true,
-            ..Options::default()
-        };
-        let sim = build(&deck.spec, options).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let sim = build(&deck.spec, Options::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
         let [sweeps] = &sim.info().sweeps[..] else {
             panic!("{:?}", sim.info().sweeps)
         };

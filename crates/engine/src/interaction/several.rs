@@ -10,7 +10,7 @@ use super::{
 };
 use crate::body::several::Piece;
 use crate::body::{Body, FieldView, FieldViewMut, Identity, Layout, view_mut};
-use crate::columns::Declaration;
+use crate::columns::{Declaration, On};
 use crate::error::BuildError;
 use crate::law::BondFactors;
 use crate::spec::{CrackKind, Cycles};
@@ -320,11 +320,13 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
 
     fn columns(&self) -> Vec<Declaration> {
         let mut all: Vec<Declaration> = vec![];
-        for own in self.all() {
-            for column in own.columns() {
-                if !all.iter().any(|c| c.name == column.name) {
-                    all.push(column);
-                }
+        // points of interfaces are those of bodies; their bonds are their own
+        let of_bonds = |c: &Declaration| c.on == On::Bonds;
+        let between = self.interfaces.iter().flat_map(|i| i.bonds.columns());
+        let own = self.all().flat_map(|bonds| bonds.columns());
+        for column in own.chain(between.filter(of_bonds)) {
+            if !all.iter().any(|c| c.name == column.name) {
+                all.push(column);
             }
         }
         all
@@ -369,15 +371,20 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn mend(&mut self, body: &Body<D>, u: FieldView<D>, heals: &Heals) -> Option<u64> {
-        let mut sum = 0;
+        let mut sum = None;
+        // springs and micromoduli beside them have no bonds that break
         for (p, bonds) in self.each_mut(body) {
-            let heals = |i: usize, j: usize, e: f64| heals(i + p.first, j + p.first, e);
-            sum += bonds.mend(&p.body, p.part(u), &heals)?;
+            if has_bonds(bonds.as_ref(), history::WHOLE) {
+                let heals = |i: usize, j: usize, e: f64| heals(i + p.first, j + p.first, e);
+                let mended = bonds.mend(&p.body, p.part(u), &heals)?;
+                sum = Some(sum.unwrap_or(0) + mended);
+            }
         }
         for interface in &mut self.interfaces {
-            sum += interface.mend(u, heals)?;
+            let mended = interface.mend(u, heals)?;
+            sum = Some(sum.unwrap_or(0) + mended);
         }
-        Some(sum)
+        sum
     }
 
     fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>) {
@@ -393,12 +400,10 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         visit: &mut dyn FnMut(usize, usize, [f64; D], f64),
     ) -> bool {
         let mut any = false;
-        for (p, own) in pieces(body).iter().zip(&mut self.own) {
-            if let Some(bonds) = &mut own.bonds {
-                any |= bonds.work_borne(&p.body, p.part(u), &mut |i, j, xi, part| {
-                    visit(i + p.first, j + p.first, xi, part);
-                });
-            }
+        for (p, bonds) in self.each_mut(body) {
+            any |= bonds.work_borne(&p.body, p.part(u), &mut |i, j, xi, part| {
+                visit(i + p.first, j + p.first, xi, part);
+            });
         }
         for interface in &mut self.interfaces {
             any |= interface.work_borne(u, visit);

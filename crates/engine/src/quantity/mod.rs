@@ -7,4 +7,4 @@ mod number;
 
 pub use dimension::Dimension;
 pub use message::{Message, Part, Warnings, place};
-pub use number::{Quantity, rounded};
+pub use number::{Quantity, power, rounded};

@@ -32,3 +32,37 @@ pub fn rounded(value: f64, digits: usize) -> String {
         format!("{rounded:e}")
     }
 }
+
+/// `xⁿ` by squaring: these products, in this order. [`f64::powi`] of two numbers that the compiler knows is folded by another function, so its last digits
+/// depend on what was inlined where.
+pub fn power(x: f64, n: i32) -> f64 {
+    let (mut square, mut left, mut out) = (x, n.unsigned_abs(), 1.0);
+    loop {
+        if left % 2 == 1 {
+            out *= square;
+        }
+        left /= 2;
+        if left == 0 {
+            break;
+        }
+        square *= square;
+    }
+    if n < 0 { 1.0 / out } else { out }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::power;
+
+    /// Products as they are written, rounded one by one.
+    #[test]
+    fn powers_are_products_in_a_known_order() {
+        let x = 1.602176634e-19f64;
+        let (two, four) = (x * x, (x * x) * (x * x));
+        let exact = [1.0, x, two, x * two, four, x * four, two * four];
+        for (n, wanted) in (0..).zip(exact) {
+            assert_eq!(power(x, n), wanted, "{n}");
+            assert_eq!(power(x, -n), 1.0 / wanted, "{n}");
+        }
+    }
+}

@@ -57,7 +57,7 @@ impl<const D: usize> System<D> {
             .mend(&self.body, view(&self.u), &|_, _, _| false)
             .is_none()
         {
-            let message = "bonds of this body break by what their points remember (plastic strain, damage of a law): what heals would break at once";
+            let message = "bonds of this body break by what their points remember (plastic strain, damage of a law), and what heals would break at once; or they are those of several potentials, or of atoms that nodes carry, whose ends have no displacements of their own";
             return Err(BuildError::unsupported("healing", message).help(
                 "bonds heal that break by their stretch, energy, work, stress, rate or cycles",
             ));

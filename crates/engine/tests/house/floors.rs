@@ -5,6 +5,7 @@ use crate::reading::{modules, own};
 
 /// Folders of the engine, from the ground up; those of one line do not know each other.
 const FLOORS: &[&[&str]] = &[
+    &["array"],
     &["quantity"],
     &["error"],
     &["execute"],

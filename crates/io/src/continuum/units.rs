@@ -2,6 +2,7 @@
 //! time), in which a mass has a factor of its own.
 
 use crate::deck::{Constants, Dim, UnitSystem};
+use peridyne::quantity::power;
 use peridyne_fields::Quantity;
 
 /// What numbers of a frame and a potential mean.
@@ -133,7 +134,7 @@ impl Units {
 
     /// Factor from computed values to the user's.
     pub fn factor(self, quantity: Quantity) -> f64 {
-        self.mass().powi(-quantity.powers().mass)
+        power(self.mass(), -quantity.powers().mass)
     }
 }
 

@@ -79,8 +79,8 @@ fn needs(spec: &Spec) -> Vec<&'static str> {
             all.push(need);
         }
     }
-    let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
-    if spec.interactions.transfers.iter().any(expands) {
+    let mut transfers = spec.interactions.transfers.iter();
+    if transfers.any(TransferSpec::expands) {
         all.push("expands");
     }
     let bond_based = |law: &LawSpec| matches!(law, LawSpec::Pmb(_));

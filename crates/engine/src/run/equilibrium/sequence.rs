@@ -218,7 +218,9 @@ impl<const D: usize> Problem<'_, D> {
         let limits = |i: usize, j: usize| -> [f64; 2] {
             if system.body.piece_of(i) == system.body.piece_of(j) {
                 // bodies whose bonds never break have no such column
-                let of = |s: usize| critical.get(s).copied().unwrap_or(history::NEVER);
+                // 0: a body beside others, without critical stretches of its own
+                let own = |s: usize| critical.get(s).copied().filter(|e| *e != 0.0);
+                let of = |s: usize| own(s).unwrap_or(history::NEVER);
                 return [of(i), of(j)];
             }
             let ends = between.iter().map(|of| [of[i], of[j]]);

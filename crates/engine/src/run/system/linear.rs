@@ -6,6 +6,7 @@
 //! by one have there what the law says at the displacements.
 
 use super::System;
+use super::stressed::Stressed;
 use crate::body::{Field, view, view_mut, zeros};
 use crate::interaction::{PointEnergies, Sweep};
 use crate::law::descriptor::Memory;
@@ -16,37 +17,6 @@ use crate::statics::{self, Support};
 
 /// Unknowns up to which the equations are factored, per dimension.
 const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
-
-/// A linear body whose bonds pull in the reference.
-pub struct Stressed<const D: usize> {
-    /// E₀: of bonds, and of repulsion inside families.
-    energy: [f64; 2],
-    /// `[N]` f₀ (force density).
-    pub forces: Vec<[f64; D]>,
-    pub tangent: LinearBody<D>,
-}
-
-impl<const D: usize> Stressed<D> {
-    /// `[N]` `f₀ − K u` (force density).
-    fn forces_at(&self, u: &[[f64; D]]) -> Vec<[f64; D]> {
-        let at = |i: usize| {
-            let pulled = self.tangent.force(u, i);
-            std::array::from_fn(|a| self.forces[i][a] + pulled[a])
-        };
-        (0..u.len()).map(at).collect()
-    }
-
-    fn energy_at(&self, u: &[[f64; D]]) -> [f64; 2] {
-        let forces = self.forces_at(u);
-        // the mean of the forces here and there does the work of the way
-        let work = |i: usize| {
-            let each = (0..D).map(|a| 0.5 * (self.forces[i][a] + forces[i][a]) * u[i][a]);
-            self.tangent.volume[i] * each.sum::<f64>()
-        };
-        let [bonds, repulsion] = self.energy;
-        [bonds - (0..u.len()).map(work).sum::<f64>(), repulsion]
-    }
-}
 
 impl<const D: usize> System<D> {
     /// Does the state stand for the linear body about a reference without forces, point by point?

@@ -4,12 +4,13 @@ mod archive;
 mod forces;
 mod linear;
 mod regime;
+mod stressed;
 mod watch;
 
 pub(super) use regime::Regime;
 pub(super) use watch::Watch;
 
-use self::linear::Stressed;
+use self::stressed::Stressed;
 use super::Info;
 use super::accounts::state::Accounts;
 use super::clock::Clock;

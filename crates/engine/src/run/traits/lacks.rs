@@ -241,8 +241,8 @@ fn of_transfers(spec: &Spec) -> Vec<Lack> {
             all.push(lack.at(name));
         }
     }
-    let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
-    if spec.interactions.transfers.iter().any(expands) {
+    let mut transfers = spec.interactions.transfers.iter();
+    if transfers.any(TransferSpec::expands) {
         let says = "a body that expands has left its reference";
         let instead = "leave expansion and swelling out";
         all.push(Lack::new(Property::Memoryless, says, instead));

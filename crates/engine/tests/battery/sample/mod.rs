@@ -189,9 +189,11 @@ impl Case {
 /// Materials that break easily, with memory.
 pub fn breaking(spec: &mut Spec, s00: f64) {
     for m in &mut spec.materials {
+        // bonds that softened to nothing bear nothing beyond
+        let softens = matches!(&m.law, LawSpec::Named(law) if law.name == "softening");
         m.fracture = Some(FractureSpec {
             criterion: Criterion::Stretch(s00),
-            alpha: 0.25,
+            alpha: if softens { 0.0 } else { 0.25 },
             rate: None,
             fatigue: None,
         });

@@ -9,6 +9,7 @@ use crate::deck::document::{Body, Document, LatticeName, SurfaceName};
 use crate::deck::units::{Dim, UnitSystem};
 use crate::deck::value::{At, Or};
 use crate::read::{AtomsFile, Cells};
+use peridyne::quantity;
 use peridyne::run::Shelf;
 use peridyne::space::lattice::{Ends, Lattice, LatticeKind};
 use peridyne::space::region::Region;
@@ -177,9 +178,15 @@ fn scale(
     let ends = context.ends.iter_mut().flatten().flatten();
     ends.for_each(|c| *c *= unit);
     cells.scale(unit);
-    cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
+    cloud
+        .volume
+        .iter_mut()
+        .for_each(|v| *v *= quantity::power(unit, power));
     for (_, areas) in &mut cloud.faces {
-        *areas = areas.iter().map(|a| a * unit.powi(power - 1)).collect();
+        *areas = areas
+            .iter()
+            .map(|a| a * quantity::power(unit, power - 1))
+            .collect();
     }
     if let Some(atoms) = &mut context.atoms {
         atoms.corner = atoms.corner.map(|c| c * unit);

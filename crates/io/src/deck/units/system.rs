@@ -1,6 +1,7 @@
 //! Units of a deck, and what they are made of.
 
 use peridyne::columns::Dimension as Dim;
+use peridyne::quantity::power;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -85,7 +86,7 @@ impl UnitSystem {
             // powers of one number each, so that an energy is one eV to the last digit
             UnitSystem::Metal(_) => {
                 let [length, mass, time, _] = dim.0.map(i32::from);
-                EV.powi(mass) * 1e-10f64.powi(length - 2 * mass) * 1e-12f64.powi(time + 2 * mass)
+                power(EV, mass) * power(1e-10, length - 2 * mass) * power(1e-12, time + 2 * mass)
             }
             UnitSystem::Si | UnitSystem::Lj | UnitSystem::None => 1.0,
         }

@@ -3,6 +3,7 @@
 use super::system::AVOGADRO;
 
 use super::Dim;
+use peridyne::quantity;
 
 /// A unit: `scale · 10^ten` in SI. Powers of ten are kept apart so that "0.5 mm" is the number 0.0005 and not its
 /// neighbour.
@@ -32,7 +33,7 @@ impl Unit {
     pub(super) fn power(self, power: i8) -> Option<Unit> {
         let dim = Dim::NUMBER.times(self.dim, power)?;
         Some(Unit {
-            scale: self.scale.powi(i32::from(power)),
+            scale: quantity::power(self.scale, i32::from(power)),
             ten: self.ten * i32::from(power),
             dim,
         })
