@@ -85,7 +85,7 @@ impl Simd {
             };
             if let Some(path) = path {
                 // SAFETY: what the processor has was just asked
-                return from_a_line(&|| unsafe { path(kernel, b) });
+                return unsafe { from_a_line(path, kernel, b) };
             }
         }
         match PORTABLE {
@@ -116,9 +116,12 @@ impl Simd {
 /// Calls where the stack is at the begin of a cache line. What a loop has no registers for lies in its frame, which the compiler lays out as
 /// if it began there but does not align: begun 16 bytes beside, half of those numbers cross a line, and laws of tensors took 1.08 of the
 /// time. Where it began was the luck of who had called whom.
+///
+/// # Safety
+/// Those of the path.
 #[cfg(target_arch = "x86_64")]
 #[inline(never)]
-fn from_a_line<T>(call: &dyn Fn() -> T) -> T {
+unsafe fn from_a_line<K, T>(path: unsafe fn(&K, usize) -> T, kernel: &K, b: usize) -> T {
     #[repr(align(64))]
     struct Line {
         _bytes: MaybeUninit<[u8; 64]>,
@@ -127,7 +130,8 @@ fn from_a_line<T>(call: &dyn Fn() -> T) -> T {
         _bytes: MaybeUninit::uninit(),
     };
     black_box(&line);
-    let out = call();
+    // SAFETY: the caller's promise; nothing lies between this frame and that of the loop
+    let out = unsafe { path(kernel, b) };
     // the frame lasts as long as the call
     black_box(&line);
     out
