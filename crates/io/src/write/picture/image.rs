@@ -79,6 +79,10 @@ impl Image {
             return;
         }
         let pixel = &mut self.pixels[y as usize * self.width + x as usize];
+        if opacity == 1.0 {
+            *pixel = color;
+            return;
+        }
         for (p, c) in pixel.iter_mut().zip(color) {
             *p = (f64::from(*p) + (f64::from(c) - f64::from(*p)) * opacity).round() as u8;
         }

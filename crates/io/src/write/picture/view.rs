@@ -14,8 +14,8 @@ use super::solid::{Layer, Measure, Part, STEEL, Solids};
 
 /// Pixels drawn per final pixel and axis.
 const FINE: usize = 2;
-/// Final rows that are drawn at a time, so that a picture takes little memory.
-const BAND: usize = 64;
+/// Fine rows and columns that are drawn at a time, so that a picture takes little memory.
+const PART: usize = 384;
 /// Cubes are a little larger than the spacing, so that a stretched but unbroken body shows no gaps.
 const OVERLAP: f64 = 1.08;
 /// Light on the faces of a body seen obliquely: below 1 darkens towards black, above 1 lightens towards white.
@@ -46,6 +46,15 @@ fn lit(channel: f32, light: f32) -> f32 {
     }
 }
 
+/// A colour in a light.
+fn in_light([r, g, b]: Color, light: f32) -> [f32; 3] {
+    [
+        lit(f32::from(r), light),
+        lit(f32::from(g), light),
+        lit(f32::from(b), light),
+    ]
+}
+
 /// Depth, place among the colours and face per fine pixel of a part of a view, a byte or four each: parts reach far around where cubes
 /// are large.
 struct Buffer {
@@ -74,12 +83,14 @@ struct Core {
 }
 
 impl Core {
-    /// Places in a buffer and in the light.
-    fn places(&self, width: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let columns = self.columns.clone();
-        let rows = self.rows.clone();
-        let each = rows.flat_map(move |row| columns.clone().map(move |c| row * width + c));
-        each.enumerate().map(|(n, at)| (at, n))
+    /// The light of each pixel, with its place in a buffer of this width.
+    fn each(&mut self, width: usize, mut of: impl FnMut(usize, &mut f32)) {
+        let lights = self.light.chunks_exact_mut(self.columns.len());
+        for (row, lights) in self.rows.clone().zip(lights) {
+            for (column, light) in self.columns.clone().zip(lights) {
+                of(row * width + column, light);
+            }
+        }
     }
 }
 
@@ -117,12 +128,8 @@ pub fn draw(
         .max(if solids.is_empty() { 0 } else { Solids::MARGIN })
         .div_ceil(FINE)
         * FINE;
-    // parts are as narrow as what they need around them is wide
-    let across = match margin {
-        m if m < BAND * FINE => w,
-        m => (2 * m).next_multiple_of(FINE),
-    };
-    let down = margin.max(BAND * FINE).next_multiple_of(FINE);
+    // parts are as large as what they need around them is wide
+    let side = PART.max(margin).next_multiple_of(FINE);
     let around = |from: usize, size: usize, end: usize| {
         let core = from..(from + size).min(end);
         let first = from.saturating_sub(margin);
@@ -130,10 +137,10 @@ pub fn draw(
         (core.start - first..core.end - first, first, length)
     };
     let table: Vec<Color> = (0..=255).map(|i| map.color(f64::from(i) / 255.0)).collect();
-    for top in (0..h).step_by(down) {
-        for left in (0..w).step_by(across) {
-            let (rows, row, height) = around(top, down, h);
-            let (columns, column, width) = around(left, across, w);
+    for top in (0..h).step_by(side) {
+        for left in (0..w).step_by(side) {
+            let (rows, row, height) = around(top, side, h);
+            let (columns, column, width) = around(left, side, w);
             let mut buffer = Buffer {
                 width,
                 height,
@@ -173,12 +180,13 @@ pub fn draw(
             });
             buffer.raise(camera);
             let mut core = Core {
-                light: vec![],
+                light: vec![1.0; rows.len() * columns.len()],
                 rows,
                 columns,
             };
-            let faces = core.places(width).map(|(at, _)| buffer.face[at]);
-            core.light = faces.map(|face| FACES[usize::from(face)]).collect();
+            core.each(width, |at, light| {
+                *light = FACES[usize::from(buffer.face[at])]
+            });
             if camera.cosine == 0.0 {
                 buffer.light_slopes(&mut core);
             }
@@ -277,32 +285,53 @@ impl Buffer {
     /// Mean of the heights within ±`radius` pixels along both axes; 0 where there is nothing.
     fn blurred(&self, radius: usize) -> impl Fn(usize) -> f32 + use<> {
         let (w, h) = (self.width, self.height);
-        let mut sum: Vec<[f32; 2]> = { self.depth.iter() }
-            .map(|d| if d.is_finite() { [*d, 1.0] } else { [0.0; 2] })
-            .collect();
-        let mut line = Vec::new();
-        let mut pass = |start: usize, stride: usize, length: usize| {
-            line.clear();
-            line.extend((0..length).map(|i| sum[start + i * stride]));
+        // sums of heights and of how many there are, along the rows
+        let mut along = vec![[0f32; 2]; w * h];
+        for (row, sums) in along.chunks_exact_mut(w).enumerate() {
+            let depth = &self.depth[row * w..][..w];
             let mut running = [0f64; 2];
-            for i in 0..length + radius {
-                if i < length {
-                    running[0] += f64::from(line[i][0]);
-                    running[1] += f64::from(line[i][1]);
+            for i in 0..w + radius {
+                if i < w && depth[i].is_finite() {
+                    running[0] += f64::from(depth[i]);
+                    running[1] += 1.0;
                 }
-                if i > 2 * radius {
-                    running[0] -= f64::from(line[i - 2 * radius - 1][0]);
-                    running[1] -= f64::from(line[i - 2 * radius - 1][1]);
+                if i > 2 * radius && depth[i - 2 * radius - 1].is_finite() {
+                    running[0] -= f64::from(depth[i - 2 * radius - 1]);
+                    running[1] -= 1.0;
                 }
                 if i >= radius {
-                    sum[start + (i - radius) * stride] = running.map(|r| r as f32);
+                    sums[i - radius] = [running[0] as f32, running[1] as f32];
                 }
             }
-        };
-        (0..h).for_each(|row| pass(row * w, 1, w));
-        (0..w).for_each(|column| pass(column, w, h));
+        }
+        // and of these down the columns, all of them row by row: neighbours in memory. A row of sums waits until nobody asks for what it replaces
+        let mut sums = along;
+        let mut running = vec![[0f64; 2]; w];
+        let mut waiting = vec![[0f32; 2]; w * (radius + 1)];
+        for i in 0..h + 2 * radius + 1 {
+            if i < h {
+                for (r, new) in running.iter_mut().zip(&sums[i * w..][..w]) {
+                    r[0] += f64::from(new[0]);
+                    r[1] += f64::from(new[1]);
+                }
+            }
+            let slot = (i + 1) % (radius + 1) * w;
+            if i > 2 * radius {
+                let old = &mut sums[(i - 2 * radius - 1) * w..][..w];
+                for (r, old) in running.iter_mut().zip(old.iter()) {
+                    r[0] -= f64::from(old[0]);
+                    r[1] -= f64::from(old[1]);
+                }
+                old.copy_from_slice(&waiting[slot..][..w]);
+            }
+            if (radius..h + radius).contains(&i) {
+                for (r, sum) in running.iter().zip(&mut waiting[slot..][..w]) {
+                    *sum = [r[0] as f32, r[1] as f32];
+                }
+            }
+        }
         move |at| {
-            let [s, n] = sum[at];
+            let [s, n] = sums[at];
             if n > 0.5 { s / n } else { 0.0 }
         }
     }
@@ -311,36 +340,35 @@ impl Buffer {
     fn light_slopes(&self, core: &mut Core) {
         let smooth = self.blurred(slope_radius(self.edge));
         let solid = |at: usize| self.depth[at].is_finite();
-        for (at, n) in core.places(self.width) {
+        core.each(self.width, |at, light| {
             let (row, column) = (at / self.width, at % self.width);
             let inside = (1..self.height.saturating_sub(1)).contains(&row)
                 && (1..self.width.saturating_sub(1)).contains(&column);
             if !inside || !solid(at) {
-                continue;
+                return;
             }
-            if ![at - 1, at + 1, at - self.width, at + self.width]
-                .into_iter()
-                .all(solid)
-            {
-                continue;
+            let [left, right] = [at - 1, at + 1];
+            let [above, below] = [at - self.width, at + self.width];
+            if !(solid(left) && solid(right) && solid(above) && solid(below)) {
+                return;
             }
             // heights are in edges, so slopes are rise over run
             let run = 2.0 / self.edge as f32;
-            let right = (smooth(at + 1) - smooth(at - 1)) / run;
-            let down = (smooth(at + self.width) - smooth(at - self.width)) / run;
-            core.light[n] *= 1.0 + (SLOPE_LIGHT * (right + down)).clamp(-0.35, 0.25);
-        }
+            let to_the_right = (smooth(right) - smooth(left)) / run;
+            let down = (smooth(below) - smooth(above)) / run;
+            *light *= 1.0 + (SLOPE_LIGHT * (to_the_right + down)).clamp(-0.35, 0.25);
+        });
     }
 
     /// Darkens what lies deeper than its surroundings: cracks, and debris behind.
     fn darken_hollows(&self, core: &mut Core) {
         let smooth = self.blurred(hollow_radius(self.edge));
-        for (at, n) in core.places(self.width) {
+        core.each(self.width, |at, light| {
             let height = self.depth[at];
             if height.is_finite() {
-                core.light[n] *= 1.0 - HOLLOW_SHADE * ((smooth(at) - height) / 4.0).clamp(0.0, 1.0);
+                *light *= 1.0 - HOLLOW_SHADE * ((smooth(at) - height) / 4.0).clamp(0.0, 1.0);
             }
-        }
+        });
     }
 
     /// Averages fine pixels down to the image.
@@ -357,32 +385,38 @@ impl Buffer {
             for column in 0..across.div_ceil(FINE) {
                 let mut sum = [0f32; 3];
                 let mut covered = 0.0;
-                for (x, y) in (0..FINE * FINE)
-                    .map(|k| (column * FINE + k % FINE, row * FINE + k / FINE))
-                    .filter(|(x, y)| *x < across && *y < down)
-                {
-                    let at = (core.rows.start + y) * self.width + core.columns.start + x;
-                    let body = self.depth[at].is_finite().then(|| {
-                        let light = core.light[y * across + x];
-                        table[usize::from(self.part[at])].map(|c| lit(f32::from(c), light))
-                    });
-                    let front = steel.and_then(|(layer, opacity)| {
-                        let light = layer.light(at)?;
-                        Some((STEEL.map(|c| lit(f32::from(c), light)), opacity))
-                    });
-                    let seen = match (body, front) {
-                        (None, None) => continue,
-                        (Some(body), None) => body,
-                        (body, Some((front, opacity))) => {
-                            let behind = body.unwrap_or([255.0; 3]);
-                            std::array::from_fn(|c| behind[c] + (front[c] - behind[c]) * opacity)
+                for y in row * FINE..(row * FINE + FINE).min(down) {
+                    for x in column * FINE..(column * FINE + FINE).min(across) {
+                        let at = (core.rows.start + y) * self.width + core.columns.start + x;
+                        let body = self.depth[at].is_finite().then(|| {
+                            let light = core.light[y * across + x];
+                            in_light(table[usize::from(self.part[at])], light)
+                        });
+                        let front = steel.and_then(|(layer, opacity)| {
+                            let light = layer.light(at)?;
+                            Some((in_light(STEEL, light), opacity))
+                        });
+                        let seen = match (body, front) {
+                            (None, None) => continue,
+                            (Some(body), None) => body,
+                            (body, Some((front, opacity))) => {
+                                let mut seen = body.unwrap_or([255.0; 3]);
+                                for c in 0..3 {
+                                    seen[c] += (front[c] - seen[c]) * opacity;
+                                }
+                                seen
+                            }
+                        };
+                        for c in 0..3 {
+                            sum[c] += seen[c];
                         }
-                    };
-                    sum.iter_mut().zip(seen).for_each(|(s, c)| *s += c);
-                    covered += 1.0;
+                        covered += 1.0;
+                    }
                 }
                 if covered > 0.0 {
-                    let mean = sum.map(|s| (s / covered).round() as u8);
+                    let [r, g, b] = sum;
+                    let mean = |s: f32| (s / covered).round() as u8;
+                    let mean = [mean(r), mean(g), mean(b)];
                     let opacity = f64::from(covered) / (FINE * FINE) as f64;
                     let first = [core.columns.start, core.rows.start];
                     let x = (self.first[1] + first[0]) / FINE + column;
