@@ -17,6 +17,7 @@ mod laws;
 mod new;
 mod numbers;
 mod progress;
+mod ranks;
 mod report;
 mod reproduce;
 mod resume;
@@ -71,6 +72,8 @@ enum Verb {
     Report(report::ReportArguments),
     /// Run the experiments of the papers and compare with what was published.
     Reproduce(reproduce::ReproduceArguments),
+    /// Which MPI is found under a launcher, whether messages between all ranks come as they were sent, and how fast.
+    Ranks(ranks::RanksArguments),
     /// List the laws, lattices and influence functions with their parameters.
     Laws,
     /// Explain a key, a table, a law or a field of decks.
@@ -146,6 +149,7 @@ fn main() -> ExitCode {
         Verb::Bar(arguments) => bar::bar(&arguments),
         Verb::Report(arguments) => report::report(&arguments),
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
+        Verb::Ranks(arguments) => ranks::ranks(&arguments),
         Verb::Laws => laws::print(),
         Verb::Doc(arguments) => doc::doc(&arguments),
         Verb::Schema(arguments) => print_schema(arguments.kind),

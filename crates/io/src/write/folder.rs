@@ -1,6 +1,7 @@
 //! The folder of a run's results: held by one run at a time, swept of what a killed one left, and the only place
 //! that a deck writes to.
 
+use peridyne_comm::launcher::launched;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -24,7 +25,13 @@ impl Folder {
         match lock.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                let busy = io::Error::new(io::ErrorKind::ResourceBusy, "another run writes there");
+                let mut why = "another run writes there".to_string();
+                if let Some(launched) = launched().filter(|launched| launched.ranks > 1) {
+                    why += &format!(
+                        ": {launched}, and runs are not shared among ranks yet; start it without the launcher"
+                    );
+                }
+                let busy = io::Error::new(io::ErrorKind::ResourceBusy, why);
                 return Err(WriteError::at("write into", dir)(busy));
             }
             // file systems without locks: as safe as before there were any

@@ -1,0 +1,149 @@
+//! This rank among the others, whatever carries the messages.
+
+use crate::failure::Failure;
+use crate::launcher;
+#[cfg(unix)]
+use crate::mpi;
+use crate::threads;
+
+/// This rank among the others.
+#[derive(Debug)]
+pub struct Comm {
+    pub(crate) kind: Kind,
+}
+
+#[derive(Debug)]
+pub(crate) enum Kind {
+    Alone,
+    Thread(threads::Thread),
+    #[cfg(unix)]
+    Mpi(mpi::Mpi),
+}
+
+impl Comm {
+    /// A process of its own.
+    pub fn alone() -> Comm {
+        Comm { kind: Kind::Alone }
+    }
+
+    /// One of the processes that a launcher (`mpiexec`, `srun`) started; alone where there is none, or one process.
+    ///
+    /// # Errors
+    /// There is no MPI that can be used, or it knows nothing of the other processes: each would do the whole work, and none would know.
+    pub fn of_launcher() -> Result<Comm, Failure> {
+        match launcher::launched() {
+            None => Ok(Comm::alone()),
+            Some(launched) if launched.ranks == 1 => Ok(Comm::alone()),
+            #[cfg(unix)]
+            Some(launched) => {
+                let kind = Kind::Mpi(mpi::Mpi::start(&launched)?);
+                Ok(Comm { kind })
+            }
+            #[cfg(not(unix))]
+            Some(launched) => Err(Failure::NoMpi {
+                launched,
+                tried: vec!["MPI is looked for on Unix alone".into()],
+            }),
+        }
+    }
+
+    /// This one's number, from 0.
+    pub fn rank(&self) -> usize {
+        match &self.kind {
+            Kind::Alone => 0,
+            Kind::Thread(thread) => thread.rank(),
+            #[cfg(unix)]
+            Kind::Mpi(mpi) => mpi.rank(),
+        }
+    }
+
+    /// How many there are.
+    pub fn ranks(&self) -> usize {
+        match &self.kind {
+            Kind::Alone => 1,
+            Kind::Thread(thread) => thread.ranks(),
+            #[cfg(unix)]
+            Kind::Mpi(mpi) => mpi.ranks(),
+        }
+    }
+
+    /// What carries the messages, in words.
+    pub fn carrier(&self) -> String {
+        match &self.kind {
+            Kind::Alone => "one process".into(),
+            Kind::Thread(_) => "threads of one process".into(),
+            #[cfg(unix)]
+            Kind::Mpi(mpi) => mpi.library().into(),
+        }
+    }
+
+    /// Sends the bytes of `send` to their ranks, does `work`, and returns when all of `receive` is there and `send` may be changed.
+    ///
+    /// Messages between two ranks arrive in the order of the lists of both, and to oneself, too; a receive has the length of what was sent. All ranks
+    /// that are named by one another take part; others need not.
+    ///
+    /// # Errors
+    /// Another rank has ended, a message has another length, a rank does not exist, or what MPI said. What was received then means nothing.
+    pub fn exchange<R>(
+        &self,
+        send: &[(usize, &[u8])],
+        receive: &mut [(usize, &mut [u8])],
+        work: impl FnOnce() -> R,
+    ) -> Result<R, Failure> {
+        let ranks = self.ranks();
+        let partners =
+            { send.iter().map(|(to, _)| *to) }.chain(receive.iter().map(|(from, _)| *from));
+        if let Some(rank) = partners.into_iter().find(|rank| *rank >= ranks) {
+            return Err(Failure::NoRank { rank, ranks });
+        }
+        let own = self.rank();
+        self.to_oneself(send, receive)?;
+        match &self.kind {
+            Kind::Alone => Ok(work()),
+            Kind::Thread(thread) => {
+                thread.send(send.iter().filter(|(to, _)| *to != own));
+                let answer = work();
+                thread.receive(receive.iter_mut().filter(|(from, _)| *from != own))?;
+                Ok(answer)
+            }
+            #[cfg(unix)]
+            Kind::Mpi(mpi) => mpi.exchange(send, receive, work),
+        }
+    }
+
+    /// What a rank sends to itself is copied.
+    fn to_oneself(
+        &self,
+        send: &[(usize, &[u8])],
+        receive: &mut [(usize, &mut [u8])],
+    ) -> Result<(), Failure> {
+        let own = self.rank();
+        let mut sent = send.iter().filter(|(to, _)| *to == own);
+        let mut received = receive.iter_mut().filter(|(from, _)| *from == own);
+        loop {
+            match (sent.next(), received.next()) {
+                (None, None) => return Ok(()),
+                (Some((_, bytes)), Some((_, into))) if bytes.len() == into.len() => {
+                    into.copy_from_slice(bytes)
+                }
+                (sent, received) => {
+                    return Err(Failure::Length {
+                        from: own,
+                        sent: sent.map_or(0, |(_, bytes)| bytes.len()),
+                        expected: received.map_or(0, |(_, into)| into.len()),
+                    });
+                }
+            }
+        }
+    }
+
+    /// Ends all ranks at once with this exit code, as where one cannot go on and the others wait for it. Threads end by their own errors
+    /// ([`Failure::Ended`]); a process alone just ends.
+    pub fn abort(&self, code: i32) -> ! {
+        #[cfg(unix)]
+        if let Kind::Mpi(mpi) = &self.kind {
+            mpi.abort(code);
+        }
+        std::process::exit(code)
+    }
+}
