@@ -5,7 +5,7 @@ A closure or a generic function that the compiler does not inline into a loop is
 every one of its operations: same numbers, several times slower. This looks for such calls in the library of a release build
 (x86-64; needs objdump):
 
-    cargo build --release -p peridyne && verify/inlined.py target/release/libperidyne.rlib
+    cargo build --release -p peridyne-mechanics && verify/inlined.py target/release/libperidyne_mechanics.rlib
 """
 import re
 import subprocess

@@ -2,27 +2,16 @@
 //!
 //! A [`spec::Spec`] says what to run; `run::build` turns it into a simulation; a simulation steps and
 //! answers with [`observe::Snapshot`]s. Lengths, masses and times are in whatever consistent unit system the
-//! spec uses; the engine itself is free of units.
+//! spec uses; the engine itself is free of units. What models are made of is a crate of its own, `peridyne-mechanics`, whose modules are these.
 
-mod array;
-pub mod body;
-pub mod columns;
-pub mod condition;
+pub use peridyne_mechanics::{
+    array, body, columns, condition, error, execute, expression, family, fracture, interaction,
+    law, message, observe, quantity, space, spec, state,
+};
+
+pub(crate) use peridyne_mechanics::constitutive;
+
 pub(crate) mod dynamics;
-pub mod error;
-pub mod execute;
-pub mod expression;
-pub mod family;
-pub(crate) mod fracture;
-pub mod interaction;
-pub mod law;
-pub mod observe;
-pub mod quantity;
 pub mod run;
-#[cfg(test)]
-mod samples;
-pub mod space;
-pub mod spec;
-pub mod state;
 pub mod statics;
 pub mod transfer;

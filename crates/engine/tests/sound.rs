@@ -10,7 +10,9 @@ use peridyne::family::stencil::Stencil;
 use peridyne::interaction::list::{ListInteraction, ListParts};
 use peridyne::interaction::stencil::{StencilInteraction, StencilParts};
 use peridyne::interaction::weight::BondWeight;
-use peridyne::interaction::{Interaction, PointConstants, PointEnergies, Sweep, Toughness};
+use peridyne::interaction::{
+    Interaction, PointConstants, PointEnergies, SeveralInteraction, Sweep, Toughness,
+};
 use peridyne::law::Law;
 use peridyne::law::solid::bond_based::BondBased;
 use peridyne::law::solid::eam_like::{EamLike, Solid};
@@ -334,6 +336,56 @@ fn a_law_has_room_for_what_it_shares() {
     let list = HorizonList::new(&cloud, 2.1).unwrap();
     let said = refused(|| list_of(&cloud, list, Roomless, PointConstants::None));
     assert!(said.contains("two point fields"), "{said}");
+}
+
+/// What a body is given has its length, and what it was given after its interactions were made stays in it.
+#[test]
+fn a_body_is_changed_within_its_slots() {
+    let mut body = lattice(9, 2);
+    type Change = fn(&mut Body<2>);
+    for (change, said) in [
+        (
+            (|b| b.set_densities(&[1.0])) as Change,
+            "a density for each point",
+        ),
+        (|b| b.set_volumes(vec![1.0]), "a volume for each slot"),
+        (|b| b.set_horizons(vec![2.0]), "a horizon for each slot"),
+        (|b| b.set_marks(vec![3]), "a mark for each point"),
+    ] {
+        let message = refused(|| change(&mut body));
+        assert!(message.contains(said), "{message}");
+    }
+    let (law, constants) = lps();
+    let mut it = stencil_of(&body, 2, law, constants);
+    body.retain(|s| s % 2 == 0);
+    body.set_volumes(vec![0.5; body.len()]);
+    body.set_horizons(vec![1.0; body.len()]);
+    it.energy(&body, view(&body.at_rest()));
+    let mut f = zeros(body.len());
+    it.forces(
+        &body,
+        view(&body.at_rest()),
+        view_mut(&mut f),
+        Sweep::Hold,
+        None,
+    );
+    assert!(f.iter().flat_map(|c| c.iter()).all(|f| f.is_finite()));
+}
+
+/// A body among several is the one that its bonds were made for.
+#[test]
+fn a_body_among_several_keeps_its_slots() {
+    let mut both = Body::several(vec![lattice(9, 2), lattice(9, 2)]);
+    let said = refused(|| both.clone().change_piece(0, |b| *b = lattice(8, 2)));
+    assert!(said.contains("keeps its slots"), "{said}");
+    assert_eq!(both.change_piece(2, |_| ()), None);
+    let (law, constants) = lps();
+    let bonds = stencil_of(&both.pieces()[0].body, 2, law, constants);
+    let mut it = SeveralInteraction::new(&both, vec![Some(Box::new(bonds)), None], vec![]);
+    it.energy(&both, view(&both.at_rest()));
+    both.change_piece(0, |b| *b = lattice(9, 2));
+    let said = refused(|| it.energy(&both, view(&both.at_rest())));
+    assert!(said.contains("another body"), "{said}");
 }
 
 /// Sweeps before anything was prepared find zeros.

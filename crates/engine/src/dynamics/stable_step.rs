@@ -15,9 +15,9 @@ pub fn largest_eigenvalue<const D: usize>(
     interaction: &mut dyn Interaction<D>,
 ) -> f64 {
     let mass: Vec<f64> = body
-        .slots
+        .slots()
         .iter()
-        .map(|&s| body.volume.at(s as usize) * body.density.at(s as usize))
+        .map(|&s| body.volume().at(s as usize) * body.density().at(s as usize))
         .collect();
     largest_ratio(body, interaction, &mass)
 }
@@ -62,21 +62,21 @@ impl<const D: usize> Coupled<'_, D> {
     /// A bound on every eigenvalue of `M⁻¹K` (1 / time²) of bonds that act directly, symmetric or not: with L the masses lumped,
     /// `|L^-½ K L^-½| ≤ √(|L⁻¹K|_∞ |L⁻¹Kᵀ|_∞)` times the largest eigenvalue of `M⁻¹L`.
     pub fn bound(&self, body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
-        let mut own = vec![[[0.0; D]; D]; body.len];
-        let (mut across, mut down) = (vec![[0.0f64; D]; body.len], vec![[0.0f64; D]; body.len]);
+        let mut own = vec![[[0.0; D]; D]; body.len()];
+        let (mut across, mut down) = (vec![[0.0f64; D]; body.len()], vec![[0.0f64; D]; body.len()]);
         interaction.tangents(body, view(&body.at_rest()), &mut |bond| {
             for a in 0..D {
                 for b in 0..D {
-                    let c = body.volume.at(bond.i) * bond.stiffness[a][b];
+                    let c = body.volume().at(bond.i) * bond.stiffness[a][b];
                     own[bond.i][a][b] += c;
                     across[bond.i][a] += c.abs();
                     down[bond.j][b] += c.abs();
                 }
             }
         });
-        let mass = |i: usize| body.volume.at(i) * body.density.at(i);
+        let mass = |i: usize| body.volume().at(i) * body.density().at(i);
         let (mut rows, mut columns) = (0.0f64, 0.0f64);
-        for &s in &body.slots {
+        for &s in body.slots() {
             let i = s as usize;
             for a in 0..D {
                 let row: f64 = (0..D).map(|b| own[i][a][b].abs()).sum();
@@ -85,7 +85,7 @@ impl<const D: usize> Coupled<'_, D> {
                 columns = columns.max((column + down[i][a]) / mass(i));
             }
         }
-        let lumped: Vec<f64> = body.slots.iter().map(|s| mass(*s as usize)).collect();
+        let lumped: Vec<f64> = body.slots().iter().map(|s| mass(*s as usize)).collect();
         let inner = |x: &[[f64; D]], y: &[[f64; D]]| self.inner(x, y);
         let lighter = lanczos(body, &inner, &mut |w| {
             let weighed = w.iter().zip(&lumped);
@@ -139,11 +139,11 @@ fn lanczos<const D: usize>(
 /// Ids in an order that is the body's own: a cloud whose lines come in another order has the same step.
 fn by_place<const D: usize>(body: &Body<D>) -> Vec<usize> {
     let mut ids: Vec<usize> = (0..body.points()).collect();
-    if matches!(body.layout, Layout::Grid(_)) {
+    if matches!(body.layout(), Layout::Grid(_)) {
         return ids;
     }
     let place: Vec<_> = body
-        .slots
+        .slots()
         .iter()
         .map(|&s| body.position(s as usize))
         .collect();
@@ -160,8 +160,8 @@ fn by_place<const D: usize>(body: &Body<D>) -> Vec<usize> {
 /// A bound on every eigenvalue of `M⁻¹K` (1 / time²) of bonds that act directly: the largest sum of magnitudes of a row
 /// (Gershgorin). Lanczos finds the eigenvalues of symmetric operators only.
 pub fn row_bound<const D: usize>(body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
-    let mut own = vec![[[0.0; D]; D]; body.len];
-    let mut sum = vec![[0.0f64; D]; body.len];
+    let mut own = vec![[[0.0; D]; D]; body.len()];
+    let mut sum = vec![[0.0f64; D]; body.len()];
     interaction.tangents(body, view(&body.at_rest()), &mut |bond| {
         for a in 0..D {
             for b in 0..D {
@@ -171,11 +171,11 @@ pub fn row_bound<const D: usize>(body: &Body<D>, interaction: &mut dyn Interacti
         }
     });
     let mut bound = 0.0f64;
-    for &s in &body.slots {
+    for &s in body.slots() {
         let i = s as usize;
         for a in 0..D {
             let row = sum[i][a] + (0..D).map(|b| own[i][a][b].abs()).sum::<f64>();
-            bound = bound.max(row / body.density.at(i));
+            bound = bound.max(row / body.density().at(i));
         }
     }
     bound
@@ -194,10 +194,10 @@ struct Tiny<'a, const D: usize> {
 impl<'a, const D: usize> Tiny<'a, D> {
     fn new(body: &'a Body<D>, interaction: &'a mut dyn Interaction<D>) -> Self {
         let u = body.at_rest();
-        let mut rest = zeros::<D>(body.len);
+        let mut rest = zeros::<D>(body.len());
         interaction.forces(body, view(&u), view_mut(&mut rest), Sweep::Hold, None);
         Tiny {
-            f: zeros(body.len),
+            f: zeros(body.len()),
             body,
             interaction,
             u,
@@ -209,14 +209,14 @@ impl<'a, const D: usize> Tiny<'a, D> {
     fn pull(&mut self, w: &[[f64; D]], mass: impl Fn(usize) -> f64) -> Vec<[f64; D]> {
         let (body, u) = (self.body, &mut self.u);
         let peak = w.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
-        let small = 1e-7 * body.spacing / peak.max(f64::MIN_POSITIVE);
+        let small = 1e-7 * body.spacing() / peak.max(f64::MIN_POSITIVE);
         body.set_vectors(u, |id, _| w[id].map(|c| small * c));
         self.interaction
             .forces(body, view(u), view_mut(&mut self.f), Sweep::Hold, None);
         let (f, rest) = (&self.f, &self.rest);
-        let each = body.slots.iter().enumerate().map(|(i, &s)| {
+        let each = body.slots().iter().enumerate().map(|(i, &s)| {
             let s = s as usize;
-            let scale = body.volume.at(s) / (small * mass(i));
+            let scale = body.volume().at(s) / (small * mass(i));
             crate::array::from_fn(|a| (rest[a][s] - f[a][s]) * scale)
         });
         each.collect()

@@ -4,9 +4,9 @@
 //! other, so that asking for velocities in between changes no bit.
 
 use crate::body::{Body, Field, Values};
-use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
+use crate::execute::{Shared, for_each_block};
 
 /// Slots per block of work.
 const BLOCK: usize = 1024;
@@ -23,7 +23,7 @@ impl Verlet {
     pub fn new<const D: usize>(simd: Simd, body: &Body<D>) -> Self {
         Verlet {
             simd,
-            fastest: vec![0.0; body.len.div_ceil(BLOCK)],
+            fastest: vec![0.0; body.len().div_ceil(BLOCK)],
         }
     }
 
@@ -44,8 +44,8 @@ impl Verlet {
             u: crate::array::from_fn(|a| Shared(u[a].as_mut_ptr())),
             v: crate::array::from_fn(|a| Shared(v[a].as_mut_ptr())),
             f,
-            density: &body.density,
-            len: body.len,
+            density: body.density(),
+            len: body.len(),
             dt,
             pending,
             limit: limit * limit,
@@ -66,8 +66,8 @@ impl Verlet {
         dt: f64,
     ) {
         for a in 0..D {
-            for i in 0..body.len {
-                v[a][i] = (0.5 * dt / body.density.at(i)).mul_add(f[a][i], v[a][i]);
+            for i in 0..body.len() {
+                v[a][i] = (0.5 * dt / body.density().at(i)).mul_add(f[a][i], v[a][i]);
             }
         }
     }
@@ -82,7 +82,7 @@ impl Verlet {
         dt: f64,
         limit: f64,
     ) {
-        for &s in &body.slots {
+        for &s in body.slots() {
             let i = s as usize;
             let step: [f64; D] = crate::array::from_fn(|a| dt * v[a][i]);
             if step.iter().map(|d| d * d).sum::<f64>() < limit * limit {
@@ -91,7 +91,7 @@ impl Verlet {
                 }
             }
             for a in 0..D {
-                let back = 0.5 * dt / body.density.at(i) * f[a][i];
+                let back = 0.5 * dt / body.density().at(i) * f[a][i];
                 v[a][i] = if v[a][i].is_finite() && back.is_finite() {
                     v[a][i] - back
                 } else {

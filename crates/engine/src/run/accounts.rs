@@ -2,10 +2,10 @@
 
 pub(super) mod state;
 
-use super::constitutive::Laws;
 use super::system::System;
 use crate::body::view;
 use crate::condition::driven::Driven;
+use crate::constitutive::Laws;
 use crate::error::RunError;
 use crate::interaction::{BondStatus, Fault};
 use crate::observe::Ledger;
@@ -27,11 +27,11 @@ impl<const D: usize> System<D> {
             contact,
             ..self.accounts.ledger()
         };
-        for &s in &self.body.slots {
+        for &s in self.body.slots() {
             let i = s as usize;
-            let volume = self.body.volume.at(i);
+            let volume = self.body.volume().at(i);
             let v2: f64 = (0..D).map(|a| self.v[a][i] * self.v[a][i]).sum();
-            ledger.kinetic += 0.5 * self.body.density.at(i) * volume * v2;
+            ledger.kinetic += 0.5 * self.body.density().at(i) * volume * v2;
         }
         if let Some(kinetic) = self.coupled_kinetic() {
             ledger.kinetic = kinetic;
@@ -104,9 +104,9 @@ impl<const D: usize> System<D> {
             return energy;
         }
         let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
-        for &s in &self.body.slots {
+        for &s in self.body.slots() {
             let i = s as usize;
-            let (rho, volume) = (self.body.density.at(i), self.body.volume.at(i));
+            let (rho, volume) = (self.body.density().at(i), self.body.volume().at(i));
             let (mut now, mut before) = (0.0, 0.0);
             for a in 0..D {
                 let v = self.v[a][i];

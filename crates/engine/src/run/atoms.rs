@@ -1,8 +1,8 @@
 //! What atoms need beyond peridynamic points: their crystal looked at before it runs, and a temperature.
 
-use super::constitutive::{AnyPotentials, breaks};
 use super::reference::{SplitMix, current_neighbours};
 use super::system::System;
+use crate::constitutive::{AnyPotentials, breaks};
 use crate::error::BuildError;
 use crate::expression::Expression;
 use crate::family::stencil::Stencil;
@@ -161,8 +161,8 @@ pub(super) fn step_of_speeds<const D: usize>(
     system: &System<D>,
     potentials: &AnyPotentials,
 ) -> Result<f64, BuildError> {
-    let slots = || system.body.slots.iter().map(|s| *s as usize);
-    let mass = |s: usize| system.body.volume.at(s) * system.body.density.at(s);
+    let slots = || system.body.slots().iter().map(|s| *s as usize);
+    let mass = |s: usize| system.body.volume().at(s) * system.body.density().at(s);
     let total: f64 = slots().map(mass).sum();
     let mean: [f64; D] =
         crate::array::from_fn(|a| slots().map(|s| mass(s) * system.v[a][s]).sum::<f64>() / total);
@@ -200,10 +200,10 @@ pub(super) fn heat<const D: usize>(
     thermal: &ThermalSpec,
 ) -> Result<(), BuildError> {
     let mut random = SplitMix(thermal.seed);
-    let slots: Vec<usize> = system.body.slots.iter().map(|s| *s as usize).collect();
+    let slots: Vec<usize> = system.body.slots().iter().map(|s| *s as usize).collect();
     let mass: Vec<f64> = slots
         .iter()
-        .map(|&s| system.body.volume.at(s) * system.body.density.at(s))
+        .map(|&s| system.body.volume().at(s) * system.body.density().at(s))
         .collect();
     let energy = thermal_energies(system, &thermal.energy, &slots)?;
     let mut momentum = [0.0; D];

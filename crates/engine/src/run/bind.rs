@@ -1,14 +1,14 @@
 //! Laws and bonds of all bodies of a spec.
 
-use super::constitutive::{ConstitutiveModel, ConstitutiveModels, Shelf};
 use super::interfaces::interfaces;
 use super::parts::Part;
 use super::surface;
-use crate::body::{Body, Layout};
+use crate::body::Body;
+use crate::constitutive::{ConstitutiveModel, ConstitutiveModels, Shelf};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::Interaction;
-use crate::interaction::several::SeveralInteraction;
+use crate::interaction::SeveralInteraction;
 use crate::message;
 use crate::quantity::{Dimension, Warnings};
 use crate::spec::{BodySpec, Spec};
@@ -58,17 +58,15 @@ pub(super) fn bind<const D: usize>(
     };
     let (mut constitutive, mut all) = (vec![], vec![]);
     for (n, part) in parts.iter_mut().enumerate() {
-        let Layout::Several(pieces) = &mut body.layout else {
-            unreachable!("made of several bodies")
-        };
         let mut told = Warnings::default();
-        let made = bonds(part, &mut pieces[n].body, shelf, simd, &mut told);
+        let made = body.change_piece(n, |body| bonds(part, body, shelf, simd, &mut told));
+        let made = made.expect("made of several bodies");
         let (model, bonds) = made.map_err(|e| part.named(&named[n], e))?;
         warnings.extend(
             told.iter()
                 .map(|w| message![format!("body `{}`: ", named[n].name), w]),
         );
-        constitutive.push((pieces[n].first, part.materials.clone(), model));
+        constitutive.push((body.pieces()[n].first, part.materials.clone(), model));
         all.push(bonds);
     }
     if named.iter().any(|p| p.surface.is_some()) {

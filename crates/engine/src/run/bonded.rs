@@ -1,11 +1,11 @@
 //! Molecules: bonded terms beside the potential of a body of atoms.
 
-use super::constitutive::Shelf;
 use crate::body::Body;
+use crate::constitutive::Shelf;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
+use crate::interaction::BondedAtoms;
 use crate::interaction::Interaction;
-use crate::interaction::atoms::bonded::BondedAtoms;
 use crate::spec::{BodySpec, BondedSpec, Spec};
 
 /// The interaction with what is bonded in the spec, if anything is.

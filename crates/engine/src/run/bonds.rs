@@ -2,7 +2,7 @@
 
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
-use crate::family::neighbours::periods;
+use crate::family::periods;
 use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
 use crate::law::BondFactors;
@@ -23,8 +23,8 @@ pub(super) fn scale<const D: usize>(
         let named = |e: BuildError| e.at(path.clone());
         match factor {
             BondFactorSpec::Field(field) => {
-                let mut at = vec![1.0; body.len];
-                for &s in &body.slots {
+                let mut at = vec![1.0; body.len()];
+                for &s in body.slots() {
                     let x = body.position(s as usize);
                     let value = field.eval(&x, 0.0);
                     if !(value >= 0.0 && value.is_finite()) {
@@ -38,13 +38,13 @@ pub(super) fn scale<const D: usize>(
                     }
                     at[s as usize] = value;
                 }
-                body.exchange.fill(&mut at);
+                body.exchange().fill(&mut at);
                 let scaled =
                     |i: usize, j: usize, _| pair(mean(spec.interactions.interface, at[i], at[j]));
                 interaction.scale_bonds(body, &scaled).map_err(named)?;
             }
             BondFactorSpec::Crossing { shape, factor } => {
-                let crack = Crack::new(shape, body.period).map_err(named)?;
+                let crack = Crack::new(shape, body.period()).map_err(named)?;
                 if !(*factor >= 0.0 && factor.is_finite()) {
                     let message =
                         format!("the factor is {factor}, expected 0 or a positive number");
@@ -84,7 +84,7 @@ pub(super) fn scale<const D: usize>(
 fn listed<const D: usize>(body: &Body<D>, ends: [usize; 2]) -> bool {
     let [a, b] = ends.map(|s| body.piece_of(s));
     let own = body.pieces().get(a).map_or(body, |p| &p.body);
-    a != b || matches!(own.layout, Layout::Cloud(_))
+    a != b || matches!(own.layout(), Layout::Cloud(_))
 }
 
 fn pair(factor: f64) -> BondFactors<f64> {

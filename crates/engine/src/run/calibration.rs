@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::family::horizon::HorizonList;
-use crate::family::neighbours::periods;
+use crate::family::periods;
 use crate::interaction::weight::BondWeight;
 use crate::law::micromodulus::Moments;
 use crate::spec::Spec;
@@ -23,7 +23,7 @@ pub(super) fn cloud_moments<const D: usize>(
     let scaling = spec.bonds.volume_scaling.then_some(cell);
     let weight = BondWeight::new(spec.bonds.influence, horizon, scaling);
     let directions = directions::<D>();
-    let bulk: Vec<Moments> = (0..list.rows.len())
+    let bulk: Vec<Moments> = (0..list.rows().len())
         .filter_map(|row| family(body, &list, row, weight, &directions, horizon - cell))
         .collect();
     let mean = |of: fn(&Moments) -> f64| bulk.iter().map(of).sum::<f64>() / bulk.len() as f64;
@@ -55,7 +55,7 @@ fn family<const D: usize>(
     directions: &[[f64; D]],
     reach: f64,
 ) -> Option<Moments> {
-    let x = body.position(list.rows[row] as usize);
+    let x = body.position(list.rows()[row] as usize);
     let mut support = [0.0f64; 26];
     let mut sum = Moments {
         first: 0.0,
@@ -68,10 +68,10 @@ fn family<const D: usize>(
         let back = periods(body, &xi);
         let xi: [f64; D] = crate::array::from_fn(|a| xi[a] - back[a]);
         let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let w = weight.at(&xi, r0, 1.0 / r0) * body.volume.at(j);
+        let w = weight.at(&xi, r0, 1.0 / r0) * body.volume().at(j);
         sum.first += w * r0;
         sum.second += w * r0 * r0;
-        sum.bare += weight.volume_fraction(r0) * body.volume.at(j) * r0;
+        sum.bare += weight.volume_fraction(r0) * body.volume().at(j) * r0;
         for (s, d) in support.iter_mut().zip(directions) {
             *s = s.max((0..D).map(|a| xi[a] * d[a]).sum());
         }

@@ -13,10 +13,10 @@ impl<const D: usize> System<D> {
         if a >= D {
             return;
         }
-        let all = self.body.slots.len() as u32;
+        let all = self.body.slots().len() as u32;
         let (u, v) = (&mut self.u[a], &mut self.v[a]);
         let mut mirror = |id: u32| {
-            let i = self.body.slots[id as usize] as usize;
+            let i = self.body.slots()[id as usize] as usize;
             let reference = self.body.position(i)[a];
             let behind = wall.position - (reference + u[i]);
             if (behind < 0.0) == wall.above && behind != 0.0 {
@@ -33,8 +33,10 @@ impl<const D: usize> System<D> {
     /// Takes points away, between steps: like sites that were never there, they are far from everything, at rest and without bonds.
     /// Answers the new ids of those that stay.
     pub(super) fn take_away(&mut self, ids: &[u32]) -> Vec<Option<u32>> {
-        let gone: std::collections::HashSet<u32> =
-            ids.iter().map(|id| self.body.slots[*id as usize]).collect();
+        let gone: std::collections::HashSet<u32> = ids
+            .iter()
+            .map(|id| self.body.slots()[*id as usize])
+            .collect();
         let places: Vec<[f64; D]> = gone
             .iter()
             .map(|s| {
@@ -43,7 +45,7 @@ impl<const D: usize> System<D> {
             })
             .collect();
         // bonds know their ends by where they are in the reference, up to round-off
-        let near = (1e-6 * self.body.spacing).powi(2);
+        let near = (1e-6 * self.body.spacing()).powi(2);
         let is_gone = |x: [f64; D]| {
             places
                 .iter()
@@ -57,7 +59,7 @@ impl<const D: usize> System<D> {
         for s in &gone {
             let i = *s as usize;
             for a in 0..D {
-                self.u[a][i] = FAR * self.body.spacing;
+                self.u[a][i] = FAR * self.body.spacing();
                 self.v[a][i] = 0.0;
                 self.f[a][i] = 0.0;
             }
@@ -67,7 +69,7 @@ impl<const D: usize> System<D> {
         let mut next = 0;
         let moved: Vec<Option<u32>> = self
             .body
-            .slots
+            .slots()
             .iter()
             .map(|s| {
                 let id = keep(*s).then_some(next);
@@ -75,12 +77,8 @@ impl<const D: usize> System<D> {
                 id
             })
             .collect();
-        if !self.body.mark.is_empty() {
-            let mut stays = moved.iter().map(Option::is_some);
-            self.body.mark.retain(|_| stays.next().unwrap_or(false));
-        }
-        self.body.slots.retain(|s| keep(*s));
-        self.info.points = self.body.slots.len() as u64;
+        self.body.retain(keep);
+        self.info.points = self.body.slots().len() as u64;
         self.prescribed.all_mut().for_each(|p| p.retain(&keep));
         self.applied.all().for_each(|x| x.retain(&keep));
         self.watch.forget();

@@ -1,6 +1,6 @@
 //! What clouds bring with their points: densities and velocities.
 
-use crate::body::{Body, Values};
+use crate::body::Body;
 use crate::space::Point;
 use crate::spec::{BodySpec, Cloud, Spec};
 
@@ -33,16 +33,16 @@ pub(super) fn own_densities<const D: usize>(spec: &Spec, body: &mut Body<D>) {
         if !cloud.density.is_empty() {
             if density.is_empty() {
                 density = body
-                    .slots
+                    .slots()
                     .iter()
-                    .map(|s| body.density.at(*s as usize))
+                    .map(|s| body.density().at(*s as usize))
                     .collect();
             }
             density[ids].copy_from_slice(&cloud.density);
         }
     }
     if !density.is_empty() {
-        body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
+        body.set_densities(&density);
     }
 }
 

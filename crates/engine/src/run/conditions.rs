@@ -94,7 +94,7 @@ impl<const D: usize> Names<D> {
         let mut program = Program::new(value, condensed.points());
         let mut whole = None;
         if let Some(area) = traction {
-            let period = &body.period;
+            let period = &body.period();
             let areas = self
                 .faces
                 .condensed(carriers, period, set, &members, area)?;
@@ -102,7 +102,7 @@ impl<const D: usize> Names<D> {
             let volume = |k: usize| carriers.volume[members[k] as usize];
             program = spread(program, &areas, volume);
         }
-        let slots = ids.iter().map(|id| body.slots[*id as usize]);
+        let slots = ids.iter().map(|id| body.slots()[*id as usize]);
         let mut load = Load::condensed(program, slots.collect(), condensed);
         load.of = Some((0, whole));
         Ok(load)
@@ -116,12 +116,12 @@ impl<const D: usize> Names<D> {
         slots: &[u32],
         points: &[Point],
     ) -> Result<impl Iterator<Item = LoadKind<D>> + use<D>, BuildError> {
-        let density = slots.iter().map(|s| body.density.at(*s as usize));
+        let density = slots.iter().map(|s| body.density().at(*s as usize));
         let on = Placed {
             dimension: D,
             points,
             density: &density.collect::<Vec<_>>(),
-            spacing: body.spacing,
+            spacing: body.spacing(),
         };
         let made = self.shelf.force(force, &on)?;
         let viscosity = (0..points.len()).map(|k| [Some(made.viscosity(k)), None, None]);
@@ -186,7 +186,7 @@ impl<const D: usize> Names<D> {
                 ConditionKind::Traction { value, area } => {
                     let areas = { self.faces.areas(body, &c.set, &slots, *area) }
                         .map_err(|e| e.at(format!("conditions[{n}]")))?;
-                    let volume = |k: usize| body.volume.at(slots[k] as usize);
+                    let volume = |k: usize| body.volume().at(slots[k] as usize);
                     let program = spread(Program::new(value, &points), &areas, volume);
                     let mut made = load(LoadKind::Body(program));
                     made.of = Some((n, Some(areas.iter().sum())));

@@ -1,9 +1,9 @@
 //! Contact of a model: how points of every body and material repel, and what step that allows.
 
-use super::constitutive::{ConstitutiveModel, ConstitutiveModels, contact_stiffness};
 use super::parts::Part;
 use super::reference::cell;
 use crate::body::Body;
+use crate::constitutive::{ConstitutiveModel, ConstitutiveModels, contact_stiffness};
 use crate::dynamics::contact_step::{ContactLimit, Grain, contact_limit};
 use crate::error::BuildError;
 use crate::interaction::cohesion::{Adhesion, Cohesion, Faces, RANGES};
@@ -86,7 +86,7 @@ pub(super) fn repulsion<const D: usize>(
         false => range.highest(),
     };
     if !body.pieces().is_empty() {
-        for (a, period) in body.period.iter().enumerate() {
+        for (a, period) in body.period().iter().enumerate() {
             if let Some(p) = period.filter(|p| *p <= 3.0 * longest) {
                 return Err(BuildError::conflict(
                     "periodic",
@@ -115,7 +115,7 @@ pub(super) fn repulsion<const D: usize>(
             }
         }
         let longest = adhesion.iter().map(|a| a.range).fold(0.0, f64::max);
-        for (a, period) in body.period.iter().enumerate() {
+        for (a, period) in body.period().iter().enumerate() {
             if let Some(p) = period.filter(|p| *p <= 2.5 * longest) {
                 return Err(BuildError::conflict(
                     "periodic",
@@ -153,9 +153,9 @@ fn own_of_all<const D: usize>(constitutive: &ConstitutiveModels, body: &Body<D>)
     if body.pieces().is_empty() || all.iter().all(Vec::is_empty) {
         return all.into_iter().next().unwrap_or_default();
     }
-    let mut own = vec![0.0; body.len];
+    let mut own = vec![0.0; body.len()];
     for ((p, model), given) in body.pieces().iter().zip(constitutive.all()).zip(all) {
-        for &s in &p.body.slots {
+        for &s in p.body.slots() {
             let s = s as usize;
             let of_material = || model.contact[p.body.material_of(s)];
             own[p.first + s] = given.get(s).copied().unwrap_or_else(of_material);
@@ -263,17 +263,17 @@ impl Rules {
             self.kinds.len()
         ];
         let kind = self.kind_of(body);
-        for &s in &body.slots {
+        for &s in body.slots() {
             let s = s as usize;
             let grain = &mut grains[kind(s)];
-            grain.volume = grain.volume.max(body.volume.at(s));
-            grain.density = grain.density.min(body.density.at(s));
+            grain.volume = grain.volume.max(body.volume().at(s));
+            grain.density = grain.density.min(body.density().at(s));
         }
         let mut repulsion = self.repulsion.clone();
         if !repulsion.own.is_empty() {
             // the stiffest point of each kind
             let mut most = vec![0.0f64; self.kinds.len()];
-            for &s in &body.slots {
+            for &s in body.slots() {
                 let s = s as usize;
                 most[kind(s)] = most[kind(s)].max(repulsion.own[s]);
             }
@@ -324,8 +324,8 @@ impl Rules {
         let mut kind = vec![];
         if !body.pieces().is_empty() {
             let of = self.kind_of(body);
-            kind = vec![0; body.len];
-            for &s in &body.slots {
+            kind = vec![0; body.len()];
+            for &s in body.slots() {
                 kind[s as usize] = of(s as usize) as u16;
             }
         }

@@ -33,8 +33,8 @@ impl<const D: usize> Examined for Model<D> {
         } = &mut self.system;
         let mut u = body.at_rest();
         body.scatter(&mut u, displacement);
-        body.exchange.fill_field(&mut u);
-        let mut f = zeros(body.len);
+        body.exchange().fill_field(&mut u);
+        let mut f = zeros(body.len());
         interaction.forces(body, view(&u), view_mut(&mut f), Sweep::Hold, None);
         body.vectors(&f)
     }

@@ -105,7 +105,7 @@ impl Faces {
         slots: &[u32],
         given: Option<f64>,
     ) -> Result<Vec<f64>, BuildError> {
-        let volume = |s: &u32| body.volume.at(*s as usize);
+        let volume = |s: &u32| body.volume().at(*s as usize);
         if let Some(area) = given {
             let all: f64 = slots.iter().map(volume).sum();
             return Ok(slots.iter().map(|s| area * volume(s) / all).collect());
@@ -128,19 +128,19 @@ impl Faces {
                 continue;
             }
             let first = body.pieces().get(n);
-            let spacing = first.map_or(body.spacing, |p| p.body.spacing);
-            let all: Vec<usize> = body.slots[ids].iter().map(|s| *s as usize).collect();
+            let spacing = first.map_or(body.spacing(), |p| p.body.spacing());
+            let all: Vec<usize> = body.slots()[ids].iter().map(|s| *s as usize).collect();
             let points: Vec<(Point, f64)> = { all.iter() }
-                .map(|s| (body.position(*s), body.volume.at(*s)))
+                .map(|s| (body.position(*s), body.volume().at(*s)))
                 .collect();
-            let mut place = vec![0u32; body.len];
+            let mut place = vec![0u32; body.len()];
             for (k, slot) in all.iter().enumerate() {
                 place[*slot] = k as u32;
             }
             let members = own.iter().map(|k| place[slots[*k] as usize] as usize);
             let members: Vec<usize> = members.collect();
             let shares = self
-                .shares(origin, spacing, &body.period, &points, &members)
+                .shares(origin, spacing, &body.period(), &points, &members)
                 .map_err(|why| unknown(set, why))?;
             for (k, share) in own.into_iter().zip(shares) {
                 areas[k] = share;

@@ -1,8 +1,8 @@
 //! Can a spec be built at all? What is looked at before anything is made.
 
-use super::constitutive::{Shelf, criteria};
 use super::{preload, traits};
 use crate::body::Body;
+use crate::constitutive::{Shelf, criteria};
 use crate::error::BuildError;
 use crate::execute::memory;
 use crate::execute::simd::{NEITHER, Simd};
@@ -40,8 +40,8 @@ pub(super) fn enough_memory<const D: usize>(
     horizon: f64,
     atoms: bool,
 ) -> Result<(), BuildError> {
-    let slots = body.len as f64;
-    let spacings = horizon / body.spacing;
+    let slots = body.len() as f64;
+    let spacings = horizon / body.spacing();
     let (bonds, each) = match stencil {
         Some(s) => (slots * s.bonds() as f64, 0.125),
         None => {

@@ -2,7 +2,7 @@
 
 use super::Gap;
 use crate::body::Body;
-use crate::family::cells::Cells;
+use crate::family::Cells;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::{BondStatus, Interaction};
 use crate::message;
@@ -31,15 +31,15 @@ pub(super) fn between<const D: usize>(
     if count < 2 {
         return vec![];
     }
-    let of: Vec<usize> = (body.slots.iter())
+    let of: Vec<usize> = (body.slots().iter())
         .map(|s| body.piece_of(*s as usize))
         .collect();
     let x: [Vec<f64>; D] = crate::array::from_fn(|a| {
-        let all = body.slots.iter();
+        let all = body.slots().iter();
         all.map(|s| body.position(*s as usize)[a]).collect()
     });
     let half = body
-        .period
+        .period()
         .iter()
         .flatten()
         .fold(f64::INFINITY, |m, p| m.min(0.49 * p));
@@ -47,7 +47,7 @@ pub(super) fn between<const D: usize>(
     let cells = Cells::new(
         crate::array::from_fn(|a| x[a].as_slice()),
         of.len(),
-        body.period,
+        body.period(),
         reach,
     );
     let mut nearest = std::collections::BTreeMap::new();
@@ -128,8 +128,8 @@ pub(super) fn bridged<const D: usize>(
     let length = |s: usize| body.spacing_at(s);
     let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
     // mean direction to the nearest neighbours
-    let mut inward = vec![[0.0; D]; body.len];
-    let mut count = vec![0u32; body.len];
+    let mut inward = vec![[0.0; D]; body.len()];
+    let mut count = vec![0u32; body.len()];
     interaction.each_bond(body, &mut |i, j, xi, _| {
         let (reach, r2) = (NEXT * length(i).max(length(j)), square(&xi));
         if r2 < reach * reach {
@@ -186,7 +186,7 @@ pub(super) fn across<const D: usize>(
     interaction: &dyn Interaction<D>,
 ) -> Vec<Message> {
     let length = |s: usize| {
-        let own = (body.volume.at(s) / spec.space.section).powf(1.0 / D as f64);
+        let own = (body.volume().at(s) / spec.space.section).powf(1.0 / D as f64);
         body.spacing_at(s).max(own)
     };
     let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
@@ -198,8 +198,8 @@ pub(super) fn across<const D: usize>(
     if near.count() == 1 || near.count() == Fragments::of(body, interaction).count() {
         return vec![];
     }
-    let mut label = vec![0; body.len];
-    for (l, s) in near.label.iter().zip(&body.slots) {
+    let mut label = vec![0; body.len()];
+    for (l, s) in near.label.iter().zip(body.slots()) {
         label[*s as usize] = *l;
     }
     let mut shortest: Option<(f64, usize, usize)> = None;

@@ -62,11 +62,11 @@ impl<const D: usize> System<D> {
                 "bonds heal that break by their stretch, energy, work, stress, rate or cycles",
             ));
         }
-        let mut may = vec![false; self.body.len];
+        let mut may = vec![false; self.body.len()];
         match sets.iter().find(|(name, _)| *name == healing.set) {
             Some((_, ids)) => {
                 for id in ids {
-                    may[self.body.slots[*id as usize] as usize] = true;
+                    may[self.body.slots()[*id as usize] as usize] = true;
                 }
             }
             None if healing.set == "all" => may.fill(true),

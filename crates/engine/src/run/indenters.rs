@@ -135,7 +135,7 @@ fn recurs<const D: usize>(
         RigidShape::Sphere { .. } | RigidShape::Plane { .. } => return Ok(()),
         shape => shape.reach(D),
     };
-    match body.period.iter().flatten().find(|p| 2.0 * reach > **p) {
+    match body.period().iter().flatten().find(|p| 2.0 * reach > **p) {
         None => Ok(()),
         Some(period) => Err(BuildError::conflict(
             format!("{path}.shape"),
@@ -157,7 +157,7 @@ fn sticks<const D: usize>(
     path: &str,
 ) -> Result<(), BuildError> {
     let path = format!("{path}.cohesion");
-    let spacings = body.slots.iter().map(|s| body.spacing_at(*s as usize));
+    let spacings = body.slots().iter().map(|s| body.spacing_at(*s as usize));
     let least = spacings.fold(f64::INFINITY, f64::min);
     let range = cohesion.range();
     if !(range > 0.0 && range.is_finite()) {

@@ -1,13 +1,13 @@
 //! Interfaces of a spec: which points of two bodies they bond, and by which law.
 
 use super::calibration::cloud_moments;
-use super::constitutive::{Bulk, ConstitutiveModel, Shelf};
 use super::reference::{cell, reference};
 use crate::body::Body;
+use crate::constitutive::{Bulk, ConstitutiveModel, Shelf};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
-use crate::family::cells::Cells;
-use crate::interaction::interface::Interface;
+use crate::family::Cells;
+use crate::interaction::Interface;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::Dimension;
@@ -132,10 +132,10 @@ fn join<const D: usize>(
         .help("a longer horizon, or bodies that are nearer to each other"));
     }
     let position: Vec<[f64; 3]> = slots.iter().map(|s| all.position(*s as usize)).collect();
-    let volume: Vec<f64> = slots.iter().map(|s| all.volume.at(*s as usize)).collect();
-    let cloud = Body::from_cloud(&position, &volume, &[], spacing, all.period)?;
-    let mut side = vec![0; cloud.len];
-    for (all_slot, slot) in slots.iter().zip(&cloud.slots) {
+    let volume: Vec<f64> = slots.iter().map(|s| all.volume().at(*s as usize)).collect();
+    let cloud = Body::from_cloud(&position, &volume, &[], spacing, all.period())?;
+    let mut side = vec![0; cloud.len()];
+    for (all_slot, slot) in slots.iter().zip(cloud.slots()) {
         side[*slot as usize] = all.piece_of(*all_slot as usize);
     }
     let bonds = model.interaction_across(&cloud, |i, j| side[i] != side[j])?;
@@ -148,7 +148,7 @@ fn join<const D: usize>(
 
 /// Slots of the points of two bodies that are within `reach` (length) of the other, in order of ids.
 fn near<const D: usize>(all: &Body<D>, bodies: [usize; 2], reach: f64) -> Vec<u32> {
-    let of: Vec<(u32, usize)> = (all.slots.iter())
+    let of: Vec<(u32, usize)> = (all.slots().iter())
         .map(|s| (*s, all.piece_of(*s as usize)))
         .filter(|(_, piece)| bodies.contains(piece))
         .collect();
@@ -160,7 +160,7 @@ fn near<const D: usize>(all: &Body<D>, bodies: [usize; 2], reach: f64) -> Vec<u3
     let cells = Cells::new(
         crate::array::from_fn(|a| x[a].as_slice()),
         of.len(),
-        all.period,
+        all.period(),
         reach,
     );
     let joined = |i: usize| {

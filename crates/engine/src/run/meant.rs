@@ -50,7 +50,7 @@ pub(super) fn regions<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<Messag
                 return None;
             };
             let wanted = measure(region, D, spec.space.periodic)?;
-            let volume = { body.slots.iter() }.map(|s| body.volume.at(*s as usize));
+            let volume = { body.slots().iter() }.map(|s| body.volume().at(*s as usize));
             let found = volume.sum::<f64>() / spec.space.section;
             let off = found / wanted - 1.0;
             if off.abs() <= CLOSE {
@@ -79,15 +79,16 @@ fn layers<const D: usize>(
     spacing: f64,
 ) -> Option<Message> {
     let [low, high] = ends(region)?;
-    let Layout::Grid(grid) = &body.layout else {
+    let Layout::Grid(grid) = body.layout() else {
         return None;
     };
-    let thick =
-        |a: usize| spacing * grid.lattice.kind.edges()[a] / f64::from(grid.lattice.kind.planes(a));
+    let thick = |a: usize| {
+        spacing * grid.lattice().kind.edges()[a] / f64::from(grid.lattice().kind.planes(a))
+    };
     let along = (0..D)
         .filter(|a| spec.space.periodic[*a].is_none())
         .map(|a| {
-            let all = body.slots.iter().map(|s| grid.position(*s as usize)[a]);
+            let all = body.slots().iter().map(|s| grid.position(*s as usize)[a]);
             let (first, last) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
                 (l.min(x), h.max(x))
             });
@@ -124,18 +125,18 @@ pub(super) fn periods<const D: usize>(
         return Ok(told);
     }
     for (name, _, own) in bodies(spec, body) {
-        let Layout::Cloud(x) = &own.layout else {
+        let Layout::Cloud(x) = own.layout() else {
             continue;
         };
         for a in 0..D {
-            let Some(period) = own.period[a] else {
+            let Some(period) = own.period()[a] else {
                 continue;
             };
-            let points = { own.slots.iter() }.map(|s| x[a][*s as usize]);
+            let points = { own.slots().iter() }.map(|s| x[a][*s as usize]);
             let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
                 (l.min(x), h.max(x))
             });
-            let between = (period - (high - low)) / own.spacing;
+            let between = (period - (high - low)) / own.spacing();
             let said = |what: &str| {
                 message![
                     format!("the period along {} is ", AXES[a]),
@@ -152,7 +153,7 @@ pub(super) fn periods<const D: usize>(
                 )
                 .help(message![
                     "write the length of the body with the cells of its points, about ",
-                    Dimension::LENGTH.of(high - low + own.spacing),
+                    Dimension::LENGTH.of(high - low + own.spacing()),
                     ", or the points of one period only",
                 ]));
             }

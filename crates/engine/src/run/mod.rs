@@ -12,7 +12,6 @@ mod changes;
 mod clock;
 mod clouds;
 mod conditions;
-mod constitutive;
 mod contact;
 mod equilibrium;
 mod examined;
@@ -50,8 +49,8 @@ mod traits;
 mod transfers;
 mod virial;
 
+pub use crate::constitutive::{Shelf, Sweeps};
 pub use build::{Options, build, build_in, build_with};
-pub use constitutive::{Shelf, Sweeps};
 pub use model::Model;
 pub use sets::{materials_of, materials_of_bodies};
 pub use transfers::TransferInfo;

@@ -121,9 +121,9 @@ impl<const D: usize> Simulation for Model<D> {
             }
             "force_density" => &self.system.f,
             "volume" | "density" => {
-                let (volume, density) = (&self.system.body.volume, &self.system.body.density);
+                let (volume, density) = (self.system.body.volume(), self.system.body.density());
                 let values = if name == "volume" { volume } else { density };
-                for (x, &s) in out.iter_mut().zip(&self.system.body.slots[first..]) {
+                for (x, &s) in out.iter_mut().zip(&self.system.body.slots()[first..]) {
                     *x = values.at(s as usize);
                 }
                 return true;
@@ -132,7 +132,7 @@ impl<const D: usize> Simulation for Model<D> {
         };
         match vector.get(component) {
             Some(values) => {
-                for (x, &s) in out.iter_mut().zip(&self.system.body.slots[first..]) {
+                for (x, &s) in out.iter_mut().zip(&self.system.body.slots()[first..]) {
                     *x = values[s as usize];
                 }
             }
@@ -153,7 +153,7 @@ impl<const D: usize> Simulation for Model<D> {
             _ => return false,
         };
         if let Some(component) = vector.get_mut(component) {
-            for (value, &s) in values.iter().zip(&self.system.body.slots[first..]) {
+            for (value, &s) in values.iter().zip(&self.system.body.slots()[first..]) {
                 component[s as usize] = *value;
             }
         }

@@ -1,7 +1,7 @@
 //! What a deck calls by name: sets of points, and what may be named beside what is built in.
 
-use super::constitutive::Shelf;
 use super::faces::Faces;
+use crate::constitutive::Shelf;
 use crate::spec::Carriers;
 
 /// Names of a model.

@@ -1,10 +1,10 @@
 //! What may be seen of a model: its columns by name, and the state that observables look at.
 
-use super::constitutive::Shelf;
 use super::model::Model;
 use super::system::System;
 use crate::body::view;
 use crate::columns::{Declaration, Life, On};
+use crate::constitutive::Shelf;
 use crate::error::BuildError;
 use crate::expression::nearest;
 use crate::fracture::fragments::Fragments;
@@ -37,7 +37,7 @@ impl<'a, const D: usize> View<'a, D> {
     }
 
     fn slot(&self, id: usize) -> usize {
-        self.system.body.slots[id] as usize
+        self.system.body.slots()[id] as usize
     }
 
     fn ids(&mut self) {
@@ -76,11 +76,11 @@ impl<const D: usize> State for View<'_, D> {
     }
 
     fn volume(&self, id: usize) -> f64 {
-        self.system.body.volume.at(self.slot(id))
+        self.system.body.volume().at(self.slot(id))
     }
 
     fn density(&self, id: usize) -> f64 {
-        self.system.body.density.at(self.slot(id))
+        self.system.body.density().at(self.slot(id))
     }
 
     fn kinetic_energy_density(&self, id: usize) -> f64 {
@@ -98,7 +98,7 @@ impl<const D: usize> State for View<'_, D> {
     }
 
     fn mark(&self, id: usize) -> i32 {
-        self.system.body.mark.get(id).copied().unwrap_or(0)
+        self.system.body.marks().get(id).copied().unwrap_or(0)
     }
 
     fn bodies(&self) -> usize {
@@ -126,7 +126,7 @@ impl<const D: usize> State for View<'_, D> {
     }
 
     fn damage(&mut self) -> Vec<f64> {
-        let mut damage = vec![0.0; self.system.body.len];
+        let mut damage = vec![0.0; self.system.body.len()];
         self.system
             .interaction
             .damage(&self.system.body, &mut damage);
@@ -210,8 +210,8 @@ impl<const D: usize> Model<D> {
                 if values.len() != n * self.system.body.points() {
                     return false;
                 }
-                let mut stored = vec![0.0; n * self.system.body.len];
-                for (value, &s) in values.chunks_exact(n).zip(&self.system.body.slots) {
+                let mut stored = vec![0.0; n * self.system.body.len()];
+                for (value, &s) in values.chunks_exact(n).zip(self.system.body.slots()) {
                     stored[n * s as usize..n * (s as usize + 1)].copy_from_slice(value);
                 }
                 self.system
@@ -237,7 +237,7 @@ impl<const D: usize> Model<D> {
             step: self.system.clock.step(),
             time: self.system.clock.of_frame(load_may_fall),
             dimension: D,
-            spacing: self.system.body.spacing,
+            spacing: self.system.body.spacing(),
             reference: self.system.body.by_id(|i| self.system.body.position(i)),
             columns,
             bonds: bonds.then(|| self.system.whole_bonds()),
@@ -283,7 +283,7 @@ impl<const D: usize> System<D> {
                 let pull = touch.pull;
                 for (i, j, sign) in [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)] {
                     let y = touch.y.map(|y| sign * y);
-                    let force = y.map(|y| pull * body.volume.at(j) * y);
+                    let force = y.map(|y| pull * body.volume().at(j) * y);
                     let own = Some(force.map(|f| 0.5 * f));
                     visit(BondForce {
                         i,
@@ -449,7 +449,7 @@ impl<const D: usize> View<'_, D> {
         if declaration.on == On::Points {
             let n = declaration.shape.stored(D);
             let of = |s: &u32| &stored[n * *s as usize..n * (*s as usize + 1)];
-            stored = body.slots.iter().flat_map(of).copied().collect();
+            stored = body.slots().iter().flat_map(of).copied().collect();
         }
         Some(Column {
             values: Values::unpacked(declaration.shape, D, &stored),

@@ -1,11 +1,11 @@
 //! Horizons of points: what each has, and what can have such.
 
 use crate::body::Body;
+use crate::constitutive::{Shelf, toughness};
 use crate::error::BuildError;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::run::constitutive::{Shelf, toughness};
 use crate::spec::{
     ContactStiffness, Criterion, FractureSpec, Influence, LawSpec, MaterialSpec, Spec,
 };
@@ -29,7 +29,7 @@ pub(super) fn strengths<const D: usize>(
     shelf: &Shelf,
 ) -> Result<Vec<f64>, BuildError> {
     let energies = |m: &MaterialSpec| m.fracture.is_some_and(of_energy);
-    if body.horizon.is_empty() || !spec.materials.iter().any(energies) {
+    if body.horizons().is_empty() || !spec.materials.iter().any(energies) {
         return Ok(vec![]);
     }
     let bears = |n: usize, horizon: f64| {
@@ -41,9 +41,9 @@ pub(super) fn strengths<const D: usize>(
     // an expression may have lengths of its own
     let written = matches!(spec.bonds.influence, Influence::Formula(_));
     let mut known: HashMap<(usize, u64), f64> = HashMap::new();
-    let mut all = vec![1.0; body.len];
-    for s in body.slots.iter().map(|s| *s as usize) {
-        let (n, own) = (body.material_of(s), body.horizon[s]);
+    let mut all = vec![1.0; body.len()];
+    for s in body.slots().iter().map(|s| *s as usize) {
+        let (n, own) = (body.material_of(s), body.horizons()[s]);
         if !energies(&spec.materials[n]) {
             continue;
         }
@@ -75,8 +75,8 @@ pub(super) fn give<const D: usize>(
         )
         .help("write it with x, y, z alone"));
     }
-    let mut own = vec![0.0; body.len];
-    for &s in &body.slots {
+    let mut own = vec![0.0; body.len()];
+    for &s in body.slots() {
         let x = body.position(s as usize);
         let horizon = expression.eval(&x, 0.0);
         if !(horizon > 0.0 && horizon <= longest * ROUND_OFF) {
@@ -95,7 +95,7 @@ pub(super) fn give<const D: usize>(
         }
         own[s as usize] = horizon;
     }
-    body.horizon = own;
+    body.set_horizons(own);
     Ok(())
 }
 
@@ -128,5 +128,5 @@ pub(super) fn own_stiffness<const D: usize>(
             false => 0.0,
         }
     };
-    body.horizon.iter().enumerate().map(of).collect()
+    body.horizons().iter().enumerate().map(of).collect()
 }

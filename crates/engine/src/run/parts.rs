@@ -1,10 +1,10 @@
 //! The bodies of a spec on their way into a model: where their points are, their laws, their bonds.
 
 use super::calibration::cloud_moments;
-use super::constitutive::{Bulk, ConstitutiveModel, Shelf};
 use super::own_horizons::{own_stiffness, strengths};
 use super::reference::{Reference, cell, reference};
-use crate::body::{Body, Layout, Values};
+use crate::body::{Body, Layout};
+use crate::constitutive::{Bulk, ConstitutiveModel, Shelf};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
@@ -117,18 +117,18 @@ impl Part<'_> {
     /// these.
     pub fn choose<const D: usize>(&mut self, all: &Body<D>, n: usize, body: &mut Body<D>) {
         let piece = &all.pieces()[n];
-        let slots = piece.body.slots.iter();
+        let slots = piece.body.slots().iter();
         let of: Vec<usize> = slots
             .map(|s| all.material_of(piece.first + *s as usize))
             .collect();
         let mut used = of.clone();
         used.sort_unstable();
         used.dedup();
-        let density = body.slots.iter();
+        let density = body.slots().iter();
         let density: Vec<f64> = density
-            .map(|s| all.density.at(piece.first + *s as usize))
+            .map(|s| all.density().at(piece.first + *s as usize))
             .collect();
-        body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
+        body.set_densities(&density);
         if used.len() > 1 {
             let place = |m| used.binary_search(m).unwrap_or(0) as u8;
             body.give_materials(of.iter().map(place));
@@ -210,14 +210,14 @@ impl Part<'_> {
     /// Neighbours of a free point of this body within `range` (length), about: of the lattice, or of a cloud of that
     /// density of points.
     pub fn neighbours<const D: usize>(&self, body: &Body<D>, range: f64) -> f64 {
-        if let Layout::Grid(grid) = &body.layout {
+        if let Layout::Grid(grid) = body.layout() {
             let near = Stencil::new(
-                grid.lattice.kind,
-                grid.lattice.spacing,
+                grid.lattice().kind,
+                grid.lattice().spacing,
                 Horizon::Length(range),
             );
             return near.bonds() as f64;
         }
-        (ball_volume(D, range / body.spacing) - 1.0).max(0.0)
+        (ball_volume(D, range / body.spacing()) - 1.0).max(0.0)
     }
 }

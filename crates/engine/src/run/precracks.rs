@@ -28,7 +28,7 @@ pub(super) fn cut<const D: usize>(
             .enumerate()
             .filter(|(_, c)| c.kind == kind)
         {
-            let shape = Crack::new(&crack.shape, body.period)
+            let shape = Crack::new(&crack.shape, body.period())
                 .map_err(|e| e.at(format!("precracks[{n}]")))?;
             let count = interaction.cut(body, kind, &|from, to| shape.crosses(&from, &to));
             if count == 0 {
@@ -64,12 +64,12 @@ fn along_points<const D: usize>(
             1e-6 * body.spacing_at(slot),
         )
     };
-    let count = body.slots.iter().filter(on).count();
+    let count = body.slots().iter().filter(on).count();
     // a crack may meet a point or two
     if count < if D == 1 { 1 } else { 3 } {
         return None;
     }
-    let first = *body.slots.iter().find(on)? as usize;
+    let first = *body.slots().iter().find(on)? as usize;
     Some(message![
         format!("pre-crack {number} runs through {count} points, "),
         place(&body.position(first)[..D]),

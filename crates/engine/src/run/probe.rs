@@ -1,8 +1,8 @@
 //! The stability limit of a body, measured on the body itself, or on a block of its lattice where that is smaller.
 
-use super::constitutive::ConstitutiveModel;
 use super::surface;
-use crate::body::{Body, Layout, Values};
+use crate::body::{Body, Layout};
+use crate::constitutive::ConstitutiveModel;
 use crate::dynamics::stable_step::{largest_eigenvalue, row_bound};
 use crate::error::BuildError;
 use crate::interaction::Interaction;
@@ -27,20 +27,20 @@ pub(super) fn bonds<const D: usize>(
     spec: &Spec,
     cell_volume: Option<f64>,
 ) -> Result<f64, BuildError> {
-    let lambda = match &body.layout {
+    let lambda = match body.layout() {
         // no block has all the factors of a body, nor all its places
         Layout::Grid(grid)
             if body.points() > LARGE && spec.bonds.factors.is_empty() && !model.varies() =>
         {
-            let reach = model.stencil.as_ref().map_or(1, |s| s.reach);
+            let reach = model.stencil.as_ref().map_or(1, |s| s.reach());
             // in the plane and in space a block of many large families would cost more than the run
             let block = match D {
                 1 => BLOCK.max(PER_REACH * reach),
                 _ => BLOCK,
             };
             let extent: [usize; D] =
-                crate::array::from_fn(|a| (grid.cells[a] - 2 * grid.halo[a]).min(block));
-            let basis = grid.lattice.kind.basis();
+                crate::array::from_fn(|a| (grid.cells()[a] - 2 * grid.halo()[a]).min(block));
+            let basis = grid.lattice().kind.basis();
             let mut quarters = vec![];
             for i in 0..extent.iter().product::<usize>() {
                 let mut rest = i;
@@ -53,9 +53,9 @@ pub(super) fn bonds<const D: usize>(
                     crate::array::from_fn(|a| if a < D { 4 * cell[a] as i32 + b[a] } else { 0 })
                 }));
             }
-            let periodic = crate::array::from_fn(|a| body.period[a].is_some());
-            let mut block = Body::<D>::on_lattice(
-                grid.lattice,
+            let periodic = crate::array::from_fn(|a| body.period()[a].is_some());
+            let whole = Body::<D>::on_lattice(
+                *grid.lattice(),
                 &quarters,
                 reach,
                 periodic,
@@ -63,17 +63,16 @@ pub(super) fn bonds<const D: usize>(
             )?;
             let factors = match &spec.bonds.surface {
                 None => None,
-                Some(all) => match surface::of_block(all, body, &block) {
+                Some(all) => match surface::of_block(all, body, &whole) {
                     Some(factors) => Some(factors),
                     // no block has all its places
                     None => return Ok(largest_eigenvalue(body, interaction)),
                 },
             };
-            let whole = block.volume.clone();
             let mut lambda = 0.0f64;
             for (n, m) in spec.materials.iter().enumerate() {
-                block.density = Values::Uniform(m.density);
-                block.volume = whole.clone();
+                let mut block = whole.clone();
+                block.set_density(m.density);
                 let mut it = model.interaction(&block, Some(n))?;
                 if let Some(factors) = &factors {
                     surface::scale(factors, &mut block, it.as_mut())?;

@@ -7,15 +7,15 @@ use crate::interaction::{BondStatus, PointEnergies};
 use crate::space::full;
 
 pub(super) fn count_families<const D: usize>(system: &System<D>) -> Families {
-    let mut volume = vec![0.0; system.body.len];
-    let mut foreign = vec![false; system.body.len];
-    let of = |i: usize| system.body.material.get(i).copied().unwrap_or(0);
+    let mut volume = vec![0.0; system.body.len()];
+    let mut foreign = vec![false; system.body.len()];
+    let of = |i: usize| system.body.material_of(i);
     system
         .interaction
         .each_bond(&system.body, &mut |i, j, _, state| {
             if state == BondStatus::Whole {
-                volume[i] += system.body.volume.at(j);
-                volume[j] += system.body.volume.at(i);
+                volume[i] += system.body.volume().at(j);
+                volume[j] += system.body.volume().at(i);
                 let unlike = of(i) != of(j);
                 foreign[i] |= unlike;
                 foreign[j] |= unlike;
@@ -26,7 +26,7 @@ pub(super) fn count_families<const D: usize>(system: &System<D>) -> Families {
             .body
             .by_id(|i| system.interaction.family_size(&system.body, i) as u32),
         volume: system.body.by_id(|i| volume[i]),
-        material: system.body.by_id(of),
+        material: system.body.by_id(|i| of(i) as u8),
         foreign: system.body.by_id(|i| foreign[i]),
     }
 }
@@ -39,7 +39,7 @@ pub(super) fn strained<const D: usize>(system: &System<D>, strain: [[f64; 3]; 3]
     system.interaction.observe_gradient(
         &system.body,
         &gradient,
-        &mut out.for_slots(system.body.len),
+        &mut out.for_slots(system.body.len()),
     );
     system.body.by_id(|i| out.strain[i])
 }
@@ -68,7 +68,7 @@ pub(super) fn bonds_of_atoms<const D: usize>(
                 })
                 .sum();
             // tangents are force densities
-            let volume = body.volume.at(bond.i);
+            let volume = body.volume().at(bond.i);
             visit(AtomBond {
                 from: id[bond.i],
                 to: id[bond.j],

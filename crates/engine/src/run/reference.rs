@@ -41,7 +41,7 @@ pub(super) fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
         }
         | BodySpec::Sites { .. }
         | BodySpec::Cloud(_)
-        | BodySpec::Several(_) => body.spacing,
+        | BodySpec::Several(_) => body.spacing(),
     }
 }
 
@@ -62,36 +62,36 @@ fn bulk_family<const D: usize>(
     horizon: f64,
     cell: f64,
 ) -> (Moments, Vec<Partner<3>>) {
-    let Layout::Grid(grid) = &body.layout else {
+    let Layout::Grid(grid) = body.layout() else {
         unreachable!("stencils live on grids")
     };
-    let volume = body.volume.uniform().unwrap_or(0.0);
+    let volume = body.volume().uniform().unwrap_or(0.0);
     let mut sum = Moments {
         first: 0.0,
         second: 0.0,
         bare: 0.0,
     };
     let mut family = vec![];
-    for o in stencil.offsets.iter().flatten() {
-        let r0 = grid.lattice.spacing * (o.squared as f64).sqrt() / 4.0;
+    for o in stencil.offsets().iter().flatten() {
+        let r0 = grid.lattice().spacing * (o.squared as f64).sqrt() / 4.0;
         let nu = if spec.bonds.volume_scaling {
             crate::family::volume_fraction(r0, horizon, cell)
         } else {
             1.0
         };
-        let edges = grid.lattice.kind.edges();
+        let edges = grid.lattice().kind.edges();
         let xi: [f64; 3] = crate::array::from_fn(|a| {
-            0.25 * grid.lattice.spacing * edges[a] * f64::from(o.quarter[a])
+            0.25 * grid.lattice().spacing * edges[a] * f64::from(o.quarter[a])
         });
         let omega = mean_influence(spec.bonds.influence, &xi, r0, horizon);
-        let w = nu * omega * volume / stencil.offsets.len() as f64;
-        sum.bare += nu * volume / stencil.offsets.len() as f64 * r0;
+        let w = nu * omega * volume / stencil.offsets().len() as f64;
+        sum.bare += nu * volume / stencil.offsets().len() as f64 * r0;
         sum.first += w * r0;
         sum.second += w * r0 * r0;
         family.push(Partner {
             xi,
             omega,
-            volume: nu * volume / stencil.offsets.len() as f64,
+            volume: nu * volume / stencil.offsets().len() as f64,
         });
     }
     (sum, family)
@@ -172,7 +172,7 @@ fn on_lattice<const D: usize>(
     let (stencil, horizon) = stencil_of(spec, kind, spacing)?;
     let periodic: [bool; D] = crate::array::from_fn(|a| spec.space.periodic[a].is_some());
     let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.space.section);
-    let body = Body::<D>::on_lattice(lattice, quarters, stencil.reach, periodic, volume)?;
+    let body = Body::<D>::on_lattice(lattice, quarters, stencil.reach(), periodic, volume)?;
     periods_fit(spec, &body)?;
     let (bulk, family) = bulk_family::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
     Ok(Reference {
@@ -220,7 +220,7 @@ fn stencil_of(spec: &Spec, kind: LatticeKind, spacing: f64) -> Result<(Stencil, 
 /// Are the periods that somebody gave those of the lattice?
 fn periods_fit<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildError> {
     for a in 0..D {
-        if let (Some(given), Some(p)) = (spec.space.periodic[a], body.period[a])
+        if let (Some(given), Some(p)) = (spec.space.periodic[a], body.period()[a])
             && given > 0.0
             && (given - p).abs() > 1e-9 * p
         {
@@ -286,18 +286,19 @@ fn of_cloud<const D: usize>(spec: &Spec, cloud: &Cloud) -> Result<Reference<D>, 
 
 /// Every site moved by a uniform random vector in ±amplitude per axis.
 fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>, BuildError> {
-    if !(p.amplitude >= 0.0 && p.amplitude < 0.5 * body.spacing) {
+    if !(p.amplitude >= 0.0 && p.amplitude < 0.5 * body.spacing()) {
         return Err(BuildError::invalid(
             "body.perturb",
             format!(
                 "the amplitude {} must be below half the spacing {}",
-                p.amplitude, body.spacing
+                p.amplitude,
+                body.spacing()
             ),
         ));
     }
     let mut random = SplitMix(p.seed);
     let position: Vec<Point> = body
-        .slots
+        .slots()
         .iter()
         .map(|s| {
             let mut x = body.position(*s as usize);
@@ -307,8 +308,14 @@ fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>
             x
         })
         .collect();
-    let volume = vec![body.volume.uniform().unwrap_or(1.0); position.len()];
-    Body::from_cloud(&position, &volume, &body.mark, body.spacing, body.period)
+    let volume = vec![body.volume().uniform().unwrap_or(1.0); position.len()];
+    Body::from_cloud(
+        &position,
+        &volume,
+        body.marks(),
+        body.spacing(),
+        body.period(),
+    )
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014): a seed gives the same body on every machine.

@@ -5,7 +5,7 @@ use super::names::Names;
 use super::parts::parts;
 use super::reference::SplitMix;
 use super::system::System;
-use crate::body::{Body, Values};
+use crate::body::Body;
 use crate::error::BuildError;
 use crate::message;
 use crate::quantity::{Dimension, Message};
@@ -27,9 +27,9 @@ pub(super) fn sets<const D: usize>(
 ) -> Result<(Sets, Sets), BuildError> {
     let (mut out, mut carried) = (vec![], vec![]);
     for set in &spec.sets {
-        let belongs = member(spec, body, &set.name, &set.members, 0, body.spacing)?;
+        let belongs = member(spec, body, &set.name, &set.members, 0, body.spacing())?;
         let ids: Vec<u32> = body
-            .slots
+            .slots()
             .iter()
             .enumerate()
             .filter(|(id, s)| belongs(*id, &body.position(**s as usize)))
@@ -73,7 +73,7 @@ pub(super) fn sets<const D: usize>(
 fn extent<const D: usize>(body: &Body<D>) -> Message {
     let mut told = Message::from("points lie at ");
     for a in 0..D {
-        let all = body.slots.iter().map(|s| body.position(*s as usize)[a]);
+        let all = body.slots().iter().map(|s| body.position(*s as usize)[a]);
         let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
             (l.min(x), h.max(x))
         });
@@ -105,7 +105,9 @@ fn member<'a, const D: usize>(
             Box::new(move |_, x| region.contains(x) || near(region, x, slack))
         }
         Members::Where(condition) => Box::new(|_, x| condition.eval(x, 0.0) != 0.0),
-        Members::Mark(mark) => Box::new(|id, _| body.mark.get(id).copied().unwrap_or(0) == *mark),
+        Members::Mark(mark) => {
+            Box::new(|id, _| body.marks().get(id).copied().unwrap_or(0) == *mark)
+        }
         Members::Basis(sites) => {
             let (BodySpec::Lattice {
                 kind,
@@ -229,7 +231,7 @@ pub(super) fn assign_materials<const D: usize>(
     if let [only] = materials.as_slice()
         && only.set == "all"
     {
-        body.density = Values::Uniform(only.density);
+        body.set_density(only.density);
         return Ok(());
     }
     if materials.len() > u8::MAX as usize {
@@ -259,7 +261,7 @@ pub(super) fn assign_materials<const D: usize>(
         };
         for &id in ids {
             if let Some(other) = of[id as usize].replace(n as u8) {
-                let x = body.position(body.slots[id as usize] as usize);
+                let x = body.position(body.slots()[id as usize] as usize);
                 return Err(BuildError::conflict(
                     format!("materials[{n}].set"),
                     format!(
@@ -274,7 +276,7 @@ pub(super) fn assign_materials<const D: usize>(
         }
     }
     if let Some(id) = of.iter().position(Option::is_none) {
-        let x = body.position(body.slots[id] as usize);
+        let x = body.position(body.slots()[id] as usize);
         return Err(BuildError::missing(
             "materials",
             format!("point {} at {x:?} belongs to no material", id + 1),
@@ -287,9 +289,9 @@ pub(super) fn assign_materials<const D: usize>(
         .map(|m| materials[m as usize].density)
         .collect();
     body.give_materials(of_points);
-    body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
-    if body.mark.is_empty() {
-        body.mark = of.iter().map(|m| i32::from(m.unwrap_or(0))).collect();
+    body.set_densities(&density);
+    if body.marks().is_empty() {
+        body.set_marks(of.iter().map(|m| i32::from(m.unwrap_or(0))).collect());
     }
     Ok(())
 }
@@ -338,7 +340,7 @@ fn of_points<const D: usize>(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildEr
     let (_, mut body) = parts::<D>(spec)?;
     let sets = sets(spec, &body, None)?.0;
     assign_materials(spec, &mut body, &sets)?;
-    let slots = body.slots.iter().map(|s| *s as usize);
+    let slots = body.slots().iter().map(|s| *s as usize);
     Ok(slots
         .map(|s| (body.position(s), body.material_of(s)))
         .collect())

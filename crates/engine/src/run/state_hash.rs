@@ -61,7 +61,7 @@ impl<const D: usize> Bonds<'_, D> {
         let [from, to] = [i, j].map(|slot| body.position(slot));
         let image = (0..D).map(|a| {
             let further = |period: f64| ((xi[a] - (to[a] - from[a])) / period).round() as i64;
-            body.period[a].map_or(0, further) as u64
+            body.period()[a].map_or(0, further) as u64
         });
         let [i, j] = [i, j].map(|slot| self.id[slot]);
         self.words.put([i, j].map(u64::from));
@@ -115,7 +115,7 @@ fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
 
     let (body, points) = (&system.body, system.body.points());
     let mut digests = vec![0; points.div_ceil(BLOCK)];
-    let slot = |id: usize| body.slots[id] as usize;
+    let slot = |id: usize| body.slots()[id] as usize;
     for (name, owner) in columns {
         let field = match owner {
             Owner::Displacement => &system.u,

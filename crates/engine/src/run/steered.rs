@@ -44,7 +44,7 @@ impl<const D: usize> Steered for Model<D> {
 
     fn prescribe(&mut self, way: Prescription, ids: &[u32]) {
         self.finish();
-        let slots = ids.iter().map(|id| self.system.body.slots[*id as usize]);
+        let slots = ids.iter().map(|id| self.system.body.slots()[*id as usize]);
         let (slots, prescribed) = (slots.collect(), &mut self.system.prescribed);
         match way {
             Prescription::Still => prescribed.still = Still::new(slots),
@@ -112,10 +112,10 @@ impl<const D: usize> Steered for Model<D> {
 
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {
         self.finish();
-        let slot = |id: &u32| self.system.body.slots[*id as usize];
+        let slot = |id: &u32| self.system.body.slots()[*id as usize];
         let new = driven.iter().map(|(drive, ids)| {
-            let slots = match ids {
-                None => self.system.body.slots.clone(),
+            let slots: Vec<u32> = match ids {
+                None => self.system.body.slots().to_vec(),
                 Some(ids) => ids.iter().map(slot).collect(),
             };
             let at = |s: &u32| self.system.body.position(*s as usize);

@@ -1,6 +1,6 @@
 //! Factors of bonds near a surface, put into a body and its interaction.
 
-use crate::body::{Body, Layout, Values};
+use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::interaction::Interaction;
 use crate::law::BondFactors;
@@ -17,11 +17,11 @@ pub(super) struct Factors<'a, const D: usize> {
 
 impl<'a, const D: usize> Factors<'a, D> {
     pub fn new(surface: &'a SurfaceFactors, body: &Body<D>) -> Factors<'a, D> {
-        let mut row = vec![0u32; body.len];
-        for (slot, r) in body.slots.iter().zip(&surface.row) {
+        let mut row = vec![0u32; body.len()];
+        for (slot, r) in body.slots().iter().zip(&surface.row) {
             row[*slot as usize] = *r;
         }
-        body.exchange.fill(&mut row);
+        body.exchange().fill(&mut row);
         let of_row = |bonds: &Vec<([i32; 3], SurfaceFactor)>| {
             let bonds = bonds.iter();
             bonds
@@ -60,7 +60,7 @@ pub(super) fn scale<const D: usize>(
         && surface.part.len() == rows
         && surface.row.iter().all(|r| (*r as usize) < rows)
         && surface.part.iter().all(|p| *p > 0.0 && *p <= 1.0);
-    let (true, Layout::Grid(_), Some(cell)) = (fits, &body.layout, body.volume.uniform()) else {
+    let (true, Layout::Grid(_), Some(cell)) = (fits, body.layout(), body.volume().uniform()) else {
         return Err(BuildError::conflict(
             "surface",
             format!(
@@ -82,9 +82,9 @@ pub(super) fn scale<const D: usize>(
         })
         .map_err(|e| e.at("surface"))?;
     if surface.ends_at_points() {
-        let mut volume = vec![0.0; body.len];
+        let mut volume = vec![0.0; body.len()];
         body.set_points(&mut volume, |slot| cell * factors.part(slot));
-        body.volume = Values::PerSlot(volume);
+        body.set_volumes(volume);
     }
     Ok(())
 }
@@ -96,30 +96,30 @@ pub(super) fn of_block<const D: usize>(
     body: &Body<D>,
     block: &Body<D>,
 ) -> Option<SurfaceFactors> {
-    let (Layout::Grid(whole), Layout::Grid(small)) = (&body.layout, &block.layout) else {
+    let (Layout::Grid(whole), Layout::Grid(small)) = (body.layout(), block.layout()) else {
         return None;
     };
-    let own = |grid: &crate::body::Grid<D>, a: usize| (grid.cells[a] - 2 * grid.halo[a]) as i64;
+    let own = |grid: &crate::body::Grid<D>, a: usize| (grid.cells()[a] - 2 * grid.halo()[a]) as i64;
     let full: i64 = (0..D).map(|a| own(whole, a)).product();
     if full != body.points() as i64 {
         return None;
     }
-    let mut row = vec![0u32; body.len];
-    for (slot, r) in body.slots.iter().zip(&surface.row) {
+    let mut row = vec![0u32; body.len()];
+    for (slot, r) in body.slots().iter().zip(&surface.row) {
         row[*slot as usize] = *r;
     }
     let of = |slot: u32| {
         let (c, _) = small.cell(slot as usize);
         let there = crate::array::from_fn(|a| {
-            let c = c[a] - small.halo[a] as i64;
+            let c = c[a] - small.halo()[a] as i64;
             let (n, m) = (own(whole, a), own(small, a));
-            whole.halo[a] as i64 + if 2 * c < m { c } else { n - m + c }
+            whole.halo()[a] as i64 + if 2 * c < m { c } else { n - m + c }
         });
         whole.slot(there, 0).map(|slot| row[slot])
     };
     Some(SurfaceFactors {
         row: block
-            .slots
+            .slots()
             .iter()
             .map(|s| of(*s))
             .collect::<Option<Vec<_>>>()?,

@@ -1,12 +1,12 @@
 //! The time step of a model: what it may be, and what it is.
 
 use super::atoms;
-use super::constitutive::ConstitutiveModels;
 use super::contact::Rules;
 use super::inertia::state::Inertia;
 use super::parts::Part;
 use super::probe;
 use crate::body::Body;
+use crate::constitutive::ConstitutiveModels;
 use crate::dynamics::contact_step::ContactLimit;
 use crate::error::BuildError;
 use crate::interaction::Interaction;

@@ -110,14 +110,14 @@ fn push_alone<const D: usize>(system: &mut System<D>, all: &mut [Loaded<D>]) {
     if all.is_empty() {
         return;
     }
-    let small = SMALL * system.body.spacing;
+    let small = SMALL * system.body.spacing();
     let mut u = system.body.at_rest();
-    let mut f = zeros(system.body.len);
+    let mut f = zeros(system.body.len());
     let mut stiffness = vec![[[0.0; D]; D]; all.len()];
     for way in [1.0, -1.0] {
         for a in 0..D {
             all.iter().for_each(|p| u[a][p.slot] = way * small);
-            system.body.exchange.fill(&mut u[a]);
+            system.body.exchange().fill(&mut u[a]);
             system
                 .interaction
                 .forces(&system.body, view(&u), view_mut(&mut f), Sweep::Hold, None);
@@ -125,7 +125,7 @@ fn push_alone<const D: usize>(system: &mut System<D>, all: &mut [Loaded<D>]) {
                 (0..D).for_each(|b| k[b][a] -= way * f[b][p.slot] / (2.0 * small));
             }
             all.iter().for_each(|p| u[a][p.slot] = 0.0);
-            system.body.exchange.fill(&mut u[a]);
+            system.body.exchange().fill(&mut u[a]);
         }
     }
     for (p, k) in all.iter_mut().zip(stiffness) {

@@ -55,13 +55,13 @@ impl<const D: usize> System<D> {
             true => {}
             false => refused(spec)?,
         }
-        let mut base = vec![(Bears::Stretch, f64::INFINITY); self.body.len];
-        for &s in &self.body.slots {
+        let mut base = vec![(Bears::Stretch, f64::INFINITY); self.body.len()];
+        for &s in self.body.slots() {
             let s = s as usize;
             base[s] = self.constitutive.bears(s, self.body.material_of(s));
         }
         let works = |s: &u32| base[*s as usize].0 == Bears::Work;
-        if self.body.slots.iter().all(works) {
+        if self.body.slots().iter().all(works) {
             // slots without a point are as all others: no column of stretches
             base.iter_mut().for_each(|b| b.0 = Bears::Work);
         }
@@ -108,9 +108,9 @@ impl<const D: usize> System<D> {
 
     /// The temperature of every slot of now; none where nobody asks.
     fn temperatures(&self, asked: bool) -> Vec<f64> {
-        let mut all = vec![0.0; if asked { self.body.len } else { 0 }];
+        let mut all = vec![0.0; if asked { self.body.len() } else { 0 }];
         if let (true, Some(values)) = (asked, self.transferred(Quantity::Heat.column())) {
-            for (&s, value) in self.body.slots.iter().zip(values) {
+            for (&s, value) in self.body.slots().iter().zip(values) {
                 all[s as usize] = value;
             }
         }

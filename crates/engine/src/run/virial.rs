@@ -27,11 +27,11 @@ impl<const D: usize> System<D> {
     /// Half of the virial of its pairs for each slot, of bonds and of repulsion inside families; as
     /// [`System::virial_of_bonds`].
     pub(super) fn virials_of_bonds(&mut self) -> Vec<[f64; 6]> {
-        let (body, mut points) = (&self.body, vec![[0.0; 6]; self.body.len]);
+        let (body, mut points) = (&self.body, vec![[0.0; 6]; self.body.len()]);
         let known = self
             .interaction
             .each_force(body, view(&self.u), &mut |bond| {
-                let factor = -0.5 * body.volume.at(bond.i);
+                let factor = -0.5 * body.volume().at(bond.i);
                 add_virial(&mut points[bond.i], &bond.force, &bond.y, factor);
             });
         if !known {
@@ -46,7 +46,7 @@ impl<const D: usize> System<D> {
             return;
         };
         contact.central.each_pull(&self.u, |touch| {
-            let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
+            let volumes = [touch.i, touch.j].map(|s| self.body.volume().at(s));
             add(&mut points[touch.i], &touch.y, 0.5 * touch.pull, volumes);
             add(&mut points[touch.j], &touch.y, 0.5 * touch.pull, volumes);
         });
@@ -58,7 +58,7 @@ impl<const D: usize> System<D> {
             return;
         };
         contact.central.each_pull(&self.u, |touch| {
-            let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
+            let volumes = [touch.i, touch.j].map(|s| self.body.volume().at(s));
             add(virial, &touch.y, touch.pull, volumes);
         });
     }

@@ -24,8 +24,8 @@ pub fn linear_body_touching<const D: usize>(
     contact: Option<&ContactForces<D>>,
     u: &Field<D>,
 ) -> LinearBody<D> {
-    let mut id = vec![u32::MAX; body.len];
-    for (n, &s) in body.slots.iter().enumerate() {
+    let mut id = vec![u32::MAX; body.len()];
+    for (n, &s) in body.slots().iter().enumerate() {
         id[s as usize] = n as u32;
     }
     let mut bonds = Bonds::default();
@@ -49,7 +49,7 @@ pub fn linear_body_touching<const D: usize>(
     let gain: Vec<f64> = match (bonds.channels, bonds.gained) {
         (0, _) => vec![],
         (_, true) => vec![1.0; n],
-        (_, false) => (body.slots.iter())
+        (_, false) => (body.slots().iter())
             .map(|s| interaction.gain(*s as usize))
             .collect(),
     };
@@ -68,12 +68,12 @@ pub fn linear_body_touching<const D: usize>(
         crate::array::from_fn(|a| x[a])
     };
     let per_point =
-        |v: &crate::body::Values| body.slots.iter().map(|s| v.at(*s as usize)).collect();
+        |v: &crate::body::Values| body.slots().iter().map(|s| v.at(*s as usize)).collect();
     let mut made = LinearBody {
-        position: body.slots.iter().map(|s| at(*s)).collect(),
-        volume: per_point(&body.volume),
-        density: per_point(&body.density),
-        period: body.period,
+        position: body.slots().iter().map(|s| at(*s)).collect(),
+        volume: per_point(body.volume()),
+        density: per_point(body.density()),
+        period: body.period(),
         start: vec![0],
         partner: Vec::with_capacity(parts.iter().map(|p| p.partner.len()).sum()),
         block: Vec::with_capacity(parts.iter().map(|p| p.partner.len()).sum()),

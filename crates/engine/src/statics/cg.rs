@@ -47,7 +47,7 @@ pub fn solve<const D: usize>(
             return Err(if curvature.is_nan() {
                 SolveError::NotFinite
             } else {
-                SolveError::indefinite(&p)
+                indefinite(&p)
             });
         }
         let step = rz / curvature;
@@ -118,4 +118,13 @@ fn inverse<const D: usize>(mut a: [[f64; D]; D]) -> Option<[[f64; D]; D]> {
         }
     }
     Some(inverse)
+}
+
+/// Where a motion that gives energy back is largest.
+fn indefinite<const D: usize>(p: &[[f64; D]]) -> SolveError {
+    let square = |p: &[f64; D]| p.iter().map(|c| c * c).sum::<f64>();
+    let largest = (0..p.len()).max_by(|i, j| square(&p[*i]).total_cmp(&square(&p[*j])));
+    SolveError::Indefinite {
+        point: largest.unwrap_or(0),
+    }
 }

@@ -20,28 +20,15 @@ pub mod modes;
 pub mod operator;
 pub mod relaxation;
 mod solved;
-mod soundness;
 pub mod support;
 mod vectors;
 
-use crate::error::SolveError;
+pub use crate::law::soundness::Soundness;
 pub use assemble::{linear_body, linear_body_touching};
 pub use direct::{Direct, SYMMETRIC};
 pub use goal::Goal;
 pub use masses::Masses;
 pub use operator::{Assembled, LinearOperator, Shifted, Swept};
 pub use solved::Solved;
-pub use soundness::Soundness;
 pub use support::Support;
 pub use vectors::{Block, diagonal, dot, norm};
-
-impl SolveError {
-    /// Where a motion that gives energy back is largest.
-    fn indefinite<const D: usize>(p: &[[f64; D]]) -> SolveError {
-        let square = |p: &[f64; D]| p.iter().map(|c| c * c).sum::<f64>();
-        let largest = (0..p.len()).max_by(|i, j| square(&p[*i]).total_cmp(&square(&p[*j])));
-        SolveError::Indefinite {
-            point: largest.unwrap_or(0),
-        }
-    }
-}

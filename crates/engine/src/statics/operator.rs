@@ -138,7 +138,7 @@ impl<'a, const D: usize> Swept<'a, D> {
     pub fn new(body: &'a Body<D>, interaction: &'a mut dyn Interaction<D>) -> Self {
         Swept {
             u: body.at_rest(),
-            f: zeros(body.len),
+            f: zeros(body.len()),
             body,
             interaction,
         }
@@ -157,7 +157,7 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
             y.fill([0.0; D]);
             return;
         }
-        let small = SMALL * body.spacing / peak;
+        let small = SMALL * body.spacing() / peak;
         body.set_vectors(&mut self.u, |id, _| x[id].map(|c| small * c));
         self.interaction.forces(
             body,
@@ -166,9 +166,9 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
             Sweep::Hold,
             None,
         );
-        for (y, &s) in y.iter_mut().zip(&body.slots) {
+        for (y, &s) in y.iter_mut().zip(body.slots()) {
             let s = s as usize;
-            let scale = -body.volume.at(s) / small;
+            let scale = -body.volume().at(s) / small;
             *y = crate::array::from_fn(|a| scale * self.f[a][s]);
         }
     }
@@ -176,15 +176,15 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
     /// Of the direct bonds; what goes through scalars is left out.
     fn diagonal(&mut self) -> Vec<[[f64; D]; D]> {
         let body = self.body;
-        let mut sum = vec![[[0.0; D]; D]; body.len];
+        let mut sum = vec![[[0.0; D]; D]; body.len()];
         self.interaction
             .tangents(body, view(&body.at_rest()), &mut |bond| {
                 for a in 0..D {
                     for b in 0..D {
-                        sum[bond.i][a][b] += body.volume.at(bond.i) * bond.stiffness[a][b];
+                        sum[bond.i][a][b] += body.volume().at(bond.i) * bond.stiffness[a][b];
                     }
                 }
             });
-        body.slots.iter().map(|s| sum[*s as usize]).collect()
+        body.slots().iter().map(|s| sum[*s as usize]).collect()
     }
 }

@@ -19,7 +19,7 @@ pub use rows::{Conduction, Rows, Surface};
 pub use touching::Touching;
 
 use crate::error::SolveError;
-use crate::execute::blocks::for_each_piece;
+use crate::execute::for_each_piece;
 use crate::spec::{Quantity, TransferMethod};
 use crate::state::{Archive, Owner};
 

@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::error::BuildError;
-use crate::execute::blocks::for_each_piece;
+use crate::execute::for_each_piece;
 use crate::execute::memory;
 use crate::interaction::{BondStatus, Interaction};
 
@@ -64,7 +64,7 @@ impl Rows {
             "a smaller body, horizon or m_ratio",
         )?;
         let place = |slot: usize| of.place[slot] as usize;
-        let volume = |slot: usize| body.volume.at(slot);
+        let volume = |slot: usize| body.volume().at(slot);
         let mut start = vec![0usize; points + 1];
         interaction.each_bond(body, &mut |i, j, _, _| {
             for slot in [i, j] {
@@ -105,7 +105,7 @@ impl Rows {
             }
         });
         if let Some(surface) = &of.surface {
-            for slot in &body.slots {
+            for slot in body.slots() {
                 let row = place(*slot as usize);
                 let part = &mut rows.part[rows.start[row]..rows.start[row + 1]];
                 if let Some(moment) = (surface.moment)(*slot as usize) {

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const ELSEWHERE: &[(&str, &str, &str)] = &[
     (
         "Thermoelastic",
-        "engine/src/run/constitutive/sweeps.rs",
+        "mechanics/src/constitutive/sweeps.rs",
         "what pmb is among the laws of law/material",
     ),
     (
@@ -23,7 +23,7 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
     ),
     (
         "ThermoelasticSolid",
-        "engine/src/run/constitutive/sweeps.rs",
+        "mechanics/src/constitutive/sweeps.rs",
         "what lps is among the laws of law/material",
     ),
     (
@@ -84,7 +84,7 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("eam", "lammps/src/command/molecular.rs", "a word of LAMMPS"),
     (
         "no_potential",
-        "engine/src/run/constitutive/shelf/atoms.rs",
+        "mechanics/src/constitutive/shelf/atoms.rs",
         "a message says what to write",
     ),
     (
@@ -200,9 +200,9 @@ fn a_law_or_potential_is_a_file_and_a_line() {
     assert!(potentials.0.len() >= 12 && fans.0.len() >= 4 && laws.0.len() >= 8);
     let (mut wrong, mut used) = (vec![], BTreeSet::new());
     for (listed, folder) in [
-        (potentials, "engine/src/law/potential/"),
-        (fans, "engine/src/law/fan/"),
-        (laws, "engine/src/law/material/"),
+        (potentials, "mechanics/src/law/potential/"),
+        (fans, "mechanics/src/law/fan/"),
+        (laws, "mechanics/src/law/material/"),
     ] {
         for word in &listed.0 {
             let (own, others) = touched(&sources, folder, word);
@@ -230,7 +230,7 @@ fn a_law_or_potential_is_a_file_and_a_line() {
 #[test]
 fn a_field_of_points_is_a_file_and_a_line() {
     let sources = sources();
-    let folder = "engine/src/observe/observables/";
+    let folder = "mechanics/src/observe/observables/";
     let files = sources.keys().filter(|p| p.starts_with(folder)).count();
     assert_eq!(
         files,

@@ -52,7 +52,7 @@ const FOLLOW: [&str; 10] = [
 /// What one body answers by default, several must ask each of them.
 #[test]
 fn several_bodies_answer_no_default() {
-    let folder = own("src/interaction");
+    let folder = own("../mechanics/src/interaction");
     let of = |file: &str, begin: &str| -> BTreeSet<String> {
         let text = fs::read_to_string(folder.join(file)).unwrap();
         let all = functions(block(&text, begin)).into_iter();

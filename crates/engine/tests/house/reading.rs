@@ -12,6 +12,13 @@ pub fn own(folder: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)
 }
 
+/// Modules of the engine and of the mechanics that it runs, which it has under its own name.
+pub fn engine() -> Modules {
+    let mut all = modules(&own("../mechanics/src"));
+    all.extend(modules(&own("src")));
+    all
+}
+
 /// The sources of each crate.
 pub fn crates() -> Vec<PathBuf> {
     let mut all: Vec<PathBuf> = fs::read_dir(own(".."))

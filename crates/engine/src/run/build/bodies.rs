@@ -1,10 +1,10 @@
 //! Bodies of a spec, before they have bonds.
 
-use crate::body::{Body, Layout, Values};
+use crate::body::Body;
+use crate::constitutive::{AnyPotentials, Shelf};
 use crate::error::BuildError;
 use crate::family::nodes::Nodes;
 use crate::quantity::Warnings;
-use crate::run::constitutive::{AnyPotentials, Shelf};
 use crate::run::faces::Faces;
 use crate::run::feasible::enough_memory;
 use crate::run::names::Names;
@@ -41,11 +41,11 @@ impl<'a, const D: usize> Bodies<'a, D> {
         let (mut parts, mut body) = parts::<D>(spec)?;
         match (potentials, spec.bonds.family) {
             (Some(potentials), _) if current_neighbours(spec) => {
-                atoms::check_box(potentials, &body.period)?;
+                atoms::check_box(potentials, &body.period())?;
                 parts[0].horizon = potentials.reach;
             }
             (Some(_), FamilyChoice::Reference) => {
-                atoms::check_periods("horizon", "horizon", parts[0].horizon, &body.period)?;
+                atoms::check_periods("horizon", "horizon", parts[0].horizon, &body.period())?;
             }
             _ => {}
         }
@@ -60,7 +60,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             Some(smooth) => {
                 let (nodes, carried) = Nodes::new(&body, smooth)?;
                 let mut atoms = std::mem::replace(&mut body, nodes);
-                atoms.density = Values::Uniform(spec.materials[0].density);
+                atoms.set_density(spec.materials[0].density);
                 clouds::own_densities(spec, &mut atoms);
                 Some((atoms, carried))
             }
@@ -76,13 +76,13 @@ impl<'a, const D: usize> Bodies<'a, D> {
             Some((atoms, carried)) => carried.give_masses(atoms, &mut body),
         }
         complete(&mut parts, &mut body, spec.body.pieces(), shelf)?;
-        if !body.horizon.is_empty() {
-            let own = body.slots.iter().map(|s| body.horizon[*s as usize]);
+        if !body.horizons().is_empty() {
+            let own = body.slots().iter().map(|s| body.horizons()[*s as usize]);
             least_horizon = own.fold(least_horizon, f64::min);
         }
         let by_length = |p: &&Part| matches!(p.spec.bonds.horizon, Horizon::Length(_));
         let ends = parts.iter().filter(by_length).flat_map(|p| &p.stencil);
-        let ends = ends.map(|s| s.near_horizon as u64).sum();
+        let ends = ends.map(|s| s.near_horizon() as u64).sum();
         if let (Some(potentials), BodySpec::Lattice { kind, spacing, .. }) =
             (potentials, &spec.body)
         {
@@ -132,11 +132,9 @@ fn complete<const D: usize>(
                 false => e,
             }
         })?;
-        if let Layout::Several(pieces) = &mut body.layout {
-            pieces[n].body = own;
-        }
+        body.change_piece(n, |body| *body = own);
     }
-    body.horizon = body.own_horizons(&parts.iter().map(|p| p.horizon).collect::<Vec<_>>());
+    body.join_horizons(&parts.iter().map(|p| p.horizon).collect::<Vec<_>>());
     Ok(())
 }
 

@@ -2,14 +2,14 @@
 
 use super::bodies::Bodies;
 use crate::body::Body;
+use crate::constitutive::{ConstitutiveModels, breaks};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::Interaction;
-use crate::interaction::atoms::smoothed::Smoothed;
+use crate::interaction::Smoothed;
 use crate::message;
 use crate::quantity::{Dimension, Warnings, rounded};
 use crate::run::bind::bind;
-use crate::run::constitutive::{ConstitutiveModels, breaks};
 use crate::run::{bonds, gaps, meant, precracks};
 use crate::spec::Spec;
 use crate::statics::SYMMETRIC;
@@ -36,7 +36,7 @@ impl<const D: usize> Bonds<D> {
         warnings: &mut Warnings,
     ) -> Result<Self, BuildError> {
         let (shelf, parts, body) = (&bodies.names.shelf, &mut bodies.parts, &mut bodies.body);
-        let cell_volume = body.volume.uniform();
+        let cell_volume = body.volume().uniform();
         let (constitutive, mut interaction) = match bodies.smoothed.take() {
             None => bind(spec, parts, body, shelf, simd, warnings)?,
             Some((mut atoms, carried)) => {
@@ -127,7 +127,7 @@ impl<const D: usize> Bonds<D> {
             )
             .help(message![
                 "the spacing is ",
-                Dimension::LENGTH.of(body.spacing),
+                Dimension::LENGTH.of(body.spacing()),
                 ": a horizon of three spacings is usual; points that only touch are a body with bonded = false",
             ]));
         }

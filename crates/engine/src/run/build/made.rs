@@ -5,6 +5,7 @@ use super::bonds::Bonds;
 use crate::body::{view, zeros};
 use crate::condition::applied::AppliedForces;
 use crate::condition::prescribed_motion::PrescribedMotion;
+use crate::constitutive::AnyPotentials;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::ContactForces;
@@ -14,7 +15,6 @@ use crate::run::bind::names;
 use crate::run::clock::Clock;
 use crate::run::clouds::own_velocities;
 use crate::run::conditions::tell_loads;
-use crate::run::constitutive::AnyPotentials;
 use crate::run::contact::Rules;
 use crate::run::inertia::state::Inertia;
 use crate::run::names::Names;
@@ -54,7 +54,7 @@ impl<const D: usize> Made<D> {
             .map(|n| range(n, n))
             .fold(bodies.horizon, f64::max);
         let gaps = gaps::between(body, reach, range);
-        let spacing = |n: usize| body.pieces()[n].body.spacing;
+        let spacing = |n: usize| body.pieces()[n].body.spacing();
         warnings.extend(gaps::warnings(spec, &gaps, spacing));
         let measured = limits(spec, trust, &bodies, &mut bonds, repulsion.as_ref())?;
         let (inertia, limits) = measured;
@@ -88,8 +88,8 @@ impl<const D: usize> Made<D> {
         };
         let system = System {
             info,
-            v: zeros(body.len),
-            f: zeros(body.len),
+            v: zeros(body.len()),
+            f: zeros(body.len()),
             u: body.at_rest(),
             inertia,
             contact,
@@ -216,7 +216,7 @@ fn info<const D: usize>(
 ) -> Info {
     let (body, interaction) = (&bodies.body, bonds.interaction.as_ref());
     let constitutive = &bonds.constitutive;
-    let sizes = body.slots.iter();
+    let sizes = body.slots().iter();
     let sizes = sizes.map(|s| interaction.family_size(body, *s as usize));
     let (smallest, largest) = sizes.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
     let sweeps = { constitutive.all().zip(&bodies.parts) }
@@ -236,10 +236,14 @@ fn info<const D: usize>(
         sweeps: sweeps.collect(),
         near_horizon: bonds.near_horizon,
         horizon: bodies.horizon,
-        spacing: body.spacing,
+        spacing: body.spacing(),
         section: spec.space.section,
         mass: body.mass(),
-        volume: body.slots.iter().map(|s| body.volume.at(*s as usize)).sum(),
+        volume: body
+            .slots()
+            .iter()
+            .map(|s| body.volume().at(*s as usize))
+            .sum(),
         // bonds of several kinds have no single one
         micromodulus: match spec.materials.iter().any(|m| kinds(&m.law)) {
             true => vec![],

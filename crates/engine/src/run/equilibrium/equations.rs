@@ -24,7 +24,7 @@ impl<const D: usize> Problem<'_, D> {
     /// What indenters and forces on points resist with at points.
     fn pushed(&self) -> Vec<Block<D>> {
         let system = &*self.system;
-        let mut sum = vec![[[0.0; D]; D]; system.body.len];
+        let mut sum = vec![[[0.0; D]; D]; system.body.len()];
         for indenter in &system.applied.rigid {
             indenter.each_tangent(&system.body, &system.u, |slot, _, block| {
                 for a in 0..D {
@@ -37,7 +37,7 @@ impl<const D: usize> Problem<'_, D> {
         system.applied.each_stiffness(|slot, block| {
             for a in 0..D {
                 for b in 0..D {
-                    sum[slot][a][b] += system.body.volume.at(slot) * block[a][b];
+                    sum[slot][a][b] += system.body.volume().at(slot) * block[a][b];
                 }
             }
         });

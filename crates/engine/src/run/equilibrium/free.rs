@@ -22,7 +22,7 @@ impl<const D: usize> Problem<'_, D> {
             let x = self.system.body.position(i);
             crate::array::from_fn(|a| x[a] + self.system.u[a][i])
         });
-        let support = Support::just_enough(&position, &parts, &self.system.body.period);
+        let support = Support::just_enough(&position, &parts, &self.system.body.period());
         let options = Statics {
             method: Method::Newton,
             tolerance,

@@ -33,7 +33,7 @@ impl<const D: usize> System<D> {
     /// Rigid motions of parts whose bonds hold together that meet no resistance.
     pub(super) fn loose_parts(&self, support: &Support<D>) -> Vec<Loose> {
         let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
-        support.loose(&self.body.places(), &parts, &self.body.period)
+        support.loose(&self.body.places(), &parts, &self.body.period())
     }
 }
 
@@ -53,7 +53,7 @@ impl<const D: usize> Problem<'_, D> {
         {
             return Ok(Held { support, resting });
         }
-        let (places, period) = (self.system.body.places(), self.system.body.period);
+        let (places, period) = (self.system.body.places(), self.system.body.period());
         let parts = Fragments::of(&self.system.body, self.system.interaction.as_ref()).label;
         let mut loose = support.loose(&places, &parts, &period);
         // one of each part

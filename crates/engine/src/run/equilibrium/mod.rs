@@ -18,11 +18,11 @@ use self::problem::Problem;
 use self::state::StaticState;
 use super::system::System;
 use crate::body::{Field, view, view_mut, zeros};
+use crate::constitutive::{ConstitutiveModel, Laws};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::interaction::Sweep;
 use crate::quantity::rounded;
-use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::run::traits;
 use crate::space::Point;
 use crate::spec::{LinearBody, Method, Statics};
@@ -62,7 +62,7 @@ impl<const D: usize> System<D> {
             && self.applied.rigid.is_empty();
         let loose = self.loose_parts(&support);
         if let Some(loose) = loose.first().filter(|_| !left_alone) {
-            let x = self.body.position(self.body.slots[loose.point] as usize);
+            let x = self.body.position(self.body.slots()[loose.point] as usize);
             let x = &x[..D];
             return Err(BuildError::ill_posed(
                 "conditions",
@@ -110,8 +110,8 @@ impl<const D: usize> System<D> {
             true => self.body.at_rest(),
             false => self.u.clone(),
         };
-        let still = zeros(self.body.len);
-        let mut f = zeros(self.body.len);
+        let still = zeros(self.body.len());
+        let mut f = zeros(self.body.len());
         let sweep = Sweep::Evolve {
             v: view(&still),
             steps: [0.0; 2],
@@ -140,7 +140,7 @@ impl<const D: usize> System<D> {
             SolveError::Unheld { point, .. } => Some(*point),
             _ => None,
         };
-        place.map(|n| self.body.position(self.body.slots[n] as usize))
+        place.map(|n| self.body.position(self.body.slots()[n] as usize))
     }
 }
 
@@ -274,10 +274,10 @@ impl<const D: usize> Problem<'_, D> {
     ) {
         let system = &mut *self.system;
         let now = system.external();
-        for (n, &s) in system.body.slots.iter().enumerate() {
+        for (n, &s) in system.body.slots().iter().enumerate() {
             let i = s as usize;
             for a in 0..D {
-                let moved = 0.5 * system.body.volume.at(i) * (system.u[a][i] - u[a][i]);
+                let moved = 0.5 * system.body.volume().at(i) * (system.u[a][i] - u[a][i]);
                 let all = f[a][i] + system.f[a][i];
                 let loads = external[a][i] + now[a][i];
                 if support.free[n][a] {

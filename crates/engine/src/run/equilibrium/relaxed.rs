@@ -27,14 +27,14 @@ impl<const D: usize> Problem<'_, D> {
     ) -> Result<Solved, SolveError> {
         let goal = self.goal(state.options);
         // direct stiffness of every point as its mass, scaled so that a step of 1 is well below the limit
-        let mut sum = vec![0.0; self.system.body.len];
+        let mut sum = vec![0.0; self.system.body.len()];
         let reference = self.system.body.at_rest();
         let body = &self.system.body;
         self.system
             .interaction
             .tangents(body, view(&reference), &mut |bond| {
                 let trace: f64 = (0..D).map(|a| bond.stiffness[a][a].abs()).sum();
-                sum[bond.i] += body.volume.at(bond.i) * trace;
+                sum[bond.i] += body.volume().at(bond.i) * trace;
             });
         let mut own = self.system.body.by_id(|i| sum[i]);
         let least = own.iter().copied().fold(0.0, f64::max) * 1e-3;
@@ -102,7 +102,7 @@ impl<const D: usize> Problem<'_, D> {
         sum.fill(0.0);
         system.applied.each_stiffness(|slot, block| {
             let size: f64 = block.as_flattened().iter().map(|k| k.abs()).sum();
-            sum[slot] += system.body.volume.at(slot) * size;
+            sum[slot] += system.body.volume().at(slot) * size;
         });
         if let Some(contact) = &system.contact {
             contact.central.add_stiffness(&system.body, &system.u, sum);
@@ -110,7 +110,7 @@ impl<const D: usize> Problem<'_, D> {
         for indenter in &system.applied.rigid {
             indenter.add_stiffness(&system.body, &system.u, sum);
         }
-        for ((m, own), &s) in mass.iter_mut().zip(own).zip(&system.body.slots) {
+        for ((m, own), &s) in mass.iter_mut().zip(own).zip(system.body.slots()) {
             *m = m.max(own + sum[s as usize]);
         }
     }
@@ -128,7 +128,7 @@ impl<const D: usize> Problem<'_, D> {
         let Some(contact) = &system.contact else {
             return;
         };
-        let mut sum = vec![0.0; system.body.len];
+        let mut sum = vec![0.0; system.body.len()];
         system
             .interaction
             .each_bond(&system.body, &mut |i, j, xi, _| {
@@ -138,7 +138,7 @@ impl<const D: usize> Problem<'_, D> {
                     sum[j] += stiffness;
                 }
             });
-        for (m, &s) in own.iter_mut().zip(&system.body.slots) {
+        for (m, &s) in own.iter_mut().zip(system.body.slots()) {
             *m += sum[s as usize];
         }
     }

@@ -20,7 +20,7 @@ use super::problem::Problem;
 use super::state::{Critical, Sequence, StaticState};
 use crate::body::{Field, view};
 use crate::error::{BuildError, SolveError};
-use crate::interaction::bond::critical_stretch;
+use crate::interaction::critical_stretch;
 use crate::interaction::{BondStatus, history};
 use crate::run::system::System;
 use crate::run::traits;
@@ -87,9 +87,9 @@ impl<const D: usize> System<D> {
         (0..2).all(|of| {
             (0..D).all(|a| {
                 // absent sites are far away
-                let all = self.body.slots.iter().map(|s| whole[of][a][*s as usize]);
+                let all = self.body.slots().iter().map(|s| whole[of][a][*s as usize]);
                 let most = all.fold(0.0f64, |m, x| m.max(x.abs()));
-                self.body.slots.iter().all(|s| {
+                self.body.slots().iter().all(|s| {
                     let [x, y, z] = [&none, &half, &whole].map(|w| w[of][a][*s as usize]);
                     x.abs() <= ROUND_OFF * most && (y - 0.5 * z).abs() <= ROUND_OFF * most
                 })
@@ -135,7 +135,7 @@ impl<const D: usize> Problem<'_, D> {
     fn let_go_of(&mut self, bonds: &[Critical<D>]) {
         let system = &mut *self.system;
         let held: f64 = system.quadratic_energy().iter().sum();
-        let near = 1e-6 * system.body.spacing;
+        let near = 1e-6 * system.body.spacing();
         let at = |slot: usize| -> [f64; D] {
             let x = system.body.position(slot);
             crate::array::from_fn(|a| x[a])
@@ -182,14 +182,14 @@ impl<const D: usize> Problem<'_, D> {
             column
         });
         for a in 0..D {
-            for &s in &self.system.body.slots {
+            for &s in self.system.body.slots() {
                 self.system.u[a][s as usize] *= factor;
             }
         }
         // what nothing holds has no part in the load
         for n in resting {
             for a in 0..D {
-                self.system.u[a][self.system.body.slots[n] as usize] = x[n][a];
+                self.system.u[a][self.system.body.slots()[n] as usize] = x[n][a];
             }
         }
         self.system.refresh_images();
@@ -236,7 +236,7 @@ impl<const D: usize> Problem<'_, D> {
             if by_work.is_empty() {
                 0
             } else {
-                system.body.len
+                system.body.len()
             }
         ];
         for (i, j, xi, part) in by_work {
@@ -295,11 +295,11 @@ impl<const D: usize> Problem<'_, D> {
         let least = least.fold(f64::INFINITY, f64::min);
         let largest = all.iter().map(|(_, b)| b.stretch).fold(0.0, f64::max);
         // where stress or work is all that there is of a body that moves as a whole it is round-off
-        let peak = { system.body.slots.iter() }
+        let peak = { system.body.slots().iter() }
             .flat_map(|s| system.u.iter().map(|c| c[*s as usize].abs()))
             .fold(0.0f64, f64::max);
         let forced = !stress.is_empty() || !work.is_empty();
-        let rests = forced && !(most * system.body.spacing > AT_REST * peak);
+        let rests = forced && !(most * system.body.spacing() > AT_REST * peak);
         if rests || !(least.is_finite() && least * most > AT_REST * largest) {
             return Err(SolveError::NothingBreaks);
         }
@@ -313,10 +313,10 @@ impl<const D: usize> Problem<'_, D> {
     fn account_sequence(&mut self, u: &Field<D>, last: Option<&Sequence<D>>, factor: f64) {
         let system = &mut *self.system;
         let dot = |f: &dyn Fn(usize, usize) -> f64, x: &dyn Fn(usize, usize) -> f64| {
-            let each = system.body.slots.iter().map(|s| *s as usize);
+            let each = system.body.slots().iter().map(|s| *s as usize);
             each.map(|i| {
                 let along: f64 = (0..D).map(|a| f(a, i) * x(a, i)).sum();
-                system.body.volume.at(i) * along
+                system.body.volume().at(i) * along
             })
             .sum::<f64>()
         };

@@ -45,7 +45,7 @@ impl<const D: usize> Problem<'_, D> {
         let mut load = self.system.external();
         if !self.system.at_peace() {
             let reference = self.system.stressed().forces.clone();
-            for (f, &s) in reference.iter().zip(&self.system.body.slots) {
+            for (f, &s) in reference.iter().zip(self.system.body.slots()) {
                 for a in 0..D {
                     load[a][s as usize] += f[a];
                 }
@@ -179,9 +179,9 @@ impl<const D: usize> Problem<'_, D> {
             };
             let far = longest(&step.x).max(step.far);
             let least = match inertia {
-                None => LEAST_STEP * self.system.body.spacing,
+                None => LEAST_STEP * self.system.body.spacing(),
                 // points may have gone far from where they were
-                Some(_) => (LEAST_STEP * self.system.body.spacing)
+                Some(_) => (LEAST_STEP * self.system.body.spacing())
                     .max(4.0 * f64::EPSILON * longest(&now.x)),
             };
             if far < least {
@@ -195,7 +195,7 @@ impl<const D: usize> Problem<'_, D> {
             }
             // a full step, or as much of it as lowers the residual; downhill that may grow
             let mut part = match unstable {
-                true => (LONGEST_STEP * self.system.body.spacing / far).min(1.0),
+                true => (LONGEST_STEP * self.system.body.spacing() / far).min(1.0),
                 false => 1.0,
             };
             for halving in 0..=HALVINGS {

@@ -122,7 +122,7 @@ impl<const D: usize> Problem<'_, D> {
     }
 
     pub(super) fn set_velocities_of(&mut self, tried: &Tried<D>) {
-        for (v, &s) in tried.v.iter().zip(&self.system.body.slots) {
+        for (v, &s) in tried.v.iter().zip(self.system.body.slots()) {
             for a in 0..D {
                 self.system.v[a][s as usize] = v[a];
             }

@@ -24,9 +24,9 @@ impl<const D: usize> System<D> {
             false => inertia.masses.times(&a),
         };
         inertia.taken.swap(0, 1);
-        for (n, &s) in self.body.slots.iter().enumerate() {
+        for (n, &s) in self.body.slots().iter().enumerate() {
             let i = s as usize;
-            let (rho, volume) = (self.body.density.at(i), self.body.volume.at(i));
+            let (rho, volume) = (self.body.density().at(i), self.body.volume().at(i));
             for axis in 0..D {
                 inertia.taken[0][axis][i] = taken.get(n).map_or(0.0, |t| t[axis] / volume);
                 inertia.push[axis][i] = match inertia.support.free[n][axis] {
@@ -43,7 +43,7 @@ impl<const D: usize> System<D> {
         let support = self.held();
         let mut a = vec![[0.0; D]; self.body.points()];
         self.prescribed_accelerations(&mut a);
-        let volume = |i: usize| self.body.volume.at(i);
+        let volume = |i: usize| self.body.volume().at(i);
         let force = self
             .body
             .by_id(|i| crate::array::from_fn(|axis| volume(i) * self.f[axis][i]));
@@ -82,10 +82,10 @@ impl<const D: usize> System<D> {
         for (v, before) in change.iter_mut().zip(self.body.values(before)) {
             *v = crate::array::from_fn(|a| v[a] - before[a]);
         }
-        let mut field = zeros(self.body.len);
-        for (m, &s) in masses.times(&change).iter().zip(&self.body.slots) {
+        let mut field = zeros(self.body.len());
+        for (m, &s) in masses.times(&change).iter().zip(self.body.slots()) {
             for a in 0..D {
-                field[a][s as usize] = m[a] / self.body.volume.at(s as usize);
+                field[a][s as usize] = m[a] / self.body.volume().at(s as usize);
             }
         }
         Some(field)

@@ -52,8 +52,8 @@ impl<const D: usize> Inertia<D> {
             masses: Arc::new(masses),
             support,
             factors,
-            push: zeros(body.len),
-            taken: [zeros(body.len), zeros(body.len)],
+            push: zeros(body.len()),
+            taken: [zeros(body.len()), zeros(body.len())],
         }))
     }
 

@@ -61,7 +61,8 @@ impl<const D: usize> System<D> {
             ..preload.statics
         };
         let cuts = preload.cuts.iter().enumerate().map(|(n, cut)| {
-            Crack::new(&cut.shape, self.body.period).map_err(|e| e.at(format!("preload.cuts[{n}]")))
+            Crack::new(&cut.shape, self.body.period())
+                .map_err(|e| e.at(format!("preload.cuts[{n}]")))
         });
         let cuts = cuts.collect::<Result<Vec<_>, _>>()?;
         let within = |e: BuildError| e.within("preload");
@@ -127,7 +128,7 @@ impl<const D: usize> System<D> {
     }
 
     fn apart(&self, x: f64, y: f64) -> bool {
-        !((x - y).abs() <= NEAR * (self.body.spacing + x.abs().max(y.abs())))
+        !((x - y).abs() <= NEAR * (self.body.spacing() + x.abs().max(y.abs())))
     }
 
     /// Does motion begin where statics ended?

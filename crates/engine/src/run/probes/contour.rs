@@ -45,13 +45,13 @@ impl<const D: usize> System<D> {
             ));
         }
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        for &s in &self.body.slots {
+        for &s in self.body.slots() {
             let x = self.body.position(s as usize);
             for (b, x) in bounds.iter_mut().zip(x) {
                 *b = [b[0].min(x), b[1].max(x)];
             }
         }
-        let (horizon, half_cell) = (self.info.horizon, 0.5 * self.body.spacing);
+        let (horizon, half_cell) = (self.info.horizon, 0.5 * self.body.spacing());
         for a in 0..2 {
             let (low, high) = (spec.low[a], spec.high[a]);
             if !(high - low >= 2.0 * REACH * horizon) {
@@ -108,7 +108,7 @@ impl<const D: usize> System<D> {
         };
         let (along, both) = (strained(1.0, 0.0), strained(1.0, 1.0));
         let mut moduli: Vec<f64> = vec![];
-        for (id, &s) in self.body.slots.iter().enumerate() {
+        for (id, &s) in self.body.slots().iter().enumerate() {
             let x = self.body.position(s as usize);
             if (0..2).all(|a| x[a] > spec.low[a] && x[a] < spec.high[a]) {
                 // W = ½ C₁₁ and C₁₁ + C₁₂
@@ -149,13 +149,13 @@ impl<const D: usize> Model<D> {
             let volume = self
                 .system
                 .body
-                .volume
-                .at(self.system.body.slots[id] as usize);
+                .volume()
+                .at(self.system.body.slots()[id] as usize);
             sum -= volume * energy[id] * (slope[0] * n[0] + slope[1] * n[1]);
         }
         let (id, volume) = (
             self.system.body.ids_by_slot(),
-            self.system.body.volume.clone(),
+            self.system.body.volume().clone(),
         );
         self.system.each_pair_force(&mut |bond| {
             let (i, j) = (id[bond.i] as usize, id[bond.j] as usize);

@@ -119,7 +119,7 @@ impl<const D: usize> Model<D> {
             let x = self
                 .system
                 .body
-                .position(self.system.body.slots[*id as usize] as usize);
+                .position(self.system.body.slots()[*id as usize] as usize);
             (0..D).map(|a| (x[a] - at[a]).powi(2)).sum()
         };
         let nearest = ids.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
@@ -208,8 +208,8 @@ impl<const D: usize> Model<D> {
                             let volume = self
                                 .system
                                 .body
-                                .volume
-                                .at(self.system.body.slots[*id as usize] as usize);
+                                .volume()
+                                .at(self.system.body.slots()[*id as usize] as usize);
                             volume * named(&columns, name).values.at(*id as usize, 0)
                         };
                         probe.ids.iter().map(of_point).sum::<f64>()
@@ -241,7 +241,7 @@ impl<const D: usize> System<D> {
         let wanted: std::collections::HashMap<usize, usize> = ids
             .iter()
             .enumerate()
-            .map(|(n, id)| (self.body.slots[*id as usize] as usize, n))
+            .map(|(n, id)| (self.body.slots()[*id as usize] as usize, n))
             .collect();
         // a component that two constraints hold is held once
         let mut held: Vec<[Option<f64>; D]> = vec![[None; D]; ids.len()];
@@ -258,8 +258,8 @@ impl<const D: usize> System<D> {
         }
         let mut forces = vec![];
         for (id, held) in ids.iter().zip(held) {
-            let s = self.body.slots[*id as usize] as usize;
-            let (rho, volume) = (self.body.density.at(s), self.body.volume.at(s));
+            let s = self.body.slots()[*id as usize] as usize;
+            let (rho, volume) = (self.body.density().at(s), self.body.volume().at(s));
             let of = |a: usize| {
                 held[a].map_or(0.0, |acceleration| {
                     let taken = match &self.inertia {

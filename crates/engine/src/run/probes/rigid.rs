@@ -8,53 +8,51 @@ use crate::observe::ProbeColumn;
 use crate::run::system::System;
 use crate::spec::RigidQuantity;
 
-impl RigidQuantity {
-    /// Names of what it consists of in D dimensions: components, or energies.
-    fn parts<const D: usize>(self) -> &'static [&'static str] {
-        let axes = Shape::Vector.components();
-        match self {
-            RigidQuantity::Energy => &["kinetic", "dissipated"],
-            // in a plane about z, on a line about nothing
-            RigidQuantity::Torque | RigidQuantity::Turn | RigidQuantity::Spin => {
-                &axes[[3, 3, 2, 0][D]..]
-            }
-            RigidQuantity::Force | RigidQuantity::Center | RigidQuantity::Velocity => &axes[..D],
+/// Names of what it consists of in D dimensions: components, or energies.
+fn parts<const D: usize>(of: RigidQuantity) -> &'static [&'static str] {
+    let axes = Shape::Vector.components();
+    match of {
+        RigidQuantity::Energy => &["kinetic", "dissipated"],
+        // in a plane about z, on a line about nothing
+        RigidQuantity::Torque | RigidQuantity::Turn | RigidQuantity::Spin => {
+            &axes[[3, 3, 2, 0][D]..]
         }
+        RigidQuantity::Force | RigidQuantity::Center | RigidQuantity::Velocity => &axes[..D],
     }
+}
 
-    fn column(self, name: String) -> ProbeColumn {
-        let dimension = match self {
-            RigidQuantity::Force => Dimension::FORCE,
-            RigidQuantity::Torque | RigidQuantity::Energy => Dimension::ENERGY,
-            RigidQuantity::Center => Dimension::LENGTH,
-            RigidQuantity::Velocity => Dimension::VELOCITY,
-            RigidQuantity::Turn => Dimension::NUMBER,
-            RigidQuantity::Spin => Dimension::FREQUENCY,
-        };
-        let column = ProbeColumn::new(name, dimension);
-        match self {
-            // no energy, though it has the dimension of one
-            RigidQuantity::Torque => column.moment(),
-            _ => column,
-        }
+fn column(of: RigidQuantity, name: String) -> ProbeColumn {
+    let dimension = match of {
+        RigidQuantity::Force => Dimension::FORCE,
+        RigidQuantity::Torque | RigidQuantity::Energy => Dimension::ENERGY,
+        RigidQuantity::Center => Dimension::LENGTH,
+        RigidQuantity::Velocity => Dimension::VELOCITY,
+        RigidQuantity::Turn => Dimension::NUMBER,
+        RigidQuantity::Spin => Dimension::FREQUENCY,
+    };
+    let column = ProbeColumn::new(name, dimension);
+    match of {
+        // no energy, though it has the dimension of one
+        RigidQuantity::Torque => column.moment(),
+        _ => column,
     }
+}
 
-    /// Its numbers, in the order of its parts.
-    fn of<const D: usize>(self, indenter: &Indenter<D>) -> Vec<f64> {
-        let rigid = &indenter.rigid;
-        let vector = match self {
-            RigidQuantity::Energy => return vec![rigid.kinetic(), indenter.dissipated()],
-            RigidQuantity::Force => indenter.force,
-            RigidQuantity::Torque => indenter.torque,
-            RigidQuantity::Center => rigid.center,
-            RigidQuantity::Velocity => rigid.velocity,
-            RigidQuantity::Turn => rigid.turn(),
-            RigidQuantity::Spin => rigid.turning,
-        };
-        let count = self.parts::<D>().len();
-        let first = if self.is_turn() { 3 - count } else { 0 };
-        vector[first..first + count].to_vec()
-    }
+/// Its numbers, in the order of its parts.
+fn values<const D: usize>(of: RigidQuantity, indenter: &Indenter<D>) -> Vec<f64> {
+    let rigid = &indenter.rigid;
+    let vector = match of {
+        RigidQuantity::Energy => return vec![rigid.kinetic(), indenter.dissipated()],
+        RigidQuantity::Force => indenter.force,
+        RigidQuantity::Torque => indenter.torque,
+        RigidQuantity::Center => rigid.center,
+        RigidQuantity::Velocity => rigid.velocity,
+        RigidQuantity::Turn => rigid.turn(),
+        RigidQuantity::Spin => rigid.turning,
+    };
+    let count = parts::<D>(of).len();
+    let first = if of.is_turn() { 3 - count } else { 0 };
+    vector[first..first + count].to_vec()
 }
 
 impl<const D: usize> System<D> {
@@ -84,8 +82,8 @@ impl<const D: usize> System<D> {
         let of = of.map_or(RigidQuantity::ALL.to_vec(), |of| vec![of]);
         let each = |of: &RigidQuantity| {
             let of = *of;
-            let parts = of.parts::<D>().iter();
-            parts.map(move |part| of.column(format!("{probe}_{}_{part}", of.name())))
+            let parts = parts::<D>(of).iter();
+            parts.map(move |part| column(of, format!("{probe}_{}_{part}", of.name())))
         };
         let columns = of.iter().flat_map(each).collect();
         Ok((Kind::Rigid(n, of), columns))
@@ -95,8 +93,8 @@ impl<const D: usize> System<D> {
         let found = self.applied.rigid.get(indenter);
         // conditions that were replaced since took the body away
         let value = |q: &RigidQuantity| match found {
-            Some(indenter) => q.of(indenter),
-            None => vec![f64::NAN; q.parts::<D>().len()],
+            Some(indenter) => values(*q, indenter),
+            None => vec![f64::NAN; parts::<D>(*q).len()],
         };
         of.iter().flat_map(value).collect()
     }

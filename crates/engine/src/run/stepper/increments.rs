@@ -4,7 +4,7 @@ use super::{SplitStep, Stepper};
 use crate::body::{Field, view, view_mut, zeros};
 use crate::error::{BuildError, RunError};
 use crate::interaction::Sweep;
-use crate::interaction::criterion;
+use crate::interaction::cycles_to_wear;
 use crate::interaction::friction::Pressed;
 use crate::message;
 use crate::quantity::Dimension;
@@ -66,7 +66,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
         // nothing acts before the first increment
         let first = !system.clock.has_gone_on() && !options.control.follows_a_path();
         let external = match first {
-            true => zeros(system.body.len),
+            true => zeros(system.body.len()),
             false => system.external(),
         };
         system.acting_depart(Pressed::Held);
@@ -148,7 +148,7 @@ impl<const D: usize> Increments<D> {
     pub fn new(options: Statics, system: &System<D>) -> Self {
         Increments {
             state: StaticState::new(options),
-            slots: system.body.len,
+            slots: system.body.len(),
         }
     }
 
@@ -201,7 +201,7 @@ fn wear<const D: usize>(system: &mut System<D>, cycles: Option<Cycles>) {
         return;
     };
     let left = (cycles.most - system.accounts.cycles).max(0.0);
-    let passed = criterion::cycles(&bonds, &cycles, left);
+    let passed = cycles_to_wear(&bonds, &cycles, left);
     system.interaction.wear(&mut bonds.into_iter(), passed);
     system.accounts.cycles += passed;
 }

@@ -173,7 +173,7 @@ impl<const D: usize> NewmarkStepper<D> {
             acceleration: vec![],
             bodies: vec![],
             breaks,
-            period: system.body.period,
+            period: system.body.period(),
         })
     }
 
@@ -185,9 +185,9 @@ impl<const D: usize> NewmarkStepper<D> {
         change: Option<&Field<D>>,
     ) -> f64 {
         let mut taken = 0.0;
-        for (free, &s) in self.held.free.iter().zip(&system.body.slots) {
+        for (free, &s) in self.held.free.iter().zip(system.body.slots()) {
             let i = s as usize;
-            let rho = system.body.density.at(i);
+            let rho = system.body.density().at(i);
             let mut each = 0.0;
             for a in (0..D).filter(|a| free[*a]) {
                 let work = 0.5 * (f[a][i] + system.f[a][i]) * (system.u[a][i] - u[a][i]);
@@ -198,7 +198,7 @@ impl<const D: usize> NewmarkStepper<D> {
                 };
                 each += work - 0.5 * momentum * (now + before);
             }
-            taken += each * system.body.volume.at(i);
+            taken += each * system.body.volume().at(i);
         }
         taken
     }
@@ -214,9 +214,9 @@ impl<const D: usize> NewmarkStepper<D> {
         }
         self.equations.forget();
         system.forces_held(system.clock.trial());
-        for (a, &s) in self.acceleration.iter_mut().zip(&system.body.slots) {
+        for (a, &s) in self.acceleration.iter_mut().zip(system.body.slots()) {
             let i = s as usize;
-            let rho = system.body.density.at(i);
+            let rho = system.body.density().at(i);
             for axis in 0..D {
                 a[axis] += (system.f[axis][i] - whole[axis][i]) / rho;
             }
@@ -252,13 +252,13 @@ impl<const D: usize> NewmarkStepper<D> {
         }
         // as if accelerations stayed what they are
         let mut a = vec![[0.0; D]; system.body.points()];
-        for (n, &s) in system.body.slots.iter().enumerate() {
+        for (n, &s) in system.body.slots().iter().enumerate() {
             let i = s as usize;
             for axis in (0..D).filter(|axis| support.free[n][*axis]) {
                 let rate = match self.acceleration.get(n) {
                     Some(known) => known[axis],
                     None if let Some(coupled) = &coupled => coupled[n][axis],
-                    None => system.f[axis][i] / system.body.density.at(i),
+                    None => system.f[axis][i] / system.body.density().at(i),
                 };
                 system.u[axis][i] += dt * (system.v[axis][i] + 0.5 * dt * rate);
                 system.v[axis][i] += dt * rate;
@@ -315,11 +315,11 @@ impl<const D: usize> NewmarkStepper<D> {
         let velocity = options.gamma / (options.beta * system.clock.dt());
         let acceleration = 1.0 / (options.beta * system.clock.dt() * system.clock.dt());
         let viscosity = system.applied.viscosity(&system.body, t);
-        let volume = |i: usize| system.body.volume.at(i);
+        let volume = |i: usize| system.body.volume().at(i);
         let weight = 1.0 / (1.0 + options.alpha);
         let mass = system
             .body
-            .by_id(|i| weight * system.body.density.at(i) * volume(i));
+            .by_id(|i| weight * system.body.density().at(i) * volume(i));
         let drag = system.body.by_id(|i| viscosity[i] * volume(i));
         let both = mass.iter().zip(&drag);
         let past = match options.alpha != 0.0 {

@@ -2,11 +2,11 @@
 
 use super::{SplitStep, Stepper};
 use crate::body::view;
+use crate::constitutive::{ConstitutiveModel, Laws};
 use crate::dynamics::verlet::Verlet;
 use crate::error::RunError;
 use crate::execute::simd::Simd;
 use crate::interaction::PointEnergies;
-use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::run::system::{Regime, System};
 use crate::run::time_step::Limits;
 use crate::spec::{Spec, TimeStep};
@@ -109,7 +109,7 @@ impl<const D: usize> SplitStep<D> for VelocityVerlet {
         };
         let limit = match system.constitutive.all().all(linear) {
             true => f64::INFINITY,
-            false => system.body.spacing,
+            false => system.body.spacing(),
         };
         let f = system.inertia.as_ref().map_or(&system.f, |i| &i.push);
         let fastest = self.verlet.advance(
@@ -215,7 +215,7 @@ impl VelocityVerlet {
     /// Back to the step before: where it was, and with the forces that were.
     fn step_back<const D: usize>(&mut self, system: &mut System<D>) {
         let dt = system.clock.dt();
-        for &s in &system.body.slots {
+        for &s in system.body.slots() {
             for a in 0..D {
                 system.u[a][s as usize] -= dt * system.v[a][s as usize];
             }
@@ -254,7 +254,7 @@ fn refused<const D: usize>(system: &System<D>, limit: f64) -> RunError {
         }
     };
     let nowhere = |i: usize| (0..D).any(|a| !system.u[a][i].is_finite());
-    let slots = || system.body.slots.iter().map(|s| *s as usize).enumerate();
+    let slots = || system.body.slots().iter().map(|s| *s as usize).enumerate();
     let found = slots()
         .find(|(_, i)| nowhere(*i))
         .or_else(|| slots().max_by(|a, b| far(a.1).total_cmp(&far(b.1))));
@@ -281,7 +281,7 @@ fn is_pushed<const D: usize>(system: &System<D>, slot: usize) -> bool {
     system.interaction.observe(
         &system.body,
         view(&system.u),
-        &mut seen.for_slots(system.body.len),
+        &mut seen.for_slots(system.body.len()),
     );
     if let Some(contact) = &system.contact {
         let repulsion = &mut seen.repulsion;

@@ -37,12 +37,12 @@ impl<const D: usize> System<D> {
         });
         self.watch.virials = self.watch.take(Watched::Virials).then(|| match bonds {
             true => self.virials_of_bonds(),
-            false => vec![[0.0; 6]; self.body.len],
+            false => vec![[0.0; 6]; self.body.len()],
         });
         if bonds {
-            self.body.exchange.fill_field(&mut self.v);
+            self.body.exchange().fill_field(&mut self.v);
             self.tell_toughness();
-            let room = self.body.len;
+            let room = self.body.len();
             let mut seen = watched.as_mut().map(|w| w.for_slots(room));
             let tally = self.interaction.forces(
                 &self.body,
@@ -61,7 +61,7 @@ impl<const D: usize> System<D> {
         } else {
             self.f.iter_mut().for_each(|c| c.fill(0.0));
             if let Some(w) = &mut watched {
-                w.for_slots(self.body.len).zeros(self.body.len);
+                w.for_slots(self.body.len()).zeros(self.body.len());
             }
         }
         self.watch.energies = watched;

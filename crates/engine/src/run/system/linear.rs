@@ -8,9 +8,9 @@
 use super::System;
 use super::stressed::Stressed;
 use crate::body::{Field, view, view_mut, zeros};
+use crate::constitutive::Laws;
 use crate::interaction::{PointEnergies, Sweep};
 use crate::law::descriptor::Memory;
-use crate::run::constitutive::Laws;
 use crate::spec::{LinearBody, Solver, Statics};
 use crate::statics::operator::SMALL;
 use crate::statics::{self, Support};
@@ -59,11 +59,11 @@ impl<const D: usize> System<D> {
     /// The displacements of now made so small that laws without forces at rest are linear to the last digit, as in
     /// [`Swept`](crate::statics::Swept), and by which factor: a power of two, which rounds nothing.
     pub fn made_small(&self) -> (Field<D>, f64) {
-        let slots = || self.body.slots.iter().map(|s| *s as usize);
+        let slots = || self.body.slots().iter().map(|s| *s as usize);
         let peak = (0..D).flat_map(|a| slots().map(move |i| (a, i)));
         let peak = peak.fold(0.0f64, |m, (a, i)| m.max(self.u[a][i].abs()));
         let small = match peak > 0.0 {
-            true => (SMALL * self.body.spacing / peak).log2().floor().exp2(),
+            true => (SMALL * self.body.spacing() / peak).log2().floor().exp2(),
             false => 1.0,
         };
         let mut u = self.body.at_rest();
@@ -80,7 +80,7 @@ impl<const D: usize> System<D> {
             false => self.interaction.observe(
                 &self.body,
                 view(&self.u),
-                &mut seen.for_slots(self.body.len),
+                &mut seen.for_slots(self.body.len()),
             ),
         }
         seen
@@ -89,7 +89,7 @@ impl<const D: usize> System<D> {
     fn see_linear(&self, seen: &mut PointEnergies) {
         let (u, small) = self.made_small();
         self.interaction
-            .observe(&self.body, view(&u), &mut seen.for_slots(self.body.len));
+            .observe(&self.body, view(&u), &mut seen.for_slots(self.body.len()));
         for energy in seen.strain.iter_mut().chain(&mut seen.repulsion) {
             *energy = *energy / small / small;
         }
@@ -100,7 +100,7 @@ impl<const D: usize> System<D> {
     pub fn stressed(&mut self) -> &Stressed<D> {
         let found = self.stressed.take().unwrap_or_else(|| {
             let rest = self.body.at_rest();
-            let mut forces = zeros(self.body.len);
+            let mut forces = zeros(self.body.len());
             let out = view_mut(&mut forces);
             self.interaction
                 .forces(&self.body, view(&rest), out, Sweep::Hold, None);
@@ -129,7 +129,7 @@ impl<const D: usize> System<D> {
         if !self.at_peace() {
             let u = self.body.values(&self.u);
             let forces = self.stressed().forces_at(&u);
-            for (f, &s) in forces.iter().zip(&self.body.slots) {
+            for (f, &s) in forces.iter().zip(self.body.slots()) {
                 for a in 0..D {
                     self.f[a][s as usize] = f[a];
                 }
@@ -144,7 +144,7 @@ impl<const D: usize> System<D> {
             Sweep::Hold,
             None,
         );
-        for &s in &self.body.slots {
+        for &s in self.body.slots() {
             for a in 0..D {
                 self.f[a][s as usize] /= small;
             }

@@ -14,7 +14,6 @@ use self::stressed::Stressed;
 use super::Info;
 use super::accounts::state::Accounts;
 use super::clock::Clock;
-use super::constitutive::ConstitutiveModels;
 use super::healing::state::Healing;
 use super::inertia::state::Inertia;
 use super::transfers::state::Transfers;
@@ -23,6 +22,7 @@ use crate::condition::applied::AppliedForces;
 use crate::condition::constraint::Constraint;
 use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::condition::toughness::ToughnessField;
+use crate::constitutive::ConstitutiveModels;
 use crate::interaction::{ContactForces, Fault, Interaction, PointEnergies};
 use crate::observe::Observed;
 use crate::spec::Release;
@@ -73,7 +73,7 @@ impl<const D: usize> System<D> {
             + self.interaction.bytes()
             + self.contact.as_ref().map_or(0, ContactForces::bytes)
             + self.inertia.as_ref().map_or(0, |i| i.masses.bytes())
-            + 3 * D * 8 * self.body.len
+            + 3 * D * 8 * self.body.len()
             + self
                 .transfers
                 .all
@@ -83,7 +83,7 @@ impl<const D: usize> System<D> {
     }
 
     pub fn refresh_images(&mut self) {
-        self.body.exchange.fill_field(&mut self.u);
+        self.body.exchange().fill_field(&mut self.u);
     }
 
     pub fn observed_of(&self, energies: &PointEnergies) -> Observed {
@@ -107,7 +107,7 @@ impl<const D: usize> System<D> {
     /// Displacements of a trial, in order of ids.
     pub fn set_values(&mut self, x: &[[f64; D]]) {
         let mut square = 0.0f64;
-        for (x, &s) in x.iter().zip(&self.body.slots) {
+        for (x, &s) in x.iter().zip(self.body.slots()) {
             let mut path = 0.0;
             for a in 0..D {
                 let u = &mut self.u[a][s as usize];

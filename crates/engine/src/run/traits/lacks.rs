@@ -1,9 +1,9 @@
 //! What the parts of a spec have not.
 
 use super::{Lack, Property};
+use crate::constitutive::{Shelf, Stiffness};
 use crate::law::descriptor::Memory;
 use crate::law::solid::eam_like::Solid;
-use crate::run::constitutive::{Shelf, Stiffness};
 use crate::run::reference::{current_neighbours, listed};
 use crate::spec::{
     BodySpec, Calibration, Control, CrackKind, Criterion, FamilyChoice, FractureSpec,

@@ -7,7 +7,7 @@ mod system;
 
 pub(super) use system::{of_control, of_implicit_steps, of_statics};
 
-use super::constitutive::Shelf;
+use crate::constitutive::Shelf;
 use crate::error::BuildError;
 use crate::message;
 use crate::quantity::Message;

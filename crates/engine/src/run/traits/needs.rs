@@ -1,7 +1,7 @@
 //! What the parts of a spec ask for.
 
 use super::{Need, Property};
-use crate::run::constitutive::{breaking, breaks};
+use crate::constitutive::{breaking, breaks};
 use crate::spec::{
     BodySpec, Control, Criterion, FamilyChoice, FractureSpec, Influence, LawSpec, MaterialSpec,
     Method, Plane, Spec, Statics, Stepper, ToughnessFactor,

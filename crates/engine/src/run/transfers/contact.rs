@@ -46,7 +46,7 @@ impl<const D: usize> Maker<'_, D> {
                 .help("add [heat] and the heat of every material, or leave conductance out"));
         };
         let mut faces = vec![0.0; system.body.points()];
-        for &s in &system.body.slots {
+        for &s in system.body.slots() {
             faces[system.transfers.place[s as usize] as usize] = system.body.face_at(s as usize);
         }
         heat.with_contact(Touching::new(h, faces));

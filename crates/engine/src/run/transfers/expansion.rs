@@ -21,7 +21,7 @@ impl<const D: usize> Maker<'_, D> {
             return Ok(());
         };
         let name = spec.interactions.transfers[*n].quantity.name();
-        system.transfers.strain = vec![0.0; system.body.len];
+        system.transfers.strain = vec![0.0; system.body.len()];
         if !system
             .interaction
             .expand(&system.body, &system.transfers.strain)
@@ -42,7 +42,7 @@ impl<const D: usize> Maker<'_, D> {
         let Some(n) = transfers.iter().position(|t| t.deformation) else {
             return Ok(());
         };
-        let mut trace = vec![0.0; system.body.len];
+        let mut trace = vec![0.0; system.body.len()];
         let (body, u) = (&system.body, &system.u);
         if D == 2
             && system.expands()
@@ -125,7 +125,7 @@ impl<const D: usize> System<D> {
         if D != 2 {
             return Some(all.iter().map(|w| w[0] + w[1] + w[2]).collect());
         }
-        let volume = |i: usize| self.body.volume.at(i);
+        let volume = |i: usize| self.body.volume().at(i);
         let per = |(i, w): (usize, &[f64; 6])| match volume(i) > 0.0 {
             true => -(w[0] + w[1]) / volume(i),
             false => 0.0,
@@ -147,7 +147,7 @@ impl<const D: usize> System<D> {
         } = &mut self.transfers;
         let Some((n, strains)) = heated else { return };
         let mut more = vec![0.0; self.body.points()];
-        for &s in &self.body.slots {
+        for &s in self.body.slots() {
             let i = s as usize;
             let strain = strains[self.body.material_of(i)];
             more[place[i] as usize] = strain * (now[i] - before[i]);

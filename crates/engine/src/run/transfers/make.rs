@@ -37,9 +37,9 @@ impl<const D: usize> Maker<'_, D> {
         if transfers.is_empty() {
             return self.make_contact(spec);
         }
-        let mut slots = self.system.body.slots.clone();
+        let mut slots = self.system.body.slots().to_vec();
         slots.sort_unstable();
-        let mut place = vec![0; self.system.body.len];
+        let mut place = vec![0; self.system.body.len()];
         for (n, s) in slots.iter().enumerate() {
             place[*s as usize] = n as u32;
         }
@@ -119,7 +119,7 @@ impl<const D: usize> Maker<'_, D> {
         let of = |slot: usize| &t.materials[body.material_of(slot)];
         let weight = |slot: usize, xi: &[f64], r: f64| {
             let model = self.system.constitutive.at(slot).0;
-            let own = body.horizon.get(slot);
+            let own = body.horizons().get(slot);
             model.weight_within(own.copied().unwrap_or(model.horizon), xi, r)
         };
         let exact = exact_surfaces(spec, body);
@@ -133,7 +133,7 @@ impl<const D: usize> Maker<'_, D> {
         };
         let moment = |slot: usize| {
             let of = exact.iter().find(|of| of.slots.contains(&slot))?;
-            let cell = body.volume.at(slot) / of.factors.part(slot - of.slots.start);
+            let cell = body.volume().at(slot) / of.factors.part(slot - of.slots.start);
             let term = |xi: &[f64; D]| {
                 let square: f64 = xi.iter().map(|x| x * x).sum();
                 weight(slot, xi, square.sqrt()) * square * cell
@@ -156,9 +156,9 @@ impl<const D: usize> Maker<'_, D> {
         )?;
         let capacity = slots.iter().map(|s| {
             let i = *s as usize;
-            let volume = body.volume.at(i);
+            let volume = body.volume().at(i);
             match t.quantity {
-                Quantity::Heat => body.density.at(i) * of(i).capacity * volume,
+                Quantity::Heat => body.density().at(i) * of(i).capacity * volume,
                 Quantity::Species => volume,
             }
         });
@@ -239,7 +239,7 @@ impl<const D: usize> Maker<'_, D> {
                 area(a)?,
             ),
         };
-        let volumes = || slots.iter().map(|s| system.body.volume.at(*s as usize));
+        let volumes = || slots.iter().map(|s| system.body.volume().at(*s as usize));
         let power = match &c.kind {
             TransferKind::Flux { value, .. } => Some((value, sizes.clone())),
             TransferKind::Source(value) => Some((value, volumes().collect())),
@@ -260,7 +260,7 @@ impl<const D: usize> Maker<'_, D> {
             TransferKind::Value(e) => Condition::held(e, places, points),
             TransferKind::Flux { value, .. } => Condition::power(value, sizes, places, points),
             TransferKind::Source(e) => {
-                let volume = slots.iter().map(|s| system.body.volume.at(*s as usize));
+                let volume = slots.iter().map(|s| system.body.volume().at(*s as usize));
                 Condition::power(e, volume.collect(), places, points)
             }
             TransferKind::Exchange { law, .. } => match law {
@@ -295,13 +295,13 @@ impl<const D: usize> Maker<'_, D> {
         let extent = |a: usize| {
             let along = system
                 .body
-                .slots
+                .slots()
                 .iter()
                 .map(|s| system.body.position(*s as usize)[a]);
             let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
                 (l.min(x), h.max(x))
             });
-            high - low + system.body.spacing
+            high - low + system.body.spacing()
         };
         let longest = (0..D).map(extent).fold(0.0, f64::max);
         let least = diffusivity.iter().copied().fold(f64::INFINITY, f64::min);
@@ -350,10 +350,10 @@ struct ExactSurface<'a, const D: usize> {
 fn exact_surfaces<'a, const D: usize>(spec: &'a Spec, all: &Body<D>) -> Vec<ExactSurface<'a, D>> {
     let made = |first: usize, f: &'a SurfaceFactors, body: &Body<D>, of: (&BodySpec, Horizon)| {
         f.ends_at_points().then(|| ExactSurface {
-            slots: first..first + body.len,
+            slots: first..first + body.len(),
             factors: Factors::new(f, body),
-            bonds: family(of.0, body.spacing, of.1),
-            spacing: body.spacing,
+            bonds: family(of.0, body.spacing(), of.1),
+            spacing: body.spacing(),
         })
     };
     let horizon = spec.bonds.horizon;

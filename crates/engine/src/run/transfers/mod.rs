@@ -14,23 +14,21 @@ use crate::error::RunError;
 use crate::spec::Quantity;
 use crate::transfer::{Transfer, TransferAccount};
 
-impl Quantity {
-    /// What its column is.
-    fn declaration(self) -> Declaration {
-        match self {
-            Quantity::Heat => Declaration::of_points(
-                self.column(),
-                Shape::Scalar,
-                Dimension::TEMPERATURE,
-                "Temperature T that the bonds conduct: ρ c V_i dT_i/dt = Σ_j g_ij (T_j − T_i) + P_i (Bobaru & Duangpanya 2010).",
-            ),
-            Quantity::Species => Declaration::of_points(
-                self.column(),
-                Shape::Scalar,
-                Dimension::CONCENTRATION,
-                "Concentration of the species that the bonds conduct: V_i dc_i/dt = Σ_j g_ij (c_j − c_i) + P_i.",
-            ),
-        }
+/// What its column is.
+fn declaration(quantity: Quantity) -> Declaration {
+    match quantity {
+        Quantity::Heat => Declaration::of_points(
+            quantity.column(),
+            Shape::Scalar,
+            Dimension::TEMPERATURE,
+            "Temperature T that the bonds conduct: ρ c V_i dT_i/dt = Σ_j g_ij (T_j − T_i) + P_i (Bobaru & Duangpanya 2010).",
+        ),
+        Quantity::Species => Declaration::of_points(
+            quantity.column(),
+            Shape::Scalar,
+            Dimension::CONCENTRATION,
+            "Concentration of the species that the bonds conduct: V_i dc_i/dt = Σ_j g_ij (c_j − c_i) + P_i.",
+        ),
     }
 }
 
@@ -105,7 +103,7 @@ impl<const D: usize> System<D> {
 
     pub(super) fn transfer_columns(&self) -> Vec<Declaration> {
         let each = self.transfers.all.iter();
-        each.map(|t| t.quantity.declaration()).collect()
+        each.map(|t| declaration(t.quantity)).collect()
     }
 
     /// Values of a column, by point id.
@@ -129,7 +127,7 @@ impl<const D: usize> System<D> {
             return false;
         }
         let mut placed = vec![0.0; values.len()];
-        for (value, s) in values.iter().zip(&self.body.slots) {
+        for (value, s) in values.iter().zip(self.body.slots()) {
             placed[self.transfers.place[*s as usize] as usize] = *value;
         }
         found.set_values(&placed);

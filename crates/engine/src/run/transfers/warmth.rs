@@ -5,10 +5,10 @@
 
 use super::make::Maker;
 use super::state::Warmth;
+use crate::constitutive::Softens;
 use crate::error::BuildError;
 use crate::message;
 use crate::quantity::Dimension;
-use crate::run::constitutive::Softens;
 use crate::run::system::System;
 use crate::spec::{Quantity, Spec, TransferMethod, TransferSpec};
 
@@ -22,7 +22,7 @@ impl<const D: usize> Maker<'_, D> {
         let Some(heat) = spec.interactions.transfers.iter().position(is_heat) else {
             return Ok(());
         };
-        let above = vec![0.0; self.system.body.len];
+        let above = vec![0.0; self.system.body.len()];
         if !self.system.interaction.warm(&self.system.body, &above) {
             return Ok(());
         }
@@ -49,7 +49,7 @@ impl<const D: usize> System<D> {
             return;
         };
         let values = self.transfers.all[warmth.heat].values();
-        for &s in &self.body.slots {
+        for &s in self.body.slots() {
             let i = s as usize;
             let reference = warmth.reference[self.body.material_of(i)];
             warmth.above[i] = values[self.transfers.place[i] as usize] - reference;
@@ -65,7 +65,7 @@ impl<const D: usize> System<D> {
         let mut now = warmth.above.clone();
         self.interaction.read_warmth(&self.body, &mut now);
         let mut by = vec![0.0; self.body.points()];
-        for &s in &self.body.slots {
+        for &s in self.body.slots() {
             let i = s as usize;
             by[self.transfers.place[i] as usize] = now[i] - warmth.above[i];
         }

@@ -1,0 +1,213 @@
+//! The integer grid of a lattice body: one box of cells per basis site, cut into tiles of eight slots.
+
+use crate::execute::lane::TILE;
+use crate::space::Point;
+use crate::space::lattice::Lattice;
+
+#[derive(Debug, Clone)]
+pub struct Grid<const D: usize> {
+    pub(crate) lattice: Lattice,
+    /// Cells along each axis, image cells of periodic axes included.
+    pub(crate) cells: [usize; D],
+    /// Lattice coordinates of the box's first cell.
+    pub(crate) low: [i32; D],
+    /// Image cells on each side of periodic axes.
+    pub(crate) halo: [usize; D],
+    /// Slots of one sublattice: the cells, rounded up to whole tiles.
+    pub(crate) stride: usize,
+    /// Slots before the first and after the last, so that every offset stays inside the arrays.
+    pub(crate) guard: usize,
+    /// One bit per slot (guards excluded): a point or an image of one is there. One byte per tile.
+    pub(crate) present: Vec<u8>,
+    /// Like `present`, images excluded.
+    pub(crate) owned: Vec<u8>,
+}
+
+impl<const D: usize> Grid<D> {
+    /// What its cells are of.
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// Cells along each axis, image cells of periodic axes included.
+    pub fn cells(&self) -> [usize; D] {
+        self.cells
+    }
+
+    /// Image cells on each side of periodic axes.
+    pub fn halo(&self) -> [usize; D] {
+        self.halo
+    }
+
+    /// Number of sites in a cell.
+    pub fn basis(&self) -> usize {
+        self.lattice.kind.basis().len()
+    }
+
+    /// Tiles of the whole grid.
+    pub fn tiles(&self) -> usize {
+        self.basis() * self.stride / TILE
+    }
+
+    /// Slots, guards included.
+    pub fn slots(&self) -> usize {
+        2 * self.guard + self.basis() * self.stride
+    }
+
+    /// First slot of a tile.
+    #[inline(always)]
+    pub fn tile_slot(&self, tile: usize) -> usize {
+        self.guard + tile * TILE
+    }
+
+    /// Sublattice of a tile.
+    #[inline(always)]
+    pub fn tile_sublattice(&self, tile: usize) -> usize {
+        tile * TILE / self.stride
+    }
+
+    /// Slot of site `b` of the cell at box coordinates `c`, if inside the box.
+    pub fn slot(&self, c: [i64; D], b: usize) -> Option<usize> {
+        let mut i = 0usize;
+        for a in (0..D).rev() {
+            if c[a] < 0 || c[a] >= self.cells[a] as i64 {
+                return None;
+            }
+            i = i * self.cells[a] + c[a] as usize;
+        }
+        Some(self.guard + b * self.stride + i)
+    }
+
+    /// Box coordinates and sublattice of a slot inside the grid.
+    pub fn cell(&self, slot: usize) -> ([i64; D], usize) {
+        let i = slot - self.guard;
+        let (b, mut i) = (i / self.stride, i % self.stride);
+        let c = crate::array::from_fn(|a| {
+            let n = self.cells[a];
+            let c = if a + 1 < D { i % n } else { i };
+            i /= n;
+            c as i64
+        });
+        (c, b)
+    }
+
+    /// Number of slots from a cell to the cell `d` cells away and `db` sublattices on.
+    pub fn shift(&self, d: [i64; D], db: i64) -> i64 {
+        let mut s = 0;
+        for a in (0..D).rev() {
+            s = s * self.cells[a] as i64 + d[a];
+        }
+        s + db * self.stride as i64
+    }
+
+    /// Does a bond that spans so many cells stay between the guards, wherever it begins?
+    pub fn holds(&self, cell: [i32; D]) -> bool {
+        self.shift(cell.map(i64::from), 0).unsigned_abs() <= self.guard as u64
+    }
+
+    fn bit(set: &[u8], i: usize) -> bool {
+        set[i / TILE] >> (i % TILE) & 1 == 1
+    }
+
+    /// Is there a point (or an image of one) in this slot?
+    pub fn is_present(&self, slot: usize) -> bool {
+        Self::bit(&self.present, slot - self.guard)
+    }
+
+    /// Is there a point in this slot?
+    pub fn is_owned(&self, slot: usize) -> bool {
+        Self::bit(&self.owned, slot - self.guard)
+    }
+
+    /// The slot `d` cells and `to − from` sublattices from `slot`, if a point or image is there.
+    pub fn neighbour(&self, slot: usize, d: [i32; D], to: usize) -> Option<usize> {
+        let (c, _) = self.cell(slot);
+        let j = self.slot(crate::array::from_fn(|a| c[a] + d[a] as i64), to)?;
+        self.is_present(j).then_some(j)
+    }
+
+    /// Quarters of the cell's edges from the lattice origin to a slot.
+    pub fn quarter(&self, slot: usize) -> [i32; 3] {
+        let (c, b) = self.cell(slot);
+        let q = self.lattice.kind.basis()[b];
+        crate::array::from_fn(|a| {
+            if a < D {
+                4 * (c[a] as i32 + self.low[a]) + q[a]
+            } else {
+                0
+            }
+        })
+    }
+
+    /// Reference coordinate `a` of slots: [position](Self::position), looked up once per row of cells.
+    pub fn coordinates(&self, slots: &[u32], a: usize, out: &mut [f64]) {
+        let (mut row, mut first) = (0..0, [0; 3]);
+        let mut x = 0.0;
+        for (out, &slot) in out.iter_mut().zip(slots) {
+            let slot = slot as usize;
+            if !row.contains(&slot) {
+                let (c, _) = self.cell(slot);
+                row = slot..slot + self.cells[0] - c[0] as usize;
+                first = self.quarter(slot);
+                x = self.lattice.position(first)[a];
+            }
+            if a == 0 {
+                let along = first[0] + 4 * (slot - row.start) as i32;
+                x = self.lattice.position([along, first[1], first[2]])[0];
+            }
+            *out = x;
+        }
+    }
+
+    /// Reference position of a slot.
+    pub fn position(&self, slot: usize) -> Point {
+        self.lattice.position(self.quarter(slot))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::body::Body;
+    use crate::space::lattice::{Lattice, LatticeKind};
+
+    fn check<const D: usize>(kind: LatticeKind, sites: Vec<[i32; 3]>, periodic: [bool; D]) {
+        let lattice = Lattice {
+            kind,
+            spacing: 0.3,
+            origin: [0.1, -2.0, 7.0],
+        };
+        let body = Body::<D>::on_lattice(lattice, &sites, 2, periodic, 1.0).unwrap();
+        for first in [0, 5] {
+            for a in 0..3 {
+                let mut x = vec![f64::NAN; body.points() - first];
+                body.coordinates(first, a, &mut x);
+                for (x, &s) in x.iter().zip(&body.slots[first..]) {
+                    assert_eq!(*x, body.position(s as usize)[a], "{kind:?} {D}-D, axis {a}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn coordinates_are_positions() {
+        let ball = |n: i32, d: usize, step: i32| {
+            let along = |a: usize| if a < d { -n..=n } else { 0..=0 };
+            let mut sites = vec![];
+            for z in along(2) {
+                for y in along(1) {
+                    for x in along(0) {
+                        let even = (x + y) % 2 == 0 && (x + z) % 2 == 0;
+                        if x * x + y * y + z * z <= n * n && (step == 4 || even) {
+                            sites.push([x * step, y * step, z * step]);
+                        }
+                    }
+                }
+            }
+            sites
+        };
+        check::<1>(LatticeKind::Chain, ball(9, 1, 4), [true]);
+        check::<2>(LatticeKind::Square, ball(7, 2, 4), [false; 2]);
+        check::<3>(LatticeKind::Cubic, ball(5, 3, 4), [false; 3]);
+        check::<3>(LatticeKind::Bcc, ball(5, 3, 2), [false; 3]);
+    }
+}

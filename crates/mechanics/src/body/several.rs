@@ -1,0 +1,173 @@
+//! Several bodies as one: each keeps its own layout, its slots and its points come one after another.
+
+use super::{Body, Exchange, FieldView, FieldViewMut, Identity, Layout, Values};
+
+/// A body among several.
+#[derive(Debug, Clone)]
+pub struct Piece<const D: usize> {
+    /// Its first slot.
+    pub first: usize,
+    pub body: Body<D>,
+}
+
+impl<const D: usize> Piece<D> {
+    /// Its slots.
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.body.len
+    }
+
+    /// Its part of a field of all.
+    pub fn part<'a>(&self, all: FieldView<'a, D>) -> FieldView<'a, D> {
+        all.map(|column| &column[self.range()])
+    }
+
+    /// [`part`](Piece::part), to write.
+    pub fn part_mut<'a>(&self, all: FieldViewMut<'a, D>) -> FieldViewMut<'a, D> {
+        all.map(|column| &mut column[self.range()])
+    }
+}
+
+impl<const D: usize> Body<D> {
+    /// Changes a body among several, which keeps its slots. `None`: there is none of this number.
+    ///
+    /// # Panics
+    /// If it has other slots then.
+    pub fn change_piece<T>(
+        &mut self,
+        n: usize,
+        change: impl FnOnce(&mut Body<D>) -> T,
+    ) -> Option<T> {
+        let Layout::Several(pieces) = &mut self.layout else {
+            return None;
+        };
+        let body = &mut pieces.get_mut(n)?.body;
+        let slots = body.len;
+        let changed = change(body);
+        assert_eq!(body.len, slots, "a body among several keeps its slots");
+        Some(changed)
+    }
+
+    /// One body of several, all with the same periods. Its spacing is the smallest.
+    pub fn several(bodies: Vec<Body<D>>) -> Body<D> {
+        let mut pieces = Vec::with_capacity(bodies.len());
+        let mut first = 0;
+        for body in bodies {
+            let next = first + body.len;
+            pieces.push(Piece { first, body });
+            first = next;
+        }
+        let len = first;
+        let mut slots = vec![];
+        for p in &pieces {
+            slots.extend(p.body.slots.iter().map(|s| p.first as u32 + s));
+        }
+        let volume = join(&pieces, &slots, len, 0.0, |b| &b.volume);
+        let density = join(&pieces, &slots, len, 1.0, |b| &b.density);
+        let marked = pieces.iter().any(|p| !p.body.mark.is_empty());
+        let mark = |p: &Piece<D>| match p.body.mark.is_empty() {
+            true => vec![0; p.body.points()],
+            false => p.body.mark.clone(),
+        };
+        Body {
+            identity: Identity::new(),
+            slots,
+            len,
+            spacing: pieces
+                .iter()
+                .map(|p| p.body.spacing)
+                .fold(f64::INFINITY, f64::min),
+            volume,
+            density,
+            period: pieces.first().map_or([None; D], |p| p.body.period),
+            material: vec![],
+            horizon: vec![],
+            mark: match marked {
+                true => pieces.iter().flat_map(mark).collect(),
+                false => vec![],
+            },
+            exchange: Exchange::joined(pieces.iter().map(|p| (p.first, &p.body.exchange))),
+            layout: Layout::Several(pieces),
+        }
+    }
+
+    /// The bodies that this one is made of, if it is made of several.
+    pub fn pieces(&self) -> &[Piece<D>] {
+        match &self.layout {
+            Layout::Several(pieces) => pieces,
+            Layout::Grid(_) | Layout::Cloud(_) => &[],
+        }
+    }
+
+    /// Which of the bodies a slot belongs to; 0 where there is one.
+    pub fn piece_of(&self, slot: usize) -> usize {
+        piece_of(self.pieces(), slot)
+    }
+
+    /// Typical distance of nearest points around a slot (length): that of its body.
+    pub fn spacing_at(&self, slot: usize) -> f64 {
+        match self.pieces() {
+            [] => self.spacing,
+            pieces => pieces[piece_of(pieces, slot)].body.spacing,
+        }
+    }
+
+    /// One face of the point in a slot: its volume over the spacing (area).
+    pub fn face_at(&self, slot: usize) -> f64 {
+        self.volume.at(slot) / self.spacing_at(slot)
+    }
+
+    /// Volumes of points become those that the pieces have now.
+    pub fn join_volumes(&mut self) {
+        self.volume = join(self.pieces(), &self.slots, self.len, 0.0, |b| &b.volume);
+    }
+
+    /// Points have the horizons of their pieces (length, a number per slot), those of a piece without its own, of `of_pieces`; none have any if no piece has.
+    pub fn join_horizons(&mut self, of_pieces: &[f64]) {
+        let pieces = self.pieces();
+        if pieces.iter().all(|p| p.body.horizon.is_empty()) {
+            self.horizon = vec![];
+            return;
+        }
+        let mut all = vec![0.0; self.len];
+        for (p, horizon) in pieces.iter().zip(of_pieces) {
+            match p.body.horizon.is_empty() {
+                true => all[p.range()].fill(*horizon),
+                false => all[p.range()].copy_from_slice(&p.body.horizon),
+            }
+        }
+        self.horizon = all;
+    }
+
+    /// Ids of the points of each of the bodies.
+    pub fn ids(&self) -> Vec<std::ops::Range<usize>> {
+        let mut first = 0;
+        let each = self.pieces().iter().map(|p| {
+            let from = first;
+            first += p.body.points();
+            from..first
+        });
+        each.collect()
+    }
+}
+
+/// The piece that has this slot.
+pub(super) fn piece_of<const D: usize>(pieces: &[Piece<D>], slot: usize) -> usize {
+    pieces
+        .partition_point(|p| p.first <= slot)
+        .saturating_sub(1)
+}
+
+/// A number per slot from those of the pieces.
+fn join<const D: usize>(
+    pieces: &[Piece<D>],
+    slots: &[u32],
+    len: usize,
+    absent: f64,
+    of: impl Fn(&Body<D>) -> &Values,
+) -> Values {
+    let each = pieces.iter().flat_map(|p| {
+        let values = of(&p.body);
+        p.body.slots.iter().map(|s| values.at(*s as usize))
+    });
+    Values::from_points(&each.collect::<Vec<_>>(), slots, len, absent)
+}

@@ -1,0 +1,110 @@
+//! What decides that a bond breaks beside its stretch: the work done on it, a stress or strain of its points, how fast it is stretched,
+//! and cycles of load.
+
+use crate::spec::{Cycles, FatigueSpec, RateSpec};
+
+/// Of all materials of a body; what is empty, nobody has.
+#[derive(Debug, Clone, Default)]
+pub struct Criteria {
+    pub measure: Measure,
+    /// Per material.
+    pub rate: Vec<Option<RateSpec>>,
+    /// Per material.
+    pub fatigue: Vec<Option<FatigueSpec>>,
+}
+
+/// What a bond breaks by; limits are per material, ∞: its bonds never break.
+#[derive(Debug, Clone, Default)]
+pub enum Measure {
+    /// Its stretch, by the critical stretch of its ends.
+    #[default]
+    Stretch,
+    /// The work w that the force states of both its ends have done on it, `∫ (T_i − T_j)·dη` (energy / volume²), where it is longer than
+    /// in the reference (Foster, Silling & Chen 2011).
+    Work(Vec<f64>),
+    /// Von Mises stress (pressure), the mean of both ends.
+    VonMises(Vec<f64>),
+    /// Equivalent plastic strain (–), the mean of both ends.
+    PlasticStrain(Vec<f64>),
+}
+
+impl Criteria {
+    /// Those of one material.
+    pub fn only(&self, n: usize) -> Criteria {
+        let one = |all: &[f64]| all.get(n).copied().into_iter().collect::<Vec<f64>>();
+        Criteria {
+            measure: match &self.measure {
+                Measure::Stretch => Measure::Stretch,
+                Measure::Work(limit) => Measure::Work(one(limit)),
+                Measure::PlasticStrain(limit) => Measure::PlasticStrain(one(limit)),
+                Measure::VonMises(limit) => Measure::VonMises(one(limit)),
+            },
+            rate: self.rate.get(n).copied().into_iter().collect(),
+            fatigue: self.fatigue.get(n).copied().into_iter().collect(),
+        }
+    }
+}
+
+/// A bond that wears: what is left of its life, and what a cycle takes of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Wearing {
+    /// 1 at first; 0: it is worn out.
+    pub life: f64,
+    /// Per cycle.
+    pub rate: f64,
+}
+
+impl Wearing {
+    /// What a cycle with this range of stretch takes of a bond's life, near a crack or far from any.
+    pub fn rate(of: &FatigueSpec, range: f64, near: bool) -> f64 {
+        let (law, beyond) = match near {
+            true => (of.growth, range),
+            false => (of.nucleation, range - of.limit),
+        };
+        law.map_or(0.0, |[a, m]| a * beyond.max(0.0).powf(m))
+    }
+}
+
+/// Cycles until so many of these directed bonds are worn out, or until no more are allowed.
+pub fn cycles_to_wear(bonds: &[Wearing], options: &Cycles, left: f64) -> f64 {
+    let last = |b: &Wearing| (b.rate > 0.0 && b.life > 0.0).then(|| b.life / b.rate);
+    let mut all: Vec<f64> = bonds.iter().filter_map(last).collect();
+    if all.is_empty() {
+        return if left.is_finite() { left } else { 0.0 };
+    }
+    // each bond is there from both ends
+    let n = (2 * options.bonds.max(1) - 1).min(all.len() - 1);
+    let (_, nth, _) = all.select_nth_unstable_by(n, f64::total_cmp);
+    nth.min(left)
+}
+
+/// Up to here of a life is round-off: bonds that are alike end together.
+pub(crate) const SPENT: f64 = 1e-9;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_increment_ends_with_the_nth_bond() {
+        let of = |life: f64, rate: f64| Wearing { life, rate };
+        let bonds = [
+            of(1.0, 0.5),
+            of(1.0, 0.5),
+            of(1.0, 0.1),
+            of(1.0, 0.1),
+            of(1.0, 0.0),
+        ];
+        let options = |bonds: usize| Cycles {
+            load_ratio: 0.0,
+            bonds,
+            most: f64::INFINITY,
+        };
+        assert_eq!(cycles_to_wear(&bonds, &options(1), f64::INFINITY), 2.0);
+        assert_eq!(cycles_to_wear(&bonds, &options(2), f64::INFINITY), 10.0);
+        assert_eq!(cycles_to_wear(&bonds, &options(9), f64::INFINITY), 10.0);
+        assert_eq!(cycles_to_wear(&bonds, &options(2), 7.0), 7.0);
+        assert_eq!(cycles_to_wear(&bonds[4..], &options(1), f64::INFINITY), 0.0);
+        assert_eq!(cycles_to_wear(&bonds[4..], &options(1), 7.0), 7.0);
+    }
+}
