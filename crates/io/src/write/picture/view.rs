@@ -72,6 +72,24 @@ struct Buffer {
     edge: f64,
 }
 
+/// A pixel of a [`Buffer`].
+struct Pixel<'a> {
+    depth: &'a mut f32,
+    part: &'a mut u8,
+    face: &'a mut u8,
+}
+
+impl Pixel<'_> {
+    /// Keeps what is nearest to the viewer.
+    fn keep_nearer(self, depth: f32, part: u8, face: u8) {
+        if depth > *self.depth {
+            *self.depth = depth;
+            *self.part = part;
+            *self.face = face;
+        }
+    }
+}
+
 /// Light of a cell seen from straight above, and of the top and the front of a cube seen obliquely.
 const FACES: [f32; 3] = [1.0, TOP_LIGHT, SIDE_LIGHT];
 
@@ -221,8 +239,9 @@ impl Buffer {
                 true => (-v * c / s / e, 1),
                 false => (v * s / c / e, 2),
             };
-            for column in columns.clone() {
-                self.put(row, column, (nearest - fall as f32, part, face));
+            let depth = nearest - fall as f32;
+            for (_, old) in self.row(row, columns.clone()) {
+                old.keep_nearer(depth, part, face);
             }
         }
     }
@@ -233,27 +252,38 @@ impl Buffer {
         let e = self.edge;
         let [a, b] = cell.edges.map(|v| [e * v[0], -e * v[1]]);
         let area = a[0] * b[1] - a[1] * b[0];
+        // parts of the edges per pixel across and down
+        let along = [b[1] / area, -b[0] / area];
+        let across = [-a[1] / area, a[0] / area];
         let [w, h] = [0, 1].map(|k| 0.5 * (a[k].abs() + b[k].abs()));
         let [rows, columns] = self.span([x - w, x + w], [y - h, y + h]);
+        let nearest = depth + 0.5;
         for row in rows {
-            for column in columns.clone() {
-                let d = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
-                let along = (d[0] * b[1] - d[1] * b[0]) / area;
-                let across = (a[0] * d[1] - a[1] * d[0]) / area;
+            let down = row as f64 + 0.5 - y;
+            let so_far = [down * along[1], down * across[1]];
+            for (column, old) in self.row(row, columns.clone()) {
+                // most of a solid lies behind something
+                if nearest <= *old.depth {
+                    continue;
+                }
+                let right = column as f64 + 0.5 - x;
+                let along = right * along[0] + so_far[0];
+                let across = right * across[0] + so_far[1];
                 if along.abs() > 0.5 || across.abs() > 0.5 {
                     continue;
                 }
                 let away = NEARER * (along * along + across * across);
-                self.put(row, column, (depth + (0.5 - away) as f32, part, 0));
+                old.keep_nearer(depth + (0.5 - away) as f32, part, 0);
             }
         }
     }
 
-    /// Rows and columns of the view whose middles are between these pixels.
+    /// Rows and columns of the view that are here and whose middles are between these pixels.
     fn span(&self, x: [f64; 2], y: [f64; 2]) -> [Range<usize>; 2] {
         let whole = |[from, to]: [f64; 2], first: usize, count: usize| {
-            let low = ((from - 0.5).ceil().max(0.0) as usize).max(first);
-            low..((to - 0.5).ceil().max(0.0) as usize).min(first + count)
+            let [low, end] = [from, to]
+                .map(|x| ((x - 0.5).ceil().max(0.0) as usize).clamp(first, first + count));
+            low..end
         };
         let [first_row, first_column] = self.first;
         [
@@ -262,14 +292,19 @@ impl Buffer {
         ]
     }
 
-    /// Keeps what is nearest to the viewer.
-    fn put(&mut self, row: usize, column: usize, (depth, part, face): (f32, u8, u8)) {
-        let at = (row - self.first[0]) * self.width + column - self.first[1];
-        if depth > self.depth[at] {
-            self.depth[at] = depth;
-            self.part[at] = part;
-            self.face[at] = face;
-        }
+    /// Pixels of a row of the view, with their columns.
+    fn row(
+        &mut self,
+        row: usize,
+        columns: Range<usize>,
+    ) -> impl Iterator<Item = (usize, Pixel<'_>)> {
+        let first = (row - self.first[0]) * self.width + columns.start - self.first[1];
+        let at = first..first + columns.len();
+        let pixels = { self.depth[at.clone()].iter_mut() }
+            .zip(&mut self.part[at.clone()])
+            .zip(&mut self.face[at]);
+        let pixels = pixels.map(|((depth, part), face)| Pixel { depth, part, face });
+        columns.zip(pixels)
     }
 
     /// From depths to heights of the surface above the ground of the body (edges of a cube). Seen from above this is the depth; seen
