@@ -1,6 +1,6 @@
 //! The one place where an instruction set is chosen: detected at start, or asked for.
 
-use super::lane::{Eight, Lane};
+use super::lane::{Eight, Lane, Piece};
 #[cfg(target_arch = "x86_64")]
 use super::lane::{F64x4, F64x8, Pair};
 #[cfg(target_arch = "x86_64")]
@@ -135,6 +135,29 @@ unsafe fn from_a_line<K, T>(path: unsafe fn(&K, usize) -> T, kernel: &K, b: usiz
     // the frame lasts as long as the call
     black_box(&line);
     out
+}
+
+/// Work on single numbers, with the fused multiply-add of the processor: the same bits, without the call that plain code makes for each.
+///
+/// # Panics
+/// Where machine or build have no path, as in [`Simd::run`].
+#[inline]
+pub(crate) fn fused<P: Piece>(piece: P) -> P::Out {
+    #[cfg(target_arch = "x86_64")]
+    if !PORTABLE {
+        assert!(has_avx2(), "{}", NEITHER);
+        // SAFETY: what the processor has was just asked
+        return unsafe { with_fma(piece) };
+    }
+    piece.run()
+}
+
+/// # Safety
+/// The processor has AVX2 and FMA.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn with_fma<P: Piece>(piece: P) -> P::Out {
+    piece.run()
 }
 
 /// Why nothing runs.

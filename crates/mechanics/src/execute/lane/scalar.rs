@@ -8,9 +8,10 @@ impl Lane for f64 {
     const N: usize = 1;
     type Mask = bool;
 
+    /// With the fused multiply-add of the processor, which plain code calls a function for.
     #[inline(never)]
     fn apart<P: Piece>(piece: P) -> P::Out {
-        piece.run()
+        crate::execute::simd::fused(piece)
     }
 
     #[inline(always)]

@@ -2,12 +2,15 @@
 
 use super::plain::Compiled;
 use super::view::mirrored;
+use crate::array;
+use crate::execute::lane::{Lane, Piece};
 use crate::interaction::bonds::points::PlainPoint;
 use crate::law::material::{Around, Bond, End, ForceState, Material, Numbers, Site};
 use crate::law::number::Dual;
 
 type Real = Dual<f64>;
 
+#[inline(always)]
 fn still(x: f64) -> Real {
     Dual {
         value: x,
@@ -16,6 +19,7 @@ fn still(x: f64) -> Real {
 }
 
 /// Numbers without slopes, but that `moved` has 1.
+#[inline(always)]
 fn lifted<A: Numbers<Real>>(all: &[f64], moved: Option<usize>) -> A {
     let mut out = A::constant(0.0);
     for (n, x) in all.iter().enumerate() {
@@ -26,6 +30,7 @@ fn lifted<A: Numbers<Real>>(all: &[f64], moved: Option<usize>) -> A {
 }
 
 /// A bond about η; `moved`: the axis along which η grows.
+#[inline(always)]
 fn bent<const D: usize>(
     xi: &[f64; D],
     eta: &[f64; D],
@@ -113,29 +118,95 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
         point: &[f64],
         bonds: &[Bent<D>],
     ) -> PassSlopes<D> {
+        f64::apart(Pass {
+            law: &self.0,
+            constants: lifted(&at.constants, None),
+            form: lifted(&at.form, None),
+            past: lifted(&at.past, None),
+            at,
+            pass,
+            point,
+            bonds,
+        })
+    }
+
+    fn answer_slopes(&self, b: &Bent<D>, end: PlainEnd, own: bool) -> AnswerSlopes<D> {
+        let others: M::Constants<Real> = lifted(end.others, None);
+        f64::apart(Answer {
+            law: &self.0,
+            constants: self.0.between(lifted(end.constants, None), &others),
+            memory: lifted(end.memory, None),
+            bond: b,
+            point: end.point,
+            own,
+        })
+    }
+}
+
+/// A pass of a point; methods, since what closures do is not inlined.
+struct Pass<'a, const D: usize, M: Material<D>> {
+    law: &'a M,
+    constants: M::Constants<Real>,
+    form: M::Form<Real>,
+    past: M::Past<Real>,
+    at: &'a PlainPoint,
+    pass: usize,
+    point: &'a [f64],
+    bonds: &'a [Bent<D>],
+}
+
+impl<const D: usize, M: Material<D>> Pass<'_, D, M> {
+    /// What a bond gives to the point, where η grows along an axis or a number of the point grows.
+    #[inline(always)]
+    fn share(&self, b: &Bent<D>, axis: Option<usize>, number: Option<usize>) -> M::Sum<Real> {
+        let bond = bent(&b.xi, &b.eta, b.omega, axis);
+        let end = End {
+            constants: &self.constants,
+            point: &lifted(self.point, number),
+            memory: &lifted(&b.memory, None),
+        };
+        self.law.share(self.pass, &bond, &end)
+    }
+
+    /// The point after the pass, where a number of the sum or of the point before grows.
+    #[inline(always)]
+    fn settle(
+        &self,
+        sum: &[f64],
+        by_sum: Option<usize>,
+        by_point: Option<usize>,
+    ) -> M::Point<Real> {
+        let site = Site {
+            constants: &self.constants,
+            form: &self.form,
+            past: &self.past,
+            around: Around {
+                section: still(self.at.section),
+            },
+        };
+        let mut point = lifted(self.point, by_point);
+        self.law
+            .settle(self.pass, &site, lifted(sum, by_sum), &mut point);
+        point
+    }
+}
+
+impl<const D: usize, M: Material<D>> Piece for Pass<'_, D, M> {
+    type Out = PassSlopes<D>;
+
+    #[inline(always)]
+    fn run(self) -> PassSlopes<D> {
         let points = <M::Point<f64> as Numbers<f64>>::COUNT;
         let sums = <M::Sum<f64> as Numbers<f64>>::COUNT;
-        let constants: M::Constants<Real> = lifted(&at.constants, None);
-        let share = |b: &Bent<D>, axis: Option<usize>, number: Option<usize>| {
-            let bond = bent(&b.xi, &b.eta, b.omega, axis);
-            let point: M::Point<Real> = lifted(point, number);
-            let memory: M::Memory<Real> = lifted(&b.memory, None);
-            let end = End {
-                constants: &constants,
-                point: &point,
-                memory: &memory,
-            };
-            self.0.share(pass, &bond, &end)
-        };
         let mut sum = vec![0.0; sums];
         let mut through = vec![vec![0.0; points]; sums];
         let mut shares = vec![];
         // the law stands once in what is compiled: all slopes of a bond in one loop, by η and then by numbers of the point
-        let moved = if pass > 0 { D + points } else { D };
-        for b in bonds {
+        let moved = if self.pass > 0 { D + points } else { D };
+        for b in self.bonds {
             let mut own = vec![[0.0; D]; sums];
             for n in 0..moved {
-                let slopes = share(b, Some(n).filter(|n| *n < D), n.checked_sub(D));
+                let slopes = self.share(b, Some(n).filter(|n| *n < D), n.checked_sub(D));
                 for s in 0..sums {
                     let slope = slopes.get(s).slope;
                     match n.checked_sub(D) {
@@ -149,32 +220,17 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
             }
             shares.push(own);
         }
-        let form: M::Form<Real> = lifted(&at.form, None);
-        let past: M::Past<Real> = lifted(&at.past, None);
-        let settle = |by_sum: Option<usize>, by_point: Option<usize>| -> Vec<Real> {
-            let site = Site {
-                constants: &constants,
-                form: &form,
-                past: &past,
-                around: Around {
-                    section: still(at.section),
-                },
-            };
-            let mut point: M::Point<Real> = lifted(point, by_point);
-            self.0.settle(pass, &site, lifted(&sum, by_sum), &mut point);
-            (0..points).map(|n| point.get(n)).collect()
-        };
-        let all = |n: usize| {
-            let after = settle(Some(n).filter(|n| *n < sums), n.checked_sub(sums));
-            let slopes: Vec<f64> = after.iter().map(|x| x.slope).collect();
-            let values: Vec<f64> = after.iter().map(|x| x.value).collect();
-            (slopes, values)
-        };
-        // and the point itself, last
-        let mut by_sum: Vec<_> = (0..=sums + points).map(all).collect();
-        let (_, point) = by_sum.pop().unwrap_or_default();
-        let mut by_sum: Vec<_> = by_sum.into_iter().map(|(slopes, _)| slopes).collect();
-        let by_point = by_sum.split_off(sums);
+        let (mut by_sum, mut by_point, mut point) = (vec![], vec![], vec![]);
+        // by numbers of the sum, by those of the point, and the point itself
+        for n in 0..=sums + points {
+            let after = self.settle(&sum, Some(n).filter(|n| *n < sums), n.checked_sub(sums));
+            let slopes = (0..points).map(|n| after.get(n).slope).collect();
+            match n.checked_sub(sums) {
+                None => by_sum.push(slopes),
+                Some(n) if n < points => by_point.push(slopes),
+                Some(_) => point = (0..points).map(|n| after.get(n).value).collect(),
+            }
+        }
         PassSlopes {
             shares,
             through,
@@ -183,40 +239,58 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
             point,
         }
     }
+}
 
-    fn answer_slopes(&self, b: &Bent<D>, end: PlainEnd, own: bool) -> AnswerSlopes<D> {
-        let others: M::Constants<Real> = lifted(end.others, None);
-        let constants = self.0.between(lifted(end.constants, None), &others);
-        let memory: M::Memory<Real> = lifted(end.memory, None);
-        let pull = |axis: Option<usize>, number: Option<usize>| -> [Real; D] {
-            let bond = bent(&b.xi, &b.eta, b.omega, axis);
-            let point: M::Point<Real> = lifted(end.point, number);
-            let end = End {
-                constants: &constants,
-                point: &point,
-                memory: &memory,
-            };
-            let seen = if own { bond } else { mirrored(&bond) };
-            let force = self.0.answer(&seen, &end).alone(&seen);
-            if own {
-                force
-            } else {
-                force.map(|x| still(0.0) - x)
-            }
+/// What an end answers to a bond.
+struct Answer<'a, const D: usize, M: Material<D>> {
+    law: &'a M,
+    constants: M::Constants<Real>,
+    memory: M::Memory<Real>,
+    bond: &'a Bent<D>,
+    point: &'a [f64],
+    own: bool,
+}
+
+impl<const D: usize, M: Material<D>> Answer<'_, D, M> {
+    /// The force where η grows along an axis, or a number of the point grows.
+    #[inline(always)]
+    fn pull(&self, axis: Option<usize>, number: Option<usize>) -> [Real; D] {
+        let b = self.bond;
+        let bond = bent(&b.xi, &b.eta, b.omega, axis);
+        let end = End {
+            constants: &self.constants,
+            point: &lifted(self.point, number),
+            memory: &self.memory,
         };
+        let seen = if self.own { bond } else { mirrored(&bond) };
+        let mut force = self.law.answer(&seen, &end).alone(&seen);
+        if !self.own {
+            for f in &mut force {
+                *f = still(0.0) - *f;
+            }
+        }
+        force
+    }
+}
+
+impl<const D: usize, M: Material<D>> Piece for Answer<'_, D, M> {
+    type Out = AnswerSlopes<D>;
+
+    #[inline(always)]
+    fn run(self) -> AnswerSlopes<D> {
         let points = <M::Point<f64> as Numbers<f64>>::COUNT;
         let (mut by_eta, mut by_point, mut force) = ([[0.0; D]; D], vec![], [0.0; D]);
         // by η, by numbers of the point, and the force itself
         for n in 0..=D + points {
-            let pulled = pull(Some(n).filter(|n| *n < D), n.checked_sub(D));
+            let pulled = self.pull(Some(n).filter(|n| *n < D), n.checked_sub(D));
             match n.checked_sub(D) {
                 None => {
                     for r in 0..D {
                         by_eta[r][n] = pulled[r].slope;
                     }
                 }
-                Some(n) if n < points => by_point.push(pulled.map(|x| x.slope)),
-                Some(_) => force = pulled.map(|x| x.value),
+                Some(n) if n < points => by_point.push(array::from_fn(|r| pulled[r].slope)),
+                Some(_) => force = array::from_fn(|r| pulled[r].value),
             }
         }
         AnswerSlopes {

@@ -101,6 +101,7 @@ pub struct Bond<N, const D: usize> {
 
 impl<N: Number, const D: usize> Bond<N, D> {
     /// A bond from ξ and η; slow and plain.
+    #[inline(always)]
     pub fn new(xi: [N; D], eta: [N; D], omega: N) -> Self {
         let half = N::constant(0.5);
         let mut square = xi[0] * xi[0];
