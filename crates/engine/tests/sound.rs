@@ -351,10 +351,15 @@ fn a_body_is_changed_within_its_slots() {
         (|b| b.set_volumes(vec![1.0]), "a volume for each slot"),
         (|b| b.set_horizons(vec![2.0]), "a horizon for each slot"),
         (|b| b.set_marks(vec![3]), "a mark for each point"),
+        (
+            |b| b.give_materials([1].into_iter()),
+            "a material for each point",
+        ),
     ] {
         let message = refused(|| change(&mut body));
         assert!(message.contains(said), "{message}");
     }
+    let mut body = lattice(9, 2);
     let (law, constants) = lps();
     let mut it = stencil_of(&body, 2, law, constants);
     body.retain(|s| s % 2 == 0);

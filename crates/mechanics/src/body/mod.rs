@@ -188,11 +188,14 @@ impl<const D: usize> Body<D> {
         self.slots.retain(|s| keep(*s));
     }
 
-    /// Gives each point its material, and their copies theirs.
-    pub fn give_materials(&mut self, of_points: impl Iterator<Item = u8>) {
+    /// Gives each point its material, in order of id, and their copies theirs.
+    ///
+    /// # Panics
+    /// If there are fewer than points.
+    pub fn give_materials(&mut self, mut of_points: impl Iterator<Item = u8>) {
         self.material = vec![0; self.len];
-        for (m, s) in of_points.zip(&self.slots) {
-            self.material[*s as usize] = m;
+        for s in &self.slots {
+            self.material[*s as usize] = of_points.next().expect("a material for each point");
         }
         self.exchange.fill(&mut self.material);
     }
