@@ -1,6 +1,9 @@
 """Does the program find the MPI that started it, do messages between its ranks come as they were sent, and is it said where they cannot?
 
+And is a block that ranks share torn to the same bits on any number of them?
+
 Usage: python verify/ranks/check.py --program target/debug/peridyne --mpi FOLDER [--mpi FOLDER]
+Beside the program lies examples/ranks, which `cargo build --examples` and `cargo test` make.
 FOLDER has bin/mpiexec and lib/libmpi_abi.so.1: a virtual environment into which `pip install mpich` or `pip install impi-rt` was done.
 """
 
@@ -34,6 +37,11 @@ def main():
     asked.add_argument("--mpi", type=Path, action="append", default=[])
     asked = asked.parse_args()
     program, wrong = asked.program.resolve(), []
+    block, ends = program.parent / "examples/ranks", {}
+
+    def end(words, name):
+        code, out, err = run([*words])
+        ends[name] = out.split(",")[0] if code == 0 and out.count("\n") == 1 else f"{code}\n{out}{err}"
 
     def hold(true, what):
         if not true:
@@ -53,6 +61,7 @@ def main():
             if good and ranks > 1:
                 _, latency, speed = (found["speeds"][0][key] for key in ("between", "latency_s", "bytes_per_s"))
                 print(f"{ranks} ranks by {found['carrier'].split(' (')[0]}: {latency * 1e6:.2f} µs, {speed * 1e-9:.2f} GB/s")
+            end([mpi / "bin/mpiexec", "-n", ranks, block], f"{mpi.name} on {ranks}")
         # a launcher, and no MPI
         code, out, err = run([mpi / "bin/mpiexec", "-n", 2, program, "ranks"], PERIDYNE_MPI="/nowhere/libmpi_abi.so.1")
         hold(code == 2 and out == "" and " ".join(err.replace("│", " ").split()).count("no MPI with the standard ABI") == 1 and "/nowhere/" in err, f"{mpi} without a library: {code}\n{out}{err}")
@@ -81,6 +90,10 @@ def main():
         code, out, err = run([program, "ranks", "--on-threads", ranks, "--json"])
         found = json.loads(out) if code == 0 else {}
         hold(found.get("ranks") == ranks and found["messages"] == LENGTHS * ranks**2, f"{ranks} threads: {code}\n{out}{err}")
+        end([block, "--on-threads", ranks], f"{ranks} threads")
+    end([block], "alone")
+    hold(len(set(ends.values())) == 1, f"a block that is torn: {ends}")
+    print(f"a block that is torn, {len(ends)} times: {ends['alone']}")
     for what in wrong:
         print("WRONG", what)
     print(f"ranks: {len(wrong)} wrong")

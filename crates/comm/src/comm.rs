@@ -137,6 +137,18 @@ impl Comm {
         }
     }
 
+    /// Ends this rank, and so all, where what others have to say does not come: processes with the message and exit code 1, threads by a panic.
+    pub fn end(&self, failure: Failure) -> ! {
+        match &self.kind {
+            Kind::Thread(_) => panic!("{failure}"),
+            #[cfg(unix)]
+            Kind::Mpi(_) => {}
+            Kind::Alone => {}
+        }
+        eprintln!("error: rank {}: {failure}", self.rank());
+        self.abort(1)
+    }
+
     /// Ends all ranks at once with this exit code, as where one cannot go on and the others wait for it. Threads end by their own errors
     /// ([`Failure::Ended`]); a process alone just ends.
     pub fn abort(&self, code: i32) -> ! {

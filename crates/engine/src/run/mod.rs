@@ -33,6 +33,7 @@ mod precracks;
 mod preload;
 mod probe;
 mod probes;
+pub mod ranks;
 mod record;
 mod reference;
 mod sets;

@@ -56,7 +56,8 @@ pub(super) fn sets<const D: usize>(
             let points = (0..carriers.points()).filter(|p| belongs(*p, &at(p)));
             loaded = points.map(|p| p as u32).collect();
         }
-        if ids.is_empty() && loaded.is_empty() {
+        // another rank may have its points
+        if ids.is_empty() && loaded.is_empty() && body.subdomain().is_none() {
             return Err(BuildError::empty(
                 format!("sets.{}", set.name),
                 format!("set `{}` has no points", set.name),

@@ -18,6 +18,7 @@ mod motion;
 #[allow(dead_code)]
 #[path = "../../../../examples/own-law/src/main.rs"]
 mod own_law;
+mod ranks;
 mod repeat;
 mod sample;
 mod scale;

@@ -53,6 +53,7 @@ impl<const D: usize> Body<D> {
             cells,
             low,
             halo,
+            first: 0,
             stride,
             guard: 0,
             present: vec![],
@@ -111,6 +112,7 @@ impl<const D: usize> Body<D> {
             horizon: vec![],
             mark: vec![],
             exchange,
+            subdomain: None,
         })
     }
 
@@ -175,6 +177,7 @@ impl<const D: usize> Body<D> {
             horizon: vec![],
             mark: mark.to_vec(),
             exchange: Exchange::default(),
+            subdomain: None,
         })
     }
 }

@@ -1,5 +1,5 @@
-//! Who copies from whom. A sweep finds every partner at its own place, so some slots repeat a point that lies elsewhere: today the
-//! periodic images of lattice bodies, later, of a body in parts on many ranks, also the points of other parts near by. Nobody else knows;
+//! Who copies from whom. A sweep finds every partner at its own place, so some slots repeat a point that lies elsewhere: the periodic images
+//! of lattice bodies and, where many ranks share a body, the points of others near by ([`Subdomain`](super::Subdomain)). Nobody else knows;
 //! whoever has written what partners read asks the [`Exchange`] of its body to fill the copies before the next pass.
 //!
 //! # What is filled before what
@@ -20,17 +20,23 @@
 //! - *One fill is enough.* What a copy repeats is a point of the body, never a copy: in corners, too. Copies come in the order of their slots.
 //! - *One fill is one message* to each neighbour: fields, numbers of points and memories are filled as a whole.
 //! - *All ranks fill, or none.* Whether there is a fill must follow from the model and from what all ranks know. What is left out where no bond
-//!   breaks (`BondState::find_breaking`, `StencilInteraction::settled`) has to follow from the broken bonds of all of them.
+//!   breaks (`BondState::find_breaking`) follows from the broken bonds of all of them ([`Exchange::any`]).
 //! - *Nothing is added back.* Every point gathers all its bonds, so a bond across a border is computed at both ends, from the same numbers and in the
 //!   same order of operations, and the forces of a point are summed in the order of its bonds, wherever the partners are. What copies would have is not written.
-//! - *Sums over the body* (energies, tallies, products of vectors) are those of fixed blocks, in the order of the blocks of the whole body: a rank owns whole
-//!   blocks, and their results are added by their numbers, not rank by rank.
+//! - *Sums over the body* are those of fixed blocks, of which a rank owns whole ones. What blocks say is added without rounding
+//!   ([`Exact`](crate::execute::exact::Exact)), so it shows neither in which order nor who had which. So far energies and virials of bonds are; what sweeps report
+//!   ([`Tally`](crate::interaction::Tally)) is of this rank's points.
 //! - *Ids and slots of originals* name the ends of bonds for whoever walks over them ([`Exchange::original`]).
 //!
 //! Lists of clouds have no copies yet: they move a partner by whole periods to where it is nearest. Lists of near atoms make theirs anew with every list
 //! ([`near`](crate::family::neighbours::near)), which says what ranks need for that.
 
-use std::ops::DerefMut;
+use bytemuck::{Pod, bytes_of, bytes_of_mut, cast_slice, cast_slice_mut};
+use peridyne_comm::Comm;
+use std::collections::BTreeMap;
+use std::ops::{DerefMut, Range};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Copies that lie side by side, whose originals do, too: the first slots, and how many there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,24 +46,32 @@ struct Run {
     len: usize,
 }
 
+/// One more copy, in a later slot than all others.
+fn push(runs: &mut Vec<Run>, copy: usize, original: usize) {
+    let next = |r: &&mut Run| r.copy + r.len == copy && r.original + r.len == original;
+    match runs.last_mut().filter(next) {
+        Some(run) => run.len += 1,
+        None => runs.push(Run {
+            copy,
+            original,
+            len: 1,
+        }),
+    }
+}
+
 /// Slots that are copies of others, in their order.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default)]
 pub struct Exchange {
+    /// Of points that are here.
     runs: Vec<Run>,
+    /// Of points that other ranks have.
+    others: Option<Arc<Others>>,
 }
 
 impl Exchange {
     /// One more copy, in a later slot than all others; the original is none.
     pub(super) fn push(&mut self, copy: usize, original: usize) {
-        let next = |r: &&mut Run| r.copy + r.len == copy && r.original + r.len == original;
-        match self.runs.last_mut().filter(next) {
-            Some(run) => run.len += 1,
-            None => self.runs.push(Run {
-                copy,
-                original,
-                len: 1,
-            }),
-        }
+        push(&mut self.runs, copy, original);
     }
 
     /// Of bodies side by side, by their first slots.
@@ -71,15 +85,24 @@ impl Exchange {
         };
         Exchange {
             runs: bodies.flat_map(shifted).collect(),
+            others: None,
         }
     }
 
-    /// No slot is a copy.
-    pub fn is_empty(&self) -> bool {
-        self.runs.is_empty()
+    /// Of a part of a body. All ranks come here at once.
+    pub(super) fn among(comm: &Arc<Comm>, copies: Copies) -> Exchange {
+        Exchange {
+            others: Some(Arc::new(Others::new(comm, copies.of, copies.names))),
+            runs: copies.own,
+        }
     }
 
-    /// Slots of copies with those of their originals.
+    /// No slot is a copy, on any rank.
+    pub fn is_empty(&self) -> bool {
+        self.runs.is_empty() && self.others.is_none()
+    }
+
+    /// Slots of copies with those of their originals, which are here.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
         let each = |r: &Run| {
             let (copy, original) = (r.copy, r.original);
@@ -88,17 +111,32 @@ impl Exchange {
         self.runs.iter().flat_map(each)
     }
 
-    /// The slot that a slot is a copy of, or itself.
+    /// Slots of copies, those of points that other ranks have among them.
+    pub fn copies(&self) -> impl Iterator<Item = usize> {
+        let of_others = { self.others.iter() }.flat_map(|o| o.receive.iter());
+        let of_others = of_others.flat_map(|m| m.spans.iter().cloned().flatten());
+        self.pairs().map(|(copy, _)| copy).chain(of_others)
+    }
+
+    /// The slot that a slot is a copy of, or itself; of a point of another rank the first copy.
     #[inline]
     pub fn original(&self, slot: usize) -> usize {
-        let begun = self.runs.partition_point(|r| r.copy <= slot);
-        let last = self.runs[..begun].last();
+        let runs = self.others.as_ref().map_or(&self.runs, |o| &o.names);
+        let begun = runs.partition_point(|r| r.copy <= slot);
+        let last = runs[..begun].last();
         let holds = last.filter(|r| slot < r.copy + r.len);
         holds.map_or(slot, |r| r.original + (slot - r.copy))
     }
 
     /// Fills the copies in a column, `[slots]`.
-    pub fn fill<T: Copy>(&self, column: &mut [T]) {
+    pub fn fill<T: Pod>(&self, column: &mut [T]) {
+        self.fill_here(column);
+        if let Some(others) = &self.others {
+            others.fill(&mut [column]);
+        }
+    }
+
+    fn fill_here<T: Copy>(&self, column: &mut [T]) {
         for r in &self.runs {
             column.copy_within(r.original..r.original + r.len, r.copy);
         }
@@ -106,11 +144,14 @@ impl Exchange {
 
     /// In all columns of a field, or of what is seen of one, `[D][slots]`.
     pub fn fill_field<const D: usize>(&self, field: &mut [impl DerefMut<Target = [f64]>; D]) {
-        field.iter_mut().for_each(|column| self.fill(column));
+        field.iter_mut().for_each(|column| self.fill_here(column));
+        if let Some(others) = &self.others {
+            others.fill(&mut field.each_mut().map(|column| &mut **column));
+        }
     }
 
     /// Where each slot has so many numbers, number `n` of a slot `at(slot, n)`.
-    pub fn fill_numbers<T: Copy>(
+    pub fn fill_numbers<T: Pod>(
         &self,
         all: &mut [T],
         numbers: usize,
@@ -123,10 +164,266 @@ impl Exchange {
                 }
             }
         }
+        if let Some(others) = &self.others {
+            others.fill_numbers(all, numbers, &at);
+        }
+    }
+
+    /// Do other ranks have parts of the body?
+    pub fn is_shared(&self) -> bool {
+        self.others.is_some()
+    }
+
+    /// Is it so on any rank? All ask at once.
+    pub fn any(&self, here: bool) -> bool {
+        let Some(others) = &self.others else {
+            return here;
+        };
+        let all = others.comm.all(&[u8::from(here)]);
+        let all = all.unwrap_or_else(|failure| others.comm.end(failure));
+        all.concat().contains(&1)
+    }
+
+    /// Bytes that this rank has sent to others.
+    pub fn sent(&self) -> u64 {
+        let others = self.others.as_ref();
+        others.map_or(0, |o| o.sent.load(Ordering::Relaxed))
+    }
+
+    /// Copies of points that other ranks have.
+    pub fn received_slots(&self) -> usize {
+        let others = self.others.as_ref();
+        others.map_or(0, |o| o.receive.iter().map(|m| m.slots).sum())
     }
 
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.runs)
+        size_of_val(&*self.runs) + self.others.as_ref().map_or(0, |o| o.bytes())
+    }
+}
+
+/// Copies of a part of a body, as they are found, in the order of their slots.
+pub(super) struct Copies {
+    own: Vec<Run>,
+    /// Of each rank: slots here, and there.
+    of: Vec<Vec<(usize, usize)>>,
+    names: Vec<Run>,
+}
+
+impl Copies {
+    pub fn new(ranks: usize) -> Copies {
+        Copies {
+            own: vec![],
+            of: vec![vec![]; ranks],
+            names: vec![],
+        }
+    }
+
+    /// A copy of a point that is here.
+    pub fn own(&mut self, copy: usize, original: usize) {
+        push(&mut self.own, copy, original);
+        push(&mut self.names, copy, original);
+    }
+
+    /// A copy of a point that another rank has in a slot, which is called by the first copy of it.
+    pub fn of_rank(&mut self, rank: usize, copy: usize, there: usize, name: usize) {
+        self.of[rank].push((copy, there));
+        if name != copy {
+            push(&mut self.names, copy, name);
+        }
+    }
+}
+
+/// What one fill tells one rank, or hears of it.
+#[derive(Debug)]
+struct Message {
+    rank: usize,
+    spans: Vec<Range<usize>>,
+    slots: usize,
+}
+
+impl Message {
+    fn new(rank: usize, slots: impl Iterator<Item = usize>) -> Message {
+        let (mut spans, mut count) = (Vec::<Range<usize>>::new(), 0);
+        for slot in slots {
+            count += 1;
+            match spans.last_mut().filter(|span| span.end == slot) {
+                Some(span) => span.end += 1,
+                None => spans.push(slot..slot + 1),
+            }
+        }
+        Message {
+            rank,
+            spans,
+            slots: count,
+        }
+    }
+}
+
+/// Points that other ranks have copies of, and copies of theirs.
+#[derive(Debug)]
+struct Others {
+    comm: Arc<Comm>,
+    send: Vec<Message>,
+    receive: Vec<Message>,
+    /// What every copy is called, in their order.
+    names: Vec<Run>,
+    /// What is sent, and what comes.
+    room: Mutex<[Vec<u8>; 2]>,
+    sent: AtomicU64,
+}
+
+impl Others {
+    /// Asks the other ranks for what is wanted of each: slots here and there.
+    fn new(comm: &Arc<Comm>, wanted: Vec<Vec<(usize, usize)>>, names: Vec<Run>) -> Others {
+        let ended = |failure| comm.end(failure);
+        let own: Vec<u8> = { wanted.iter() }
+            .flat_map(|of| (of.len() as u64).to_le_bytes())
+            .collect();
+        let counts = comm.all(&own).unwrap_or_else(ended);
+        let mut asked: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+        for (rank, counts) in counts.iter().enumerate() {
+            let of_this = &counts[8 * comm.rank()..][..8];
+            let count = u64::from_le_bytes(of_this.try_into().expect("eight bytes"));
+            if count > 0 {
+                asked.insert(rank, vec![0; 4 * count as usize]);
+            }
+        }
+        let wishes: Vec<(usize, Vec<u8>)> = { wanted.iter().enumerate() }
+            .filter(|(_, of)| !of.is_empty())
+            .map(|(rank, of)| {
+                let slots = of
+                    .iter()
+                    .flat_map(|(_, there)| (*there as u32).to_le_bytes());
+                (rank, slots.collect())
+            })
+            .collect();
+        let send: Vec<(usize, &[u8])> = wishes.iter().map(|(r, w)| (*r, &w[..])).collect();
+        let mut receive: Vec<(usize, &mut [u8])> =
+            asked.iter_mut().map(|(r, w)| (*r, &mut w[..])).collect();
+        comm.exchange(&send, &mut receive, || ())
+            .unwrap_or_else(|failure| comm.end(failure));
+        let slots = |bytes: &[u8]| -> Vec<usize> {
+            let each = bytes.chunks_exact(4);
+            each.map(|s| u32::from_le_bytes(s.try_into().expect("four bytes")) as usize)
+                .collect()
+        };
+        let send = { asked.iter() }.map(|(rank, of)| Message::new(*rank, slots(of).into_iter()));
+        let receive = { wanted.iter().enumerate() }
+            .filter(|(_, of)| !of.is_empty())
+            .map(|(rank, of)| Message::new(rank, of.iter().map(|(here, _)| *here)));
+        Others {
+            send: send.collect(),
+            receive: receive.collect(),
+            names,
+            room: Mutex::default(),
+            sent: AtomicU64::new(0),
+            comm: comm.clone(),
+        }
+    }
+
+    /// Sends so many bytes of every slot that others want, as they are packed, and unpacks what they send. Slots lie in runs here and there that need not
+    /// be alike: what is sent goes by their order alone.
+    fn trade<All: ?Sized>(
+        &self,
+        all: &mut All,
+        bytes: usize,
+        pack: impl Fn(&All, &[Range<usize>], &mut Vec<u8>),
+        unpack: impl Fn(&mut All, &[Range<usize>], &[u8]),
+    ) {
+        // taken, not held: another fill may wait for the same ranks
+        let mut room = std::mem::take(&mut *self.room());
+        let [out, into] = &mut room;
+        out.clear();
+        for message in &self.send {
+            pack(all, &message.spans, out);
+        }
+        into.resize(self.receive.iter().map(|m| m.slots * bytes).sum(), 0);
+        let mut send = Vec::with_capacity(self.send.len());
+        let mut rest = &out[..];
+        for message in &self.send {
+            let (of, others) = rest.split_at(message.slots * bytes);
+            send.push((message.rank, of));
+            rest = others;
+        }
+        let mut receive = Vec::with_capacity(self.receive.len());
+        let mut rest = &mut into[..];
+        for message in &self.receive {
+            let (of, others) = rest.split_at_mut(message.slots * bytes);
+            receive.push((message.rank, of));
+            rest = others;
+        }
+        let done = self.comm.exchange(&send, &mut receive, || ());
+        done.unwrap_or_else(|failure| self.comm.end(failure));
+        self.sent.fetch_add(out.len() as u64, Ordering::Relaxed);
+        let mut rest = &into[..];
+        for message in &self.receive {
+            let (of, others) = rest.split_at(message.slots * bytes);
+            unpack(all, &message.spans, of);
+            rest = others;
+        }
+        *self.room() = room;
+    }
+
+    fn room(&self) -> MutexGuard<'_, [Vec<u8>; 2]> {
+        self.room.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// One column after the other.
+    fn fill<T: Pod>(&self, columns: &mut [&mut [T]]) {
+        self.trade(
+            columns,
+            columns.len() * size_of::<T>(),
+            |columns, spans, out| {
+                for column in columns {
+                    let each = spans.iter().map(|span| cast_slice(&column[span.clone()]));
+                    each.for_each(|bytes| out.extend_from_slice(bytes));
+                }
+            },
+            |columns, spans, mut from| {
+                for column in columns {
+                    for span in spans {
+                        let into = cast_slice_mut(&mut column[span.clone()]);
+                        let (of, others) = from.split_at(into.len());
+                        into.copy_from_slice(of);
+                        from = others;
+                    }
+                }
+            },
+        );
+    }
+
+    /// Slot by slot.
+    fn fill_numbers<T: Pod>(
+        &self,
+        all: &mut [T],
+        numbers: usize,
+        at: &dyn Fn(usize, usize) -> usize,
+    ) {
+        self.trade(
+            all,
+            numbers * size_of::<T>(),
+            |all, spans, out| {
+                for slot in spans.iter().cloned().flatten() {
+                    for n in 0..numbers {
+                        out.extend_from_slice(bytes_of(&all[at(slot, n)]));
+                    }
+                }
+            },
+            |all, spans, from| {
+                let mut from = from.chunks_exact(size_of::<T>());
+                for slot in spans.iter().cloned().flatten() {
+                    for (n, of) in (0..numbers).zip(&mut from) {
+                        bytes_of_mut(&mut all[at(slot, n)]).copy_from_slice(of);
+                    }
+                }
+            },
+        );
+    }
+
+    fn bytes(&self) -> usize {
+        let spans = self.send.iter().chain(&self.receive);
+        let spans: usize = spans.map(|m| size_of_val(&*m.spans)).sum();
+        spans + size_of_val(&*self.names)
     }
 }
 

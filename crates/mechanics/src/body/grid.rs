@@ -4,6 +4,9 @@ use crate::execute::lane::TILE;
 use crate::space::Point;
 use crate::space::lattice::Lattice;
 
+/// Tiles of a block of work. Where blocks begin belongs to the grid, so that sums are made of the same ones whoever has them.
+pub const BLOCK: usize = 32;
+
 #[derive(Debug, Clone)]
 pub struct Grid<const D: usize> {
     pub(crate) lattice: Lattice,
@@ -13,7 +16,9 @@ pub struct Grid<const D: usize> {
     pub(crate) low: [i32; D],
     /// Image cells on each side of periodic axes.
     pub(crate) halo: [usize; D],
-    /// Slots of one sublattice: the cells, rounded up to whole tiles.
+    /// The first cell that has a slot, in their order: 0, but in a part of a body.
+    pub(crate) first: usize,
+    /// Slots of one sublattice: the cells, rounded up to whole tiles; in a part of a body those of a run of them.
     pub(crate) stride: usize,
     /// Slots before the first and after the last, so that every offset stays inside the arrays.
     pub(crate) guard: usize,
@@ -66,7 +71,19 @@ impl<const D: usize> Grid<D> {
         tile * TILE / self.stride
     }
 
-    /// Slot of site `b` of the cell at box coordinates `c`, if inside the box.
+    /// Where blocks begin among these tiles, which are in order, and where the last ends: a block lies in one sublattice, and has the tiles of
+    /// [`BLOCK`] in a row that are there.
+    pub(crate) fn blocks_of(&self, tiles: &[u32]) -> Vec<u32> {
+        let of = |tile: u32| {
+            let (tile, stride) = (tile as usize, self.stride / TILE);
+            (tile / stride, (self.first / TILE + tile % stride) / BLOCK)
+        };
+        let begins = |n: &usize| *n == 0 || of(tiles[*n]) != of(tiles[n - 1]);
+        let starts = (0..tiles.len()).filter(begins).chain([tiles.len()]);
+        starts.map(|n| n as u32).collect()
+    }
+
+    /// Slot of site `b` of the cell at box coordinates `c`, if inside the box, and in this part of it.
     pub fn slot(&self, c: [i64; D], b: usize) -> Option<usize> {
         let mut i = 0usize;
         for a in (0..D).rev() {
@@ -75,13 +92,20 @@ impl<const D: usize> Grid<D> {
             }
             i = i * self.cells[a] + c[a] as usize;
         }
+        let i = i.checked_sub(self.first).filter(|i| *i < self.stride)?;
         Some(self.guard + b * self.stride + i)
+    }
+
+    /// Sublattice of a slot inside the grid, and its cell in their order.
+    #[inline]
+    pub(super) fn place(&self, slot: usize) -> (usize, usize) {
+        let i = slot - self.guard;
+        (i / self.stride, self.first + i % self.stride)
     }
 
     /// Box coordinates and sublattice of a slot inside the grid.
     pub fn cell(&self, slot: usize) -> ([i64; D], usize) {
-        let i = slot - self.guard;
-        let (b, mut i) = (i / self.stride, i % self.stride);
+        let (b, mut i) = self.place(slot);
         let c = crate::array::from_fn(|a| {
             let n = self.cells[a];
             let c = if a + 1 < D { i % n } else { i };

@@ -9,15 +9,18 @@ pub mod field;
 pub mod grid;
 mod points;
 pub mod several;
+pub mod subdomain;
 pub mod values;
 
 pub use exchange::Exchange;
 pub use field::{Column, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 pub use grid::Grid;
 pub use several::Piece;
+pub use subdomain::Subdomain;
 pub use values::Values;
 
 use crate::space::Point;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Displacement of absent sites, in spacings: so far that no test of nearness or breaking can ever hold.
@@ -58,6 +61,8 @@ pub struct Body<const D: usize> {
     pub(crate) mark: Vec<i32>,
     /// Which slots are copies of others.
     pub(crate) exchange: Exchange,
+    /// What it is a part of; `None`: it is whole.
+    pub(crate) subdomain: Option<Arc<Subdomain>>,
 }
 
 /// Which body it is: the number of slots and who is in them. Copies of a body are the same one.

@@ -52,7 +52,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// What each point has, asked by its slot, where it lies and in its copies.
-    pub fn set_points<T: Copy>(&self, column: &mut [T], value: impl Fn(usize) -> T) {
+    pub fn set_points<T: bytemuck::Pod>(&self, column: &mut [T], value: impl Fn(usize) -> T) {
         for &s in &self.slots {
             column[s as usize] = value(s as usize);
         }

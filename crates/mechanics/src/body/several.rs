@@ -87,6 +87,7 @@ impl<const D: usize> Body<D> {
             },
             exchange: Exchange::joined(pieces.iter().map(|p| (p.first, &p.body.exchange))),
             layout: Layout::Several(pieces),
+            subdomain: None,
         }
     }
 

@@ -1,9 +1,11 @@
 //! Blocks of work on threads. A block is a fixed piece of the work, whoever does it, and results are kept in
 //! block order: the number of threads never shows in the bits.
 
+use super::exact::Exact;
 use super::simd::{Kernel, Simd};
+use peridyne_comm::Comm;
 use rayon::prelude::*;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Do `work` for every number below `count`, on threads. One call through a pointer per block costs nothing; the machinery of
 /// threads compiled for each of hundreds of kernels was a third of this crate.
@@ -36,6 +38,8 @@ pub struct PerBlock<T> {
     blocks: usize,
     empty: T,
     room: Mutex<Vec<T>>,
+    /// Ranks that have the other blocks.
+    ranks: Option<Arc<Comm>>,
 }
 
 impl<T: Copy + Send> PerBlock<T> {
@@ -44,7 +48,14 @@ impl<T: Copy + Send> PerBlock<T> {
             blocks,
             empty,
             room: Mutex::new(vec![empty; blocks]),
+            ranks: None,
         }
+    }
+
+    /// The same, of a body of which other ranks have other parts; `None`: it is whole.
+    pub fn among(mut self, ranks: Option<&Arc<Comm>>) -> Self {
+        self.ranks = ranks.cloned();
+        self
     }
 
     /// Number of blocks.
@@ -56,21 +67,28 @@ impl<T: Copy + Send> PerBlock<T> {
         self.room.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Run `kernel` on every block and fold its results, in the order of blocks.
+    /// Run `kernel` on every block of this rank and fold its results, in the order of blocks.
     pub fn fold<K: Kernel<Out = T>>(&self, simd: Simd, kernel: &K, add: impl Fn(&mut T, T)) -> T {
-        self.fold_of(&|room| for_each_block(simd, kernel, room), &add)
+        let mut total = self.empty;
+        self.each(&|room| for_each_block(simd, kernel, room), &mut |result| {
+            add(&mut total, *result);
+        });
+        total
+    }
+
+    /// Run `kernel` on every block of this rank and look at its results, in the order of blocks.
+    pub fn for_each<K: Kernel<Out = T>>(&self, simd: Simd, kernel: &K, mut look: impl FnMut(&T)) {
+        self.each(&|room| for_each_block(simd, kernel, room), &mut look);
     }
 
     /// The same of who fills the room: the kernel does not show in this code.
-    fn fold_of(&self, fill: &dyn Fn(&mut [T]), add: &dyn Fn(&mut T, T)) -> T {
+    fn each(&self, fill: &dyn Fn(&mut [T]), look: &mut dyn FnMut(&T)) {
         // taken, not held: a thread that waits for its blocks may be lent to a sweep that also wants the room
         let mut room = std::mem::take(&mut *self.room());
         room.resize(self.blocks, self.empty);
         fill(&mut room);
-        let mut total = self.empty;
-        room.iter().for_each(|x| add(&mut total, *x));
+        room.iter().for_each(look);
         *self.room() = room;
-        total
     }
 }
 
@@ -80,13 +98,22 @@ impl<const N: usize> PerBlock<[f64; N]> {
         PerBlock::new(blocks, [0.0; N])
     }
 
-    /// Run `kernel` on every block and add its results up, in the order of blocks.
+    /// Run `kernel` on every block, of all ranks, and add its results up.
     pub fn sum<K: Kernel<Out = [f64; N]>>(&self, simd: Simd, kernel: &K) -> [f64; N] {
-        self.fold(simd, kernel, |total, block| {
-            for (t, x) in total.iter_mut().zip(block) {
-                *t += x;
+        self.total(&|room| for_each_block(simd, kernel, room))
+    }
+
+    fn total(&self, fill: &dyn Fn(&mut [[f64; N]])) -> [f64; N] {
+        let mut sums = [const { Exact::ZERO }; N];
+        self.each(fill, &mut |result| {
+            for (sum, x) in sums.iter_mut().zip(result) {
+                sum.add(*x);
             }
-        })
+        });
+        if let Some(ranks) = &self.ranks {
+            Exact::of_all(&mut sums, ranks);
+        }
+        sums.map(|sum| sum.value())
     }
 }
 

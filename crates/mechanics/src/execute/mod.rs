@@ -1,6 +1,7 @@
 //! How loops run: lanes of a vector register, and blocks of points shared out to threads.
 
 pub(crate) mod blocks;
+pub mod exact;
 pub mod lane;
 pub mod memory;
 pub mod simd;

@@ -6,9 +6,6 @@ use crate::execute::lane::{Lane, TILE};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Tiles per block of work.
-const BLOCK: usize = 64;
-
 /// One bond of a stencil.
 #[derive(Debug, Clone, Copy)]
 pub struct Link<const D: usize> {
@@ -38,6 +35,8 @@ pub struct Links<const D: usize> {
     pub links: Vec<Vec<Link<D>>>,
     /// Tiles that have points.
     pub tiles: Vec<u32>,
+    /// Where each block of work begins in `tiles`, and where the last ends.
+    starts: Vec<u32>,
     /// Per tile of `tiles`: where its bits, which others may have, too, begin in `bits`; [`WHOLE`] if all its eight points have all their partners.
     begin: Vec<u32>,
     /// Per bond of tiles that are not whole: which of the eight points have it.
@@ -84,6 +83,7 @@ impl<const D: usize> Links<D> {
         let mut made = Links {
             body: body.identity,
             links,
+            starts: grid.blocks_of(&tiles),
             begin: Vec::with_capacity(tiles.len()),
             bits: vec![],
             tiles,
@@ -133,12 +133,12 @@ impl<const D: usize> Links<D> {
 
     /// Blocks of work that the tiles make.
     pub fn blocks(&self) -> usize {
-        self.tiles.len().div_ceil(BLOCK)
+        self.starts.len() - 1
     }
 
     /// The tiles of block `b`.
     pub fn block(&self, b: usize) -> Range<usize> {
-        b * BLOCK..((b + 1) * BLOCK).min(self.tiles.len())
+        self.starts[b] as usize..self.starts[b + 1] as usize
     }
 
     /// Tile `n` (of `tiles`).

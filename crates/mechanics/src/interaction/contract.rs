@@ -133,7 +133,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
         // copies have displacements of their own
         let mut u = body.at_rest();
         let points = body.slots.iter().map(|s| *s as usize);
-        for s in points.chain(body.exchange.pairs().map(|(copy, _)| copy)) {
+        for s in points.chain(body.exchange.copies()) {
             let moved = along(gradient, &body.position(s));
             (0..D).for_each(|a| u[a][s] = moved[a]);
         }

@@ -77,6 +77,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             body,
             bonds: &self.stencil,
             partners: &self.partners,
+            family,
             width: family.width,
             tiles: family.tiles(),
             alive,
@@ -212,7 +213,9 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             self.bonds.critical = critical;
             body.exchange.fill(&mut self.bonds.critical);
             self.least_critical = total.least_critical;
-            self.settled = self.bonds.toughness.iter().all(|t| t.alpha == 0.0);
+            // what breaks elsewhere is not known here
+            let alone = !body.exchange.is_shared();
+            self.settled = alone && self.bonds.toughness.iter().all(|t| t.alpha == 0.0);
         }
         // a point may have lost its last bond
         self.settled &= total.broken == 0;

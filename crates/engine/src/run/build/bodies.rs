@@ -13,6 +13,8 @@ use crate::run::reference::current_neighbours;
 use crate::run::sets::{assign_materials, sets};
 use crate::run::{atoms, clouds, own_horizons, traits};
 use crate::spec::{BodySpec, FamilyChoice, Horizon, PieceSpec, Spec};
+use peridyne_comm::Comm;
+use std::sync::Arc;
 
 /// Points with materials and masses, and what they are called.
 pub(super) struct Bodies<'a, const D: usize> {
@@ -36,9 +38,13 @@ impl<'a, const D: usize> Bodies<'a, D> {
         spec: &'a Spec,
         shelf: &Shelf,
         potentials: Option<&AnyPotentials>,
+        ranks: Option<&Arc<Comm>>,
         warnings: &mut Warnings,
     ) -> Result<Self, BuildError> {
         let (mut parts, mut body) = parts::<D>(spec)?;
+        if let Some(ranks) = ranks {
+            body = body.subdomain_of(ranks)?;
+        }
         match (potentials, spec.bonds.family) {
             (Some(potentials), _) if current_neighbours(spec) => {
                 atoms::check_box(potentials, &body.period())?;

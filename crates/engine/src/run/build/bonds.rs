@@ -72,9 +72,12 @@ impl<const D: usize> Bonds<D> {
                 "atoms feel those of their family in the reference whose bonds are whole, and nobody else: parts that come apart and meet again go through each other",
             );
         }
-        warnings.extend(meant::regions(spec, body));
-        warnings.extend(meant::periods(spec, body)?);
-        warnings.extend(meant::sets(spec, body, &bodies.names.sets));
+        // what a part of a body has says nothing of the whole
+        if body.subdomain().is_none() {
+            warnings.extend(meant::regions(spec, body));
+            warnings.extend(meant::periods(spec, body)?);
+            warnings.extend(meant::sets(spec, body, &bodies.names.sets));
+        }
         if { spec.interactions.contact.as_ref() }.is_some_and(|c| c.conductance.is_some())
             && spec.materials.iter().any(|m| m.fracture.is_some())
         {

@@ -17,6 +17,8 @@ use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::quantity::Warnings;
 use crate::spec::Spec;
+use peridyne_comm::Comm;
+use std::sync::Arc;
 
 /// How to build, as opposed to what.
 #[derive(Debug, Clone, Copy, Default)]
@@ -56,6 +58,16 @@ pub fn build_in<const D: usize>(
     options: Options,
     shelf: &Shelf,
 ) -> Result<Model<D>, BuildError> {
+    made_among(spec, options, shelf, None)
+}
+
+/// The part of it that this rank has; `None`: all.
+pub(super) fn made_among<const D: usize>(
+    spec: &Spec,
+    options: Options,
+    shelf: &Shelf,
+    ranks: Option<&Arc<Comm>>,
+) -> Result<Model<D>, BuildError> {
     let mut resolved = spec.clone();
     shelf.resolve(&mut resolved)?;
     consistent(&resolved, shelf)?;
@@ -67,7 +79,7 @@ pub fn build_in<const D: usize>(
     let spec = &resolved;
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = Warnings::default();
-    let mut bodies = Bodies::<D>::new(spec, shelf, potentials.as_ref(), &mut warnings)?;
+    let mut bodies = Bodies::<D>::new(spec, shelf, potentials.as_ref(), ranks, &mut warnings)?;
     let bonds = Bonds::new(spec, simd, &mut bodies, &mut warnings)?;
     let mut made = Made::new(
         spec,

@@ -196,19 +196,22 @@ pub fn draw(
                 }
                 layer
             });
-            buffer.raise(camera);
             let mut core = Core {
                 light: vec![1.0; rows.len() * columns.len()],
                 rows,
                 columns,
             };
-            core.each(width, |at, light| {
-                *light = FACES[usize::from(buffer.face[at])]
-            });
-            if camera.cosine == 0.0 {
-                buffer.light_slopes(&mut core);
+            // of much of a view there is nothing to light
+            if buffer.depth.iter().any(|depth| depth.is_finite()) {
+                buffer.raise(camera);
+                core.each(width, |at, light| {
+                    *light = FACES[usize::from(buffer.face[at])]
+                });
+                if camera.cosine == 0.0 {
+                    buffer.light_slopes(&mut core);
+                }
+                buffer.darken_hollows(&mut core);
             }
-            buffer.darken_hollows(&mut core);
             let steel = steel.as_ref().map(|layer| (layer, beside.opacity));
             buffer.average_onto(image, corner, &core, &table, steel);
         }

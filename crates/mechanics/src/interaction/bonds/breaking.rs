@@ -2,7 +2,7 @@
 
 use super::family::{Family, Moved, Slots, put};
 use super::state::{BondState, Room};
-use super::view::{BLOCK, BondView, grown};
+use super::view::{BondView, grown};
 use crate::body::{Body, FieldView};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE, elementary};
@@ -220,7 +220,7 @@ impl<const D: usize, F: Family<D>> Kernel for Shortest<'_, D, F> {
     fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
         let f = self.family;
         let mut most = L::splat(0.0);
-        for group in block * BLOCK..((block + 1) * BLOCK).min(f.groups()) {
+        for group in f.block(block) {
             // SAFETY: groups of the family
             unsafe {
                 let rows = f.rows(group);
@@ -244,7 +244,7 @@ impl<const D: usize, F: Family<D>> Kernel for Shortest<'_, D, F> {
 }
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {
-    /// Marks the bonds that break, and finds the next critical stretch. False: none does.
+    /// Marks the bonds that break, and finds the next critical stretch. False: none does, on any rank.
     pub fn find_breaking(
         &mut self,
         body: &Body<D>,
@@ -274,7 +274,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             torn,
         };
         self.blocks.run(&test);
-        self.torn.iter().any(|t| *t != 0)
+        body.exchange.any(self.torn.iter().any(|t| *t != 0))
     }
 
     /// Damage as the points remember it.

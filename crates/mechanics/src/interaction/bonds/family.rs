@@ -1,6 +1,7 @@
 //! What a family is to the sweeps of a law: groups of eight points, whose bonds are walked together.
 
 use super::store::Rows;
+use super::view::BLOCK;
 use crate::body::{Body, Exchange, FieldView};
 use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::{Lane, TILE};
@@ -84,6 +85,16 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
     /// Horizon of a point over that of the body (–).
     fn reach(&self, _slot: usize) -> f64 {
         1.0
+    }
+
+    /// Blocks of work.
+    fn blocks(&self) -> usize {
+        self.groups().div_ceil(BLOCK)
+    }
+    /// The groups of a block.
+    #[inline(always)]
+    fn block(&self, block: usize) -> Range<usize> {
+        block * BLOCK..((block + 1) * BLOCK).min(self.groups())
     }
 
     /// How numbers of points are laid out.

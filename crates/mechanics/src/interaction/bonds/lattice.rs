@@ -248,6 +248,14 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         u
     }
 
+    fn blocks(&self) -> usize {
+        self.links.blocks()
+    }
+    #[inline(always)]
+    fn block(&self, block: usize) -> std::ops::Range<usize> {
+        self.links.block(block)
+    }
+
     fn layout(&self, numbers: usize) -> Layout {
         Layout::columns(numbers, self.slots)
     }

@@ -5,14 +5,14 @@ use super::law::LawProperties;
 use super::records::Pack;
 use super::repulsion::Pushed;
 use super::store::Store;
-use super::view::{BLOCK, BondView};
-use crate::body::{Body, Column, Field, FieldView, Identity, field};
+use super::view::BondView;
+use crate::body::{Body, Column, Field, FieldView, Identity, Subdomain, field};
 use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
+use crate::execute::exact::Exact;
 use crate::execute::simd::{Kernel, Simd};
 use crate::interaction::criterion::{Criteria, Measure};
-use crate::interaction::{Repulsion, Tally, Toughness};
+use crate::interaction::{Released, Repulsion, Tally, Toughness};
 use crate::space::Point;
-use std::ops::AddAssign;
 
 /// All bonds of a body, of any law. A bond is a bit of `byte(group, k)`, eight points of a group side by side.
 pub struct BondState<const D: usize, F> {
@@ -79,12 +79,11 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    fn of(groups: usize, simd: Simd) -> Blocks {
-        let blocks = groups.div_ceil(BLOCK);
+    fn of<const D: usize>(blocks: usize, simd: Simd, body: &Body<D>) -> Blocks {
         Blocks {
             simd,
             tallies: PerBlock::new(blocks, Tally::default()),
-            sums: PerBlock::sums(blocks),
+            sums: PerBlock::sums(blocks).among(body.subdomain().map(Subdomain::comm)),
         }
     }
 
@@ -92,8 +91,21 @@ impl Blocks {
         run_blocks(self.simd, kernel, self.sums.blocks());
     }
 
+    /// Of this rank's groups.
     pub fn tally<K: Kernel<Out = Tally>>(&self, kernel: &K) -> Tally {
-        self.tallies.fold(self.simd, kernel, Tally::add_assign)
+        let mut total = Tally::default();
+        let mut sums = [const { Exact::ZERO }; 3];
+        self.tallies.for_each(self.simd, kernel, |tally| {
+            total += *tally;
+            let of = [tally.released.lost, tally.released.made, tally.dissipated];
+            sums.iter_mut().zip(of).for_each(|(sum, x)| sum.add(x));
+        });
+        let [lost, made, dissipated] = sums.map(|sum| sum.value());
+        Tally {
+            released: Released { lost, made },
+            dissipated,
+            ..total
+        }
     }
 
     pub fn sum<K: Kernel<Out = [f64; 2]>>(&self, kernel: &K) -> [f64; 2] {
@@ -266,7 +278,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
                 records: vec![0.0; records],
                 ..Room::default()
             },
-            blocks: Blocks::of(family.groups(), simd),
+            blocks: Blocks::of(family.blocks(), simd, body),
             law,
             family,
             kind,

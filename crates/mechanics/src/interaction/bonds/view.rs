@@ -6,7 +6,7 @@ use crate::execute::blocks::Seen;
 use crate::execute::lane::Lane;
 
 /// Groups per block of work.
-pub const BLOCK: usize = 32;
+pub use crate::body::grid::BLOCK;
 
 /// Bonds as sweeps of a law, and what is made of their answers, read them.
 pub struct BondView<'a, const D: usize, F> {
@@ -113,7 +113,7 @@ impl<const D: usize, F: Family<D>> BondView<'_, D, F> {
     }
 
     pub fn block(&self, block: usize) -> std::ops::Range<usize> {
-        block * BLOCK..((block + 1) * BLOCK).min(self.family.groups())
+        self.family.block(block)
     }
 
     /// Bits of the bonds of a group.

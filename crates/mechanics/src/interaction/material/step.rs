@@ -84,13 +84,17 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
                 self.settle(body, u, &room);
                 self.measure(body, u, &room);
             }
-            total += self.tear(body, u, &room, away(&m, -m.steps[0]));
+            total += self
+                .tear(body, u, &room, away(&m, -m.steps[0]))
+                .unwrap_or_default();
         }
         self.settle(body, u, &room);
         self.pull(body, u, &room, f);
         if let Some(m) = breaks.filter(|m| m.release == Release::AfterForce) {
             self.measure(body, u, &room);
-            total += self.tear(body, u, &room, away(&m, m.steps[1]));
+            total += self
+                .tear(body, u, &room, away(&m, m.steps[1]))
+                .unwrap_or_default();
         }
         if motion.is_some() {
             total += self.remember(body, u, &room);
@@ -165,14 +169,13 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             true => motion.steps[1],
             false => -motion.steps[0],
         };
-        let tear = self.tear(body, u, room, away(&motion, drift));
-        if tear.broken > 0 {
+        if let Some(tear) = self.tear(body, u, room, away(&motion, drift)) {
             let torn = std::mem::take(&mut self.bonds.torn);
             self.settle_only(body, u, room, &torn);
             total += self.remember_only(body, u, room, &torn);
             self.bonds.torn = torn;
+            total += tear;
         }
-        total += tear;
         if !after {
             self.pull(body, u, room, f);
         }
@@ -220,10 +223,16 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         self.bonds.dilate(out);
     }
 
-    /// Test and break, and what points lose.
-    fn tear(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room, drift: Drift<D>) -> Tally {
+    /// Test and break, and what points lose; `None`: nothing broke, on any rank.
+    fn tear(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        room: &Room,
+        drift: Drift<D>,
+    ) -> Option<Tally> {
         if !self.bonds.find_breaking(body, u, room, drift.v) {
-            return Tally::default();
+            return None;
         }
         let form = self.bonds.form.shared();
         let breaks = Shared(self.bonds.breaks.as_mut_ptr());
@@ -254,7 +263,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         });
         self.bonds.look_integrity(body);
         self.bonds.look_stiffness(body, false);
-        tally
+        Some(tally)
     }
 
     /// Memory at the end of a step.

@@ -1,7 +1,7 @@
 //! The bonds of a stencil one by one, in order of slots: for whatever is not a kernel.
 
 use super::StencilInteraction;
-use crate::body::{Body, FieldView, view_mut, zeros};
+use crate::body::{Body, FieldView, Subdomain, view_mut, zeros};
 use crate::execute::blocks::PerBlock;
 use crate::execute::lane::Lane;
 use crate::execute::simd::Kernel;
@@ -10,9 +10,6 @@ use crate::interaction::tangent::Stretched;
 use crate::interaction::{BondForce, Interaction, Sweep, add_virial};
 use crate::law::Law;
 use std::ops::Range;
-
-/// Tiles that one thread takes at a time.
-const TILES: usize = 32;
 
 struct Virial<'a, const D: usize, W: Law> {
     of: &'a StencilInteraction<D, W>,
@@ -26,13 +23,12 @@ impl<const D: usize, W: Law> Kernel for Virial<'_, D, W> {
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 6] {
-        let last = self.of.tiles().min((block + 1) * TILES);
+        let tiles = self.of.bonds.family.block(block);
         let mut virial = [0.0; 6];
-        self.of
-            .pulls_of(self.body, self.u, block * TILES..last, |bond| {
-                let factor = -0.5 * self.body.volume.at(bond.i);
-                add_virial(&mut virial, &bond.force, &bond.y, factor);
-            });
+        self.of.pulls_of(self.body, self.u, tiles, |bond| {
+            let factor = -0.5 * self.body.volume.at(bond.i);
+            add_virial(&mut virial, &bond.force, &bond.y, factor);
+        });
         virial
     }
 }
@@ -58,7 +54,9 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     pub(super) fn virial_of_pulls(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 6] {
         self.update_pressures(body, u);
         let kernel = Virial { of: self, body, u };
-        PerBlock::sums(self.tiles().div_ceil(TILES)).sum(self.bonds.blocks.simd, &kernel)
+        let sums = PerBlock::sums(self.bonds.family.blocks());
+        let ranks = body.subdomain().map(Subdomain::comm);
+        sums.among(ranks).sum(self.bonds.blocks.simd, &kernel)
     }
 
     /// What points of some tiles get from their bonds, as pressures are.

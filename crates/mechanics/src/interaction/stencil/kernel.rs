@@ -14,6 +14,8 @@ use crate::execute::blocks::Seen;
 use crate::execute::lane::{Lane, TILE};
 use crate::interaction::Repulsion;
 use crate::interaction::bond::relative_square_stretch;
+use crate::interaction::bonds::LatticeFamily;
+use crate::interaction::bonds::family::Family;
 use crate::interaction::scale::Scale;
 use crate::law::Law;
 pub use energies::Energies;
@@ -22,9 +24,6 @@ pub use share::Share;
 
 /// Longest stencil that a sweep can keep account of.
 pub use crate::family::stencil::MOST;
-/// Tiles per block of work.
-pub use crate::interaction::bonds::view::BLOCK;
-
 /// State of a tile: every bond of `reach` is whole for all eight points.
 pub const WHOLE: u8 = 1;
 /// And field 1 is the same at all ends.
@@ -64,6 +63,7 @@ pub struct View<'a, const D: usize, W> {
     pub body: &'a Body<D>,
     pub bonds: &'a [Vec<Bond<D>>],
     pub partners: &'a [Vec<Partner<D>>],
+    pub family: &'a LatticeFamily<D>,
     pub width: usize,
     pub tiles: &'a [u32],
     /// `[tiles][width]`
@@ -148,7 +148,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     }
 
     fn block(&self, block: usize) -> std::ops::Range<usize> {
-        block * BLOCK..((block + 1) * BLOCK).min(self.tiles.len())
+        self.family.block(block)
     }
 
     /// Bits of the offsets that lead anywhere from the `n`-th active tile.
