@@ -4,6 +4,7 @@
 //! slots away); in a cloud they are the points in an order that keeps neighbours close in memory.
 
 pub mod build;
+pub mod cut;
 pub mod exchange;
 pub mod field;
 pub mod grid;
@@ -101,6 +102,11 @@ impl<const D: usize> Body<D> {
     /// Which slots are copies of others, and how they are filled.
     pub fn exchange(&self) -> &Exchange {
         &self.exchange
+    }
+
+    /// What this body is a part of; `None`: it is whole.
+    pub fn subdomain(&self) -> Option<&Subdomain> {
+        self.subdomain.as_deref()
     }
 
     /// Number of slots, guards included: the length of its fields.

@@ -1,7 +1,7 @@
 //! What a family is to the sweeps of a law: groups of eight points, whose bonds are walked together.
 
 use super::store::Rows;
-use super::view::BLOCK;
+use crate::body::grid::BLOCK;
 use crate::body::{Body, Exchange, FieldView};
 use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::{Lane, TILE};

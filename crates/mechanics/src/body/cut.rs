@@ -1,0 +1,328 @@
+//! Cuts a lattice body into the parts that ranks have: runs of its slots, and copies of what is within reach of them.
+//!
+//! A part has the cells of the whole grid from one to another, in the order of memory, so that a neighbour is as many cells away as in the whole. Ranks own
+//! whole blocks of tiles, the same ones that sums are made of: slabs across the axis that is slowest in memory, whose borders may lie within a layer. What is near
+//! by but somebody else's is a copy, as periodic images are ([`Exchange`]).
+
+use super::exchange::{Copies, Exchange};
+use super::grid::BLOCK;
+use super::subdomain::Subdomain;
+use super::{Body, Grid, Identity, Layout, Values};
+use crate::error::BuildError;
+use crate::execute::lane::TILE;
+use peridyne_comm::Comm;
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Cells of a block.
+const CELLS: usize = BLOCK * TILE;
+
+/// Cells of the whole grid, of each sublattice: those whose points a rank owns, and those that it has.
+struct Share {
+    own: Range<usize>,
+    near: Range<usize>,
+}
+
+impl Share {
+    /// Of all ranks, in their order, with as many points each as whole blocks allow.
+    fn by_ranks<const D: usize>(grid: &Grid<D>, ranks: usize) -> Result<Vec<Share>, BuildError> {
+        let tiles = grid.stride / TILE;
+        let mut points = vec![0; tiles.div_ceil(BLOCK)];
+        for (tile, owned) in grid.owned.iter().enumerate() {
+            points[tile % tiles / BLOCK] += owned.count_ones() as usize;
+        }
+        let filled = points.iter().filter(|n| **n > 0).count();
+        if filled < ranks {
+            let message = format!("{ranks} ranks for a body of {filled} blocks of {CELLS} cells");
+            let help = format!("a rank has one block at least: take {filled} ranks or fewer");
+            return Err(BuildError::too_many("ranks", message).help(help));
+        }
+        let all: usize = points.iter().sum();
+        let reach = grid.guard - TILE;
+        let (mut shares, mut begin, mut passed, mut left) = (vec![], 0, 0, filled);
+        for rank in 0..ranks {
+            let (mut end, mut here) = (begin, 0);
+            // those after it have one each
+            let after = ranks - rank - 1;
+            while here == 0 || left > after && passed < all * (rank + 1) / ranks {
+                passed += points[end];
+                here += points[end];
+                left -= usize::from(points[end] > 0);
+                end += 1;
+            }
+            let own = match after {
+                0 => begin * CELLS..grid.stride,
+                _ => begin * CELLS..end * CELLS,
+            };
+            shares.push(Share {
+                near: own.start.saturating_sub(reach)..(own.end + reach).min(grid.stride),
+                own,
+            });
+            begin = end;
+        }
+        Ok(shares)
+    }
+
+    /// The grid of the rank that has it.
+    fn grid<const D: usize>(&self, whole: &Grid<D>) -> Grid<D> {
+        let mut grid = Grid {
+            first: self.near.start,
+            stride: self.near.len(),
+            present: vec![],
+            owned: vec![],
+            ..*whole
+        };
+        for first in (0..whole.basis()).map(|b| b * whole.stride) {
+            let tiles =
+                |cells: &Range<usize>| (first + cells.start) / TILE..(first + cells.end) / TILE;
+            let (near, own) = (tiles(&self.near), tiles(&self.own));
+            grid.present.extend_from_slice(&whole.present[near.clone()]);
+            let owned = |t: usize| if own.contains(&t) { whole.owned[t] } else { 0 };
+            grid.owned.extend(near.map(owned));
+        }
+        grid
+    }
+
+    /// The slot of a cell that the rank has.
+    fn slot<const D: usize>(&self, whole: &Grid<D>, (b, cell): (usize, usize)) -> usize {
+        whole.guard + b * self.near.len() + cell - self.near.start
+    }
+
+    /// What slots of the part have of what those of the whole have; nothing where that is nothing.
+    fn gathered<const D: usize, T: Copy>(&self, whole: &Grid<D>, all: &[T]) -> Vec<T> {
+        // guards have what the first one has
+        let Some(guard) = all.first() else {
+            return vec![];
+        };
+        let basis = whole.basis();
+        let mut part = vec![*guard; 2 * whole.guard + basis * self.near.len()];
+        for b in 0..basis {
+            let from = whole.guard + b * whole.stride;
+            let from = &all[from + self.near.start..from + self.near.end];
+            let to = whole.guard + b * self.near.len();
+            part[to..to + from.len()].copy_from_slice(from);
+        }
+        part
+    }
+}
+
+impl<const D: usize> Body<D> {
+    /// The part of this body that a rank has. All ranks ask at once, with the same body.
+    ///
+    /// # Errors
+    /// The body is not one lattice, or has fewer blocks of 256 cells with points than there are ranks.
+    pub fn subdomain_of(&self, comm: &Arc<Comm>) -> Result<Body<D>, BuildError> {
+        let whole = match &self.layout {
+            Layout::Grid(grid) => grid,
+            Layout::Cloud(_) | Layout::Several(_) => {
+                return Err(BuildError::unsupported(
+                    "ranks",
+                    "parts of bodies that are not one lattice are not made yet",
+                ));
+            }
+        };
+        let all = Share::by_ranks(whole, comm.ranks())?;
+        let share = &all[comm.rank()];
+        let grid = share.grid(whole);
+        let copies = self.copies(whole, &grid, &all, comm.rank());
+        let (mut ids, mut slots) = (vec![], vec![]);
+        for (id, slot) in self.slots.iter().enumerate() {
+            let place = whole.place(*slot as usize);
+            if share.own.contains(&place.1) {
+                ids.push(id as u32);
+                slots.push(share.slot(whole, place) as u32);
+            }
+        }
+        let values = |of: &Values| match of {
+            Values::Uniform(x) => Values::Uniform(*x),
+            Values::PerSlot(x) => Values::PerSlot(share.gathered(whole, x)),
+        };
+        let mark = ids
+            .iter()
+            .filter_map(|id| self.mark.get(*id as usize).copied());
+        Ok(Body {
+            identity: Identity::new(),
+            len: grid.slots(),
+            spacing: self.spacing,
+            volume: values(&self.volume),
+            density: values(&self.density),
+            period: self.period,
+            material: share.gathered(whole, &self.material),
+            horizon: share.gathered(whole, &self.horizon),
+            mark: mark.collect(),
+            exchange: Exchange::among(comm, copies),
+            subdomain: Some(Arc::new(Subdomain::new(comm, ids, self.points()))),
+            slots,
+            layout: Layout::Grid(grid),
+        })
+    }
+
+    /// Who is there, but is not this rank's.
+    fn copies(&self, whole: &Grid<D>, grid: &Grid<D>, all: &[Share], rank: usize) -> Copies {
+        let mut copies = Copies::new(all.len());
+        let mut named = HashMap::new();
+        for slot in grid.guard..grid.slots() - grid.guard {
+            if grid.is_owned(slot) || !grid.is_present(slot) {
+                continue;
+            }
+            let (b, cell) = grid.place(slot);
+            let original = self
+                .exchange
+                .original(whole.guard + b * whole.stride + cell);
+            let place = whole.place(original);
+            let owner = all.partition_point(|share| share.own.end <= place.1);
+            let there = all[owner].slot(whole, place);
+            match owner == rank {
+                true => copies.own(slot, there),
+                false => copies.of_rank(owner, slot, there, *named.entry(original).or_insert(slot)),
+            }
+        }
+        copies
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::body::{Body, Values};
+    use crate::samples;
+    use crate::space::lattice::{Lattice, LatticeKind};
+    use peridyne_comm::on_threads;
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+
+    /// On so many ranks every point is somebody's, and after one fill whoever is near enough to be a partner is there with what is its own.
+    fn check<const D: usize>(
+        kind: LatticeKind,
+        cells: [i32; 3],
+        reach: usize,
+        periodic: [bool; D],
+        keep: fn([i32; 3]) -> bool,
+    ) {
+        let lattice = Lattice {
+            kind,
+            spacing: 0.5,
+            origin: [0.1; 3],
+        };
+        let sites: Vec<[i32; 3]> = { samples::sites(cells, keep).into_iter() }
+            .flat_map(|first| {
+                let site = move |q: &[i32; 3]| crate::array::from_fn(|a| first[a] + q[a]);
+                kind.basis().iter().map(site)
+            })
+            .collect();
+        let mut whole = Body::on_lattice(lattice, &sites, reach, periodic, 1.0).unwrap();
+        whole.set_marks((0..sites.len() as i32).collect());
+        whole.give_materials((0..sites.len()).map(|id| (id % 7) as u8));
+        let densities: Vec<f64> = (0..sites.len()).map(|id| 1.0 + id as f64).collect();
+        whole.set_densities(&densities);
+        let mut ids = vec![u32::MAX; whole.len];
+        (0..)
+            .zip(&whole.slots)
+            .for_each(|(id, slot)| ids[*slot as usize] = id);
+        whole.exchange.fill(&mut ids);
+        let can = |ranks: &usize| super::Share::by_ranks(whole.grid(), *ranks).is_ok();
+        let most = (1..).take_while(can).count();
+        let name = format!("{kind:?} {periodic:?}");
+        assert!(most >= 3, "{name} {most}");
+        for ranks in [1, 2, 3, most] {
+            let seen = on_threads(ranks, |comm| {
+                let part = whole.subdomain_of(&Arc::new(comm)).unwrap();
+                let of = part.subdomain().unwrap();
+                assert_eq!(of.points(), sites.len());
+                let mut here = vec![u32::MAX; part.len];
+                let mut field = crate::body::zeros::<D>(part.len);
+                let mut records = vec![0u8; 3 * part.len];
+                for (n, (id, slot)) in of.ids().iter().zip(&part.slots).enumerate() {
+                    let slot = *slot as usize;
+                    here[slot] = *id;
+                    field[D - 1][slot] = f64::from(*id);
+                    records[3 * slot + 2] = *id as u8;
+                    assert_eq!(part.mark[n], *id as i32);
+                    assert_eq!(part.density.at(slot), densities[*id as usize]);
+                    assert_eq!(
+                        part.position(slot),
+                        whole.position(whole.slots[*id as usize] as usize)
+                    );
+                }
+                part.exchange.fill(&mut here);
+                part.exchange.fill_field(&mut field);
+                part.exchange
+                    .fill_numbers(&mut records, 3, |slot, n| 3 * slot + n);
+                let grid = part.grid();
+                let mut first = BTreeMap::new();
+                for slot in grid.guard..grid.slots() - grid.guard {
+                    let (b, cell) = grid.place(slot);
+                    let id = ids[whole.grid().guard + b * whole.grid().stride + cell];
+                    assert_eq!(
+                        here[slot],
+                        id,
+                        "{name}, rank {} of {ranks}",
+                        of.comm().rank()
+                    );
+                    assert_eq!(grid.is_present(slot), id != u32::MAX);
+                    if id == u32::MAX {
+                        continue;
+                    }
+                    assert_eq!(field[D - 1][slot], f64::from(id));
+                    assert_eq!(records[3 * slot + 2], id as u8);
+                    assert_eq!(part.material[slot], (id % 7) as u8);
+                    // one point has one name, and it is its own slot where it has one
+                    let own = of.ids().binary_search(&id).map(|n| part.slots[n] as usize);
+                    let name = *first.entry(id).or_insert(own.unwrap_or(slot));
+                    assert_eq!(part.exchange.original(slot), name);
+                }
+                // all of whom anybody here may be bonded to
+                for slot in &part.slots {
+                    let (cell, b) = grid.cell(*slot as usize);
+                    let (there, _) = whole.grid().cell(
+                        whole.grid().guard + b * whole.grid().stride + grid.place(*slot as usize).1,
+                    );
+                    assert_eq!(cell, there);
+                    for a in 0..D {
+                        for d in [-(reach as i64), reach as i64] {
+                            let mut to = cell;
+                            to[a] += d;
+                            for b in 0..grid.basis() {
+                                assert_eq!(
+                                    grid.slot(to, b).is_some_and(|s| grid.is_present(s)),
+                                    whole
+                                        .grid()
+                                        .slot(to, b)
+                                        .is_some_and(|s| whole.grid().is_present(s)),
+                                );
+                            }
+                        }
+                    }
+                }
+                of.ids().to_vec()
+            });
+            let mut seen = seen.concat();
+            seen.sort_unstable();
+            assert!(seen.into_iter().eq(0..sites.len() as u32), "{name}");
+        }
+        let refused = on_threads(most + 1, |comm| {
+            whole.subdomain_of(&Arc::new(comm)).is_err()
+        });
+        assert!(refused.iter().all(|r| *r));
+        assert!(matches!(whole.density, Values::PerSlot(_)));
+    }
+
+    #[test]
+    fn points_are_of_one_rank_and_near_ones_are_there() {
+        let all = |_: [i32; 3]| true;
+        let some = |c: [i32; 3]| (c[0] + 2 * c[1] + 3 * c[2]) % 5 != 2 && (c[1] - 9).abs() > 3;
+        for periodic in [[true], [false]] {
+            check(LatticeKind::Chain, [2600, 1, 1], 3, periodic, all);
+        }
+        for keep in [all, some] {
+            for periodic in [[true, true], [true, false], [false, true]] {
+                check(LatticeKind::Square, [41, 60, 1], 3, periodic, keep);
+                check(LatticeKind::Triangular, [31, 57, 1], 2, periodic, keep);
+            }
+            for periodic in [[true; 3], [false, true, true], [true, true, false]] {
+                check(LatticeKind::Cubic, [9, 13, 14], 2, periodic, keep);
+                check(LatticeKind::Bcc, [9, 13, 9], 2, periodic, keep);
+            }
+        }
+    }
+}
