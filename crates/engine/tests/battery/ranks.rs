@@ -2,13 +2,14 @@
 
 use crate::own_law::Stiffening;
 use crate::sample::*;
+use peridyne::body::Body;
 use peridyne::columns::{Declaration, Life, On};
 use peridyne::execute::simd::Simd;
 use peridyne::law::material::bonds::Bonds;
 use peridyne::observe::Values;
 use peridyne::run::ranks::{RankModel, shared};
 use peridyne::run::{Options, Shelf, Simulation, build_in};
-use peridyne::space::lattice::LatticeKind;
+use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::*;
 use peridyne_comm::on_threads;
 use std::borrow::Cow;
@@ -288,4 +289,20 @@ fn what_ranks_do_not_share_is_named() {
     for end in ends {
         assert!(end.is_some_and(|e| e.contains("4 ranks for a body of 3 blocks")));
     }
+}
+
+#[test]
+fn a_part_of_a_body_is_neither_joined_nor_a_cloud() {
+    let sites: Vec<[i32; 3]> = (0..600).map(|x| [4 * x, 0, 0]).collect();
+    let lattice = Lattice {
+        kind: LatticeKind::Chain,
+        spacing: H,
+        origin: [0.0; 3],
+    };
+    let whole = Body::<1>::on_lattice(lattice, &sites, 3, [false], H).unwrap();
+    on_threads(2, |comm| {
+        let part = whole.subdomain_of(&Arc::new(comm)).unwrap();
+        assert_eq!(part.to_cloud().unwrap_err().path, "ranks");
+        assert!(std::panic::catch_unwind(|| Body::several(vec![part, whole.clone()])).is_err());
+    });
 }

@@ -184,7 +184,16 @@ impl<const D: usize> Body<D> {
 
 impl<const D: usize> Body<D> {
     /// The same points (ids, volumes, densities, materials, marks, periods) as a cloud, for families that are lists.
+    ///
+    /// # Errors
+    /// It is a part of a body, whose copies a cloud does not have.
     pub fn to_cloud(&self) -> Result<Self, BuildError> {
+        if self.subdomain.is_some() {
+            return Err(BuildError::unsupported(
+                "ranks",
+                "parts of clouds are not made yet: ranks share a lattice body on its stencil",
+            ));
+        }
         let points = self.slots.iter().map(|s| *s as usize);
         let position: Vec<_> = points.clone().map(|s| self.position(s)).collect();
         let volume: Vec<_> = points.clone().map(|s| self.volume.at(s)).collect();

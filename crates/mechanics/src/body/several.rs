@@ -48,7 +48,12 @@ impl<const D: usize> Body<D> {
     }
 
     /// One body of several, all with the same periods. Its spacing is the smallest.
+    ///
+    /// # Panics
+    /// If one is a part of a body: its copies would know nothing of the other ranks any more.
     pub fn several(bodies: Vec<Body<D>>) -> Body<D> {
+        let whole = bodies.iter().all(|body| body.subdomain.is_none());
+        assert!(whole, "bodies are joined before ranks share them");
         let mut pieces = Vec::with_capacity(bodies.len());
         let mut first = 0;
         for body in bodies {
