@@ -214,6 +214,25 @@ fn every_lattice_has_the_same_bits_on_ranks_of_any_width() {
     }
 }
 
+/// A bond that bears more than any point of its rank allows breaks by its other end.
+#[test]
+fn bonds_break_by_the_weaker_end_whoever_has_it() {
+    let place = Place {
+        kind: LatticeKind::Cubic,
+        plane: Plane::Stress,
+        ratio: 3,
+        cells: [24, 24, 24],
+    };
+    for name in ["pmb", "lps"] {
+        let mut spec = torn(&Case::of(name, place), false);
+        for m in &mut spec.materials {
+            m.fracture.as_mut().unwrap().alpha = 0.25;
+        }
+        spec.run.schedule.time_step = TimeStep::Fixed(0.1 * H);
+        assert!(same::<3>(&spec, &[4, 5, 9], None));
+    }
+}
+
 /// Displacements and velocities once a step, what points share and their critical stretches where the law has any, eight bytes each: of every copy, and
 /// copies are the cells within reach of the border, in whole tiles.
 #[test]

@@ -119,6 +119,19 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         self.bonds.blocks.tally(&kernel)
     }
 
+    /// A bond breaks by both of its ends, of which one may be another rank's.
+    fn look_least(&mut self, body: &Body<D>) {
+        let copies = body.exchange.is_shared().then(|| body.exchange.copies());
+        let critical = copies
+            .into_iter()
+            .flatten()
+            .map(|s| self.bonds.critical.get(s));
+        self.least_critical = critical
+            .flatten()
+            .copied()
+            .fold(self.least_critical, f64::min);
+    }
+
     /// n and 1/m at a slot.
     fn per_weight(&self, body: &Body<D>, slot: usize) -> [f64; 2] {
         let by_weight = || self.fields[1][slot];
@@ -166,6 +179,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         let known = body.slots.iter().map(|s| critical.get(*s as usize));
         let known = known.flatten().copied();
         self.least_critical = known.fold(f64::INFINITY, f64::min);
+        self.look_least(body);
         self.settled = false;
     }
 
@@ -213,6 +227,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             self.bonds.critical = critical;
             body.exchange.fill(&mut self.bonds.critical);
             self.least_critical = total.least_critical;
+            self.look_least(body);
             // what breaks elsewhere is not known here
             let alone = !body.exchange.is_shared();
             self.settled = alone && self.bonds.toughness.iter().all(|t| t.alpha == 0.0);
