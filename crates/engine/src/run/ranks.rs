@@ -1,7 +1,7 @@
 //! A model whose body many ranks share: each moves its own points, and their numbers are the same bits as if one rank had all.
 //!
-//! So far what runs is a lattice body of one piece with bonds of any law on a stencil, by velocity Verlet with a step that is given, from initial values and
-//! under forces and motions of all points. [`shared`] says of anything else that it does not yet.
+//! So far what runs is a lattice body of one piece with bonds of any law on a stencil, by velocity Verlet with a step that is given, from initial
+//! values; what breaks does by its stretch. [`shared`] says of anything else that it does not yet.
 
 use super::build::made_among;
 use super::{Model, Options, Shelf, Simulation};
@@ -9,7 +9,9 @@ use crate::body::Subdomain;
 use crate::columns::{Declaration, Life, On};
 use crate::error::{BuildError, RunError};
 use crate::observe::Column;
-use crate::spec::{BodySpec, FamilyChoice, LawSpec, Members, Spec, Stepper, TimeStep};
+use crate::spec::{
+    BodySpec, Criterion, FamilyChoice, FractureSpec, LawSpec, Members, Spec, Stepper, TimeStep,
+};
 use peridyne_comm::Comm;
 use std::sync::Arc;
 
@@ -108,6 +110,9 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         | LawSpec::Named(_) => true,
         LawSpec::Springs(_) | LawSpec::Micromoduli(_) | LawSpec::Atoms(_) => false,
     };
+    let stretch = |f: &FractureSpec| {
+        matches!(f.criterion, Criterion::Stretch(_)) && f.rate.is_none() && f.fatigue.is_none()
+    };
     let places = |members: &Members| {
         matches!(
             members,
@@ -130,6 +135,11 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
                 || bonded.surface.is_some()
                 || !bonded.factors.is_empty()
                 || bonded.smooth.is_some(),
+        ),
+        (
+            "materials",
+            "bonds that break by more than their stretch",
+            !{ spec.materials.iter() }.all(|m| m.fracture.as_ref().is_none_or(stretch)),
         ),
         (
             "materials",

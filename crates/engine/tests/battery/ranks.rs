@@ -284,6 +284,11 @@ fn what_ranks_do_not_share_is_named() {
         refused(&|s| s.bonds.family = FamilyChoice::List),
         of("bonds.family")
     );
+    let worked = |s: &mut Spec| {
+        breaking(s, 0.02);
+        s.materials[0].fracture.as_mut().unwrap().criterion = Criterion::BondEnergy(1.0);
+    };
+    assert_eq!(refused(&worked), of("materials"));
     let damping = |s: &mut Spec| {
         s.loading.conditions = vec![ConditionSpec {
             set: "all".into(),
