@@ -1,13 +1,13 @@
 """Does the program find the MPI that started it, do messages between its ranks come as they were sent, and is it said where they cannot?
 
-And is a block that ranks share torn to the same bits on any number of them?
+And does a run that they share write the same bytes on any number of them, and end well where its input is wrong?
 
 Usage: python verify/ranks/check.py --program target/debug/peridyne --mpi FOLDER [--mpi FOLDER]
-Beside the program lies examples/ranks, which `cargo build --examples` and `cargo test` make.
 FOLDER has bin/mpiexec and lib/libmpi_abi.so.1: a virtual environment into which `pip install mpich` or `pip install impi-rt` was done.
 """
 
 import argparse
+import hashlib
 import json
 import os
 import subprocess
@@ -19,6 +19,7 @@ RANKS = [1, 2, 3, 4]
 # of messages from each rank to each
 LENGTHS = 4
 DECK = Path(__file__).resolve().parents[2] / "decks/good/ten_lines.toml"
+STEPS = 24
 
 
 def environment(**more):
@@ -36,12 +37,24 @@ def main():
     asked.add_argument("--program", type=Path, required=True)
     asked.add_argument("--mpi", type=Path, action="append", default=[])
     asked = asked.parse_args()
-    program, wrong = asked.program.resolve(), []
-    block, ends = program.parent / "examples/ranks", {}
+    program, wrong, ends = asked.program.resolve(), [], {}
 
-    def end(words, name):
-        code, out, err = run([*words])
-        ends[name] = out.split(",")[0] if code == 0 and out.count("\n") == 1 else f"{code}\n{out}{err}"
+    def end(name, launcher, *more):
+        """A run to its end, and one that is cut off and goes on: all that they write but for the clock."""
+        with tempfile.TemporaryDirectory() as folder:
+            for parts in [1, 2]:
+                out = Path(folder) / f"{parts}"
+                first = ["run", DECK, "--set", "contact=false", "--set", f"run.steps={STEPS}", "--set", "output.every=8", "--out", out]
+                cut = ["--stop-after", "11"] if parts == 2 else []
+                for words in [[*first, *cut], ["resume", out]][:parts]:
+                    code, said, err = run([*launcher, program, *words, "--threads", "1", *more])
+                    if code:
+                        wrong.append(f"{name}: {code}\n{said}{err}")
+                        return
+                record = json.loads((out / "run.json").read_text())
+                files = {str(p.relative_to(out)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(out.rglob("*")) if p.is_file() and p.name not in ["run.json", "report.html"]}
+                ends[f"{name}, {parts}"] = (record["state_hash"], record["ledger_hash"], files)
+                hold(record["ranks"] == (int(name.split()[-1]) if name != "alone" else 1), f"{name}: {record['ranks']} ranks")
 
     def hold(true, what):
         if not true:
@@ -61,7 +74,7 @@ def main():
             if good and ranks > 1:
                 _, latency, speed = (found["speeds"][0][key] for key in ("between", "latency_s", "bytes_per_s"))
                 print(f"{ranks} ranks by {found['carrier'].split(' (')[0]}: {latency * 1e6:.2f} µs, {speed * 1e-9:.2f} GB/s")
-            end([mpi / "bin/mpiexec", "-n", ranks, block], f"{mpi.name} on {ranks}")
+            end(f"{mpi.name} on {ranks}", [mpi / "bin/mpiexec", "-n", ranks])
         # a launcher, and no MPI
         code, out, err = run([mpi / "bin/mpiexec", "-n", 2, program, "ranks"], PERIDYNE_MPI="/nowhere/libmpi_abi.so.1")
         hold(code == 2 and out == "" and " ".join(err.replace("│", " ").split()).count("no MPI with the standard ABI") == 1 and "/nowhere/" in err, f"{mpi} without a library: {code}\n{out}{err}")
@@ -69,11 +82,15 @@ def main():
         other = environment(OMPI_COMM_WORLD_SIZE="2", OMPI_COMM_WORLD_RANK="0", PERIDYNE_MPI=str(mpi / "lib/libmpi_abi.so.1"))
         code, out, err = run([program, "ranks"], **other)
         hold(code == 2 and out == "" and "the launcher is of another MPI" in " ".join(err.replace("│", " ").split()), f"{mpi} under another launcher: {code}\n{out}{err}")
-        # several copies of one run
         with tempfile.TemporaryDirectory() as folder:
-            words = ["-n", 4, program, "run", DECK, "--threads", 1, "--out", Path(folder) / "out"]
+            # a mistake, which one rank tells
+            words = ["-n", 3, program, "run", DECK, "--set", "horizn=3", "--threads", 1, "--out", Path(folder) / "out"]
             code, out, err = run([mpi / "bin/mpiexec", *words])
-            hold(code != 0 and "runs are not shared among ranks yet" in " ".join(err.replace("│", " ").split()), f"{mpi}, a run of four copies: {code}\n{out}{err}")
+            hold(code == 2 and err.count("horizn") >= 1 and err.count("did you mean") == 1, f"{mpi}, a mistyped deck: {code}\n{out}{err}")
+            # several copies of one run
+            words = ["-n", 2, program, "run", DECK, "--set", "run.steps=2", "--threads", 1, "--out", Path(folder) / "out"]
+            code, out, err = run([mpi / "bin/mpiexec", *words], PERIDYNE_MPI="off")
+            hold(code != 0 and "each runs alone" in " ".join(err.replace("│", " ").split()), f"{mpi}, two copies of a run: {code}\n{out}{err}")
     # each launcher with the library of each other one: it works, or says why it cannot
     for launcher in asked.mpi:
         for other in asked.mpi:
@@ -90,10 +107,12 @@ def main():
         code, out, err = run([program, "ranks", "--on-threads", ranks, "--json"])
         found = json.loads(out) if code == 0 else {}
         hold(found.get("ranks") == ranks and found["messages"] == LENGTHS * ranks**2, f"{ranks} threads: {code}\n{out}{err}")
-        end([block, "--on-threads", ranks], f"{ranks} threads")
-    end([block], "alone")
-    hold(len(set(ends.values())) == 1, f"a block that is torn: {ends}")
-    print(f"a block that is torn, {len(ends)} times: {ends['alone']}")
+        end(f"threads {ranks}", [], "--on-threads", ranks)
+    end("alone", [])
+    one = ends["alone, 1"]
+    for name, found in ends.items():
+        hold(found == one, f"{name} is not what one process writes: {found}\n{one}")
+    print(f"{DECK.stem}, {len(ends)} times: {one[0]} {one[1]} and {len(one[2])} files")
     for what in wrong:
         print("WRONG", what)
     print(f"ranks: {len(wrong)} wrong")

@@ -3,12 +3,16 @@
 use crate::Input;
 use crate::failure::Failure;
 use crate::numbers::{memory, whole};
+use crate::ranks::agreed;
+use peridyne::error::BuildErrorKind;
 use peridyne::execute::simd::Simd;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::{Info, Options, Simulation, TransferInfo, build};
 use peridyne::spec::{Spec, TransferMethod};
+use peridyne_comm::Comm;
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use peridyne_io::read::{encoding, source};
+use std::sync::Arc;
 
 /// Is this file a deck, as opposed to a LAMMPS script?
 pub fn is_deck(input: &Input) -> bool {
@@ -141,6 +145,26 @@ pub fn model_of(deck: &Deck, spec: &Spec, input: &Input) -> Result<Box<dyn Simul
         ..Options::default()
     };
     build(spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
+}
+
+/// The same, of which ranks have parts. The first has the model; others have followed it to its end, and have none.
+pub fn model_among(
+    deck: &Deck,
+    spec: &Spec,
+    input: &Input,
+    comm: &Arc<Comm>,
+) -> Result<Option<Box<dyn Simulation>>, Failure> {
+    if comm.ranks() == 1 {
+        return model_of(deck, spec, input).map(Some);
+    }
+    let options = Options {
+        simd: agreed(comm, simd(input))?,
+        ..Options::default()
+    };
+    peridyne::run::ranks::build(spec, options, comm).map_err(|e| match e.kind {
+        BuildErrorKind::Elsewhere => Failure::Elsewhere,
+        _ => Failure::Input(deck.explain(&e).into()),
+    })
 }
 
 /// Columns of a frame.

@@ -23,6 +23,8 @@ pub enum Failure {
     Run(String),
     /// A signal ended the run; its last state is written.
     Ended(Signal),
+    /// Another rank says what is wrong with the input.
+    Elsewhere,
 }
 
 impl Failure {
@@ -41,6 +43,7 @@ impl Failure {
                 note(&format!("error: {message}"));
                 ExitCode::from(1)
             }
+            Failure::Elsewhere => ExitCode::from(2),
             Failure::Ended(signal) => ExitCode::from(signal.exit_code()),
         }
     }

@@ -4,6 +4,7 @@ use crate::failure::{Failure, say};
 use peridyne_comm::{Comm, launcher};
 use serde_json::json;
 use std::fmt::Write;
+use std::sync::Arc;
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -24,14 +25,88 @@ const TRIES: usize = 5;
 const BIG: usize = 4 << 20;
 const BIG_ROUNDS: usize = 5;
 
+/// What is written instead where ranks do not share something.
+pub const ALONE: &str = "run it in one process, on as many threads as there are";
+
+fn no_launcher() -> Result<(), Failure> {
+    match launcher::launched() {
+        Some(launched) => Err(Failure::input(format!(
+            "--on-threads has no launcher, and {launched}"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Does `work` on all ranks: of a launcher, or so many threads of this process. What the first says of it.
+pub fn shared(
+    on_threads: Option<u16>,
+    work: impl Fn(&Arc<Comm>) -> Result<(), Failure> + Sync,
+) -> Result<(), Failure> {
+    let Some(threads) = on_threads else {
+        return work(&Arc::new(Comm::of_launcher().map_err(input)?));
+    };
+    no_launcher()?;
+    let mut all = peridyne_comm::on_threads(usize::from(threads), |comm| work(&Arc::new(comm)));
+    // who found a mistake says it
+    let told = all
+        .iter()
+        .position(|end| !matches!(end, Ok(()) | Err(Failure::Elsewhere)));
+    all.swap_remove(told.unwrap_or(0))
+}
+
+/// What this rank made of the input; where one could not, one says why. All ranks come here at once.
+pub fn agreed<T>(comm: &Comm, made: Result<T, Failure>) -> Result<T, Failure> {
+    let all = comm
+        .all(&[u8::from(made.is_err())])
+        .map_err(input)?
+        .concat();
+    match all.iter().position(|failed| *failed == 1) {
+        Some(first) if first != comm.rank() => Err(Failure::Elsewhere),
+        Some(_) | None => made,
+    }
+}
+
+/// Ranks do not share this.
+pub fn alone(comm: &Comm, what: &str) -> Result<(), Failure> {
+    match comm.ranks() {
+        1 => Ok(()),
+        _ => agreed(
+            comm,
+            Err(Failure::input(format!(
+                "ranks do not share {what} yet: {ALONE}"
+            ))),
+        ),
+    }
+}
+
+/// Threads of this rank: those that were asked for, else its share of the cores that it may use.
+pub fn threads_here(comm: &Comm, asked: Option<usize>) -> Result<Option<usize>, Failure> {
+    if asked.is_some() || comm.ranks() == 1 {
+        return Ok(asked);
+    }
+    let own = format!("{} {}", host(), cores());
+    let all = comm.all(own.as_bytes()).map_err(input)?;
+    let sharing = all.iter().filter(|other| **other == own.as_bytes()).count();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    Ok(Some((cores / sharing).max(1)))
+}
+
+/// Which cores this rank may use: launchers may give each rank its own.
+fn cores() -> String {
+    #[cfg(target_os = "linux")]
+    {
+        let asked = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let line = asked.lines().find(|l| l.starts_with("Cpus_allowed:"));
+        line.unwrap_or_default().into()
+    }
+    #[cfg(not(target_os = "linux"))]
+    String::new()
+}
+
 pub fn ranks(arguments: &RanksArguments) -> Result<(), Failure> {
     let found = match arguments.on_threads {
         Some(threads) => {
-            if let Some(launched) = launcher::launched() {
-                return Err(Failure::input(format!(
-                    "--on-threads has no launcher, and {launched}"
-                )));
-            }
+            no_launcher()?;
             let mut all = peridyne_comm::on_threads(usize::from(threads), |comm| of(&comm));
             all.swap_remove(0)
         }
@@ -222,7 +297,6 @@ impl Found {
             )
             .unwrap();
         }
-        text += "\nruns      are not shared among ranks yet: under a launcher each process would make the whole run";
         text
     }
 

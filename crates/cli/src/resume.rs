@@ -6,11 +6,15 @@ use crate::early::{Early, same_files};
 use crate::failure::{Failure, note};
 use crate::initial::InitialState;
 use crate::law;
+use crate::ranks::{agreed, alone, shared, threads_here};
 use crate::run::{Begin, RunArguments, run_deck, with_threads};
 use crate::script;
+use peridyne_comm::Comm;
+use peridyne_io::deck::counted;
 use peridyne_io::read::source;
 use peridyne_io::write::checkpoint::{Asked, Checkpoint};
 use std::path::PathBuf;
+use std::sync::Arc;
 use toml::{Table, Value};
 
 #[derive(clap::Args)]
@@ -20,6 +24,9 @@ pub struct ResumeArguments {
     /// Threads; those of the deck, else all cores, if not given. Results do not depend on it.
     #[arg(long)]
     pub threads: Option<usize>,
+    /// So many threads of one process as ranks, without a launcher.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub on_threads: Option<u16>,
     /// Let the deck write outside the folder of the results.
     #[arg(long)]
     pub allow_outside: bool,
@@ -42,7 +49,12 @@ const MAY_CHANGE: [&str; 3] = ["run.steps", "run.duration", "output.checkpoint"]
 const TOLD: usize = 4;
 
 pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
-    let from = Checkpoint::newest(&arguments.dir).map_err(|e| Failure::input(e.to_string()))?;
+    shared(arguments.on_threads, |comm| resume_among(arguments, comm))
+}
+
+fn resume_among(arguments: &ResumeArguments, comm: &Arc<Comm>) -> Result<(), Failure> {
+    let newest = Checkpoint::newest(&arguments.dir).map_err(|e| Failure::input(e.to_string()));
+    let from = agreed(comm, newest)?;
     let asked = from.asked.clone();
     let anew = arguments.as_initial.as_ref();
     let run = RunArguments {
@@ -58,33 +70,69 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
         out: Some(arguments.out.as_ref().unwrap_or(&arguments.dir).clone()),
         allow_outside: arguments.allow_outside,
         threads: arguments.threads,
+        on_threads: None,
         early: arguments.early.clone(),
     };
     if anew.is_none() && !deck::is_deck(&run.input) {
+        alone(comm, "scripts of LAMMPS")?;
         return resume_script(run, asked, from);
     }
     if anew.is_none()
-        && let Some(law) = law::read(&run.input)?
+        && let Some(law) = agreed(comm, law::read(&run.input))?
     {
+        alone(comm, "conservation laws")?;
         same_deck(&asked, law.text())?;
+        going_on(&asked);
         return with_threads(run.threads, |_| law::run(&run.place(), law, Some(from)));
     }
-    let deck = deck::read(&run.input)?;
-    if !run.allow_outside {
-        deck.stays_inside(true)
-            .map_err(|e| Failure::Input(e.into()))?;
-    }
-    let threads = arguments.threads.or(deck.threads);
-    if anew.is_some() {
-        let begin = Begin::Anew(InitialState::of(from)?);
-        return with_threads(threads, |threads| run_deck(&run, &deck, threads, begin));
-    }
-    same_deck(&asked, deck.text())?;
-    let begin = Begin::Ended(Box::new(from));
-    with_threads(threads, |threads| run_deck(&run, &deck, threads, begin))
+    let read = || {
+        let deck = deck::read(&run.input)?;
+        if !run.allow_outside {
+            deck.stays_inside(true)
+                .map_err(|e| Failure::Input(e.into()))?;
+        }
+        if anew.is_none() {
+            same_deck(&asked, deck.text())?;
+        }
+        Ok(deck)
+    };
+    let deck = agreed(comm, read())?;
+    let threads = threads_here(comm, arguments.threads.or(deck.threads))?;
+    let begin = match anew {
+        Some(_) => {
+            alone(comm, "states to begin anew from")?;
+            Begin::Anew(InitialState::of(from)?)
+        }
+        None => {
+            agreed(comm, goes_on(&asked, comm.ranks()))?;
+            if comm.rank() == 0 {
+                going_on(&asked);
+            }
+            Begin::Ended(Box::new(from))
+        }
+    };
+    with_threads(threads, |threads| {
+        run_deck(&run, &deck, (comm, threads), begin)
+    })
 }
 
-/// Is it the deck that the run began with? Says where it goes on.
+/// Was the state written by as many ranks?
+fn goes_on(asked: &Asked, ranks: usize) -> Result<(), Failure> {
+    if asked.ranks == ranks as u64 {
+        return Ok(());
+    }
+    let go_on = match asked.ranks {
+        1 => "in one process".into(),
+        ranks => format!("on as many (mpiexec -n {ranks} peridyne resume)"),
+    };
+    Err(Failure::input(format!(
+        "the state is of {}, and here {} would go on with it: do so {go_on}",
+        counted(asked.ranks, "rank"),
+        counted(ranks as u64, "rank")
+    )))
+}
+
+/// Is it the deck that the run began with?
 fn same_deck(asked: &Asked, text: &str) -> Result<(), Failure> {
     let others = differences(&asked.text, text);
     if !others.is_empty() {
@@ -95,7 +143,6 @@ fn same_deck(asked: &Asked, text: &str) -> Result<(), Failure> {
             MAY_CHANGE.join(", ")
         )));
     }
-    going_on(asked);
     Ok(())
 }
 

@@ -8,6 +8,7 @@ use crate::failure::{Failure, note, say};
 use crate::initial::InitialState;
 use crate::law;
 use crate::progress::Terminal;
+use crate::ranks::{ALONE, agreed, alone, shared, threads_here};
 use crate::report;
 use crate::script;
 use crate::signals;
@@ -15,6 +16,7 @@ use peridyne::columns::Shape;
 use peridyne::error::BuildError;
 use peridyne::run::Simulation;
 use peridyne::spec::{BodySpec, Schedule, Spec, Stepper, TimeStep};
+use peridyne_comm::Comm;
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, SpaceTimeSpec, UnitSystem, counted};
@@ -31,6 +33,7 @@ use peridyne_io::write::picture::shown::{About, component_of};
 use peridyne_io::write::run_json::{MarkNotes, RunReport, Status};
 use peridyne_io::write::space_time::DENSITY;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 #[derive(clap::Args)]
 pub struct RunArguments {
@@ -43,9 +46,12 @@ pub struct RunArguments {
     /// Let the deck or script write outside the folder of the results.
     #[arg(long)]
     pub allow_outside: bool,
-    /// Threads; all cores if not given. Results do not depend on it.
+    /// Threads of each rank; all cores, shared by the ranks of a machine, if not given. Results do not depend on it.
     #[arg(long)]
     pub threads: Option<usize>,
+    /// So many threads of one process as ranks, without a launcher.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub on_threads: Option<u16>,
     #[command(flatten)]
     pub early: Early,
 }
@@ -69,25 +75,33 @@ impl RunArguments {
 }
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
-    if !deck::is_deck(&arguments.input) {
-        let place = arguments.place_of_script();
-        return with_threads(arguments.threads, |threads| {
-            script::run(&place, threads, None)
-        });
-    }
-    if let Some(deck) = law::read(&arguments.input)? {
-        return with_threads(arguments.threads, |_| {
-            law::run(&arguments.place(), deck, None)
-        });
-    }
-    let deck = deck::read(&arguments.input)?;
-    if !arguments.allow_outside {
-        deck.stays_inside(arguments.out.is_some())
-            .map_err(|e| Failure::Input(e.into()))?;
-    }
-    let threads = arguments.threads.or(deck.threads);
-    with_threads(threads, |threads| {
-        run_deck(arguments, &deck, threads, Begin::Unloaded)
+    shared(arguments.on_threads, |comm| {
+        if !deck::is_deck(&arguments.input) {
+            alone(comm, "scripts of LAMMPS")?;
+            let place = arguments.place_of_script();
+            return with_threads(arguments.threads, |threads| {
+                script::run(&place, threads, None)
+            });
+        }
+        if let Some(deck) = agreed(comm, law::read(&arguments.input))? {
+            alone(comm, "conservation laws")?;
+            return with_threads(arguments.threads, |_| {
+                law::run(&arguments.place(), deck, None)
+            });
+        }
+        let read = || {
+            let deck = deck::read(&arguments.input)?;
+            if !arguments.allow_outside {
+                deck.stays_inside(arguments.out.is_some())
+                    .map_err(|e| Failure::Input(e.into()))?;
+            }
+            Ok(deck)
+        };
+        let deck = agreed(comm, read())?;
+        let threads = arguments.threads.or(deck.threads);
+        with_threads(threads_here(comm, threads)?, |threads| {
+            run_deck(arguments, &deck, (comm, threads), Begin::Unloaded)
+        })
     })
 }
 
@@ -126,11 +140,16 @@ pub enum Begin {
 pub fn run_deck(
     arguments: &RunArguments,
     deck: &Deck,
-    threads: usize,
+    (comm, threads): (&Arc<Comm>, usize),
     begin: Begin,
 ) -> Result<(), Failure> {
+    if comm.ranks() > 1 {
+        agreed(comm, shares(deck))?;
+    }
     let (rigid, spec) = RigidBodies::watched(&deck.spec);
-    let mut sim = deck::model_of(deck, &spec, &arguments.input)?;
+    let made = deck::model_among(deck, &spec, &arguments.input, comm)?;
+    // it has followed the first rank to the end
+    let Some(mut sim) = made else { return Ok(()) };
     drop(spec);
     let from = match begin {
         Begin::Unloaded => None,
@@ -153,10 +172,12 @@ pub fn run_deck(
     let remarks = deck::remarks(&deck.notes, &warnings);
     say(&(deck::headline(sim.as_ref(), deck.units) + &remarks));
     let steps = deck.steps(sim.info().time_step);
-    let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
+    let mut plan = plan(deck, pictures, steps, dir, arguments.allow_outside);
+    (plan.ranks, plan.threads) = (comm.ranks(), threads);
     plan.command = deck::command(&arguments.input);
     let records = [&plan.command, &plan.deck, &plan.deck_text].map(String::clone);
     plan.asked = asked(&arguments.input, records);
+    plan.asked.ranks = comm.ranks() as u64;
     if let Some(from) = &from {
         same_files(&from.asked.files, &plan.asked.files)?;
         // records are those of the run that began
@@ -194,6 +215,9 @@ pub fn run_deck(
         0 => whole,
         done => format!("the last {} of {whole}", steps - done),
     };
+    if comm.ranks() > 1 {
+        say(&format!("ranks     {}: {}", comm.ranks(), comm.carrier()));
+    }
     say(&format!(
         "threads   {threads}\nrunning {left}, results in {}",
         plan.dir.display()
@@ -248,6 +272,27 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
     match signals::received() {
         Some(signal) if done.status == Status::Ended => Err(Failure::Ended(signal)),
         _ => Ok(()),
+    }
+}
+
+/// What ranks do not share yet of what is asked for beside the model.
+fn shares(deck: &Deck) -> Result<(), Failure> {
+    let limits = [
+        ("modes", "modes of vibration", deck.modes > 0),
+        (
+            "output.linear_body",
+            "linear bodies",
+            deck.output.linear_body,
+        ),
+        ("fields", "continuum fields", !deck.fields.is_empty()),
+    ];
+    match limits.into_iter().find(|(_, _, asked)| *asked) {
+        None => Ok(()),
+        Some((path, what, _)) => {
+            let message = format!("ranks do not share {what} yet");
+            let error = BuildError::unsupported(path, message).help(ALONE);
+            Err(Failure::Input(deck.explain(&error).into()))
+        }
     }
 }
 
@@ -437,7 +482,6 @@ fn plan(
     pictures: Vec<PictureOptions>,
     steps: u64,
     dir: PathBuf,
-    threads: usize,
     allow_outside: bool,
 ) -> Plan {
     let output = &deck.output;
@@ -501,7 +545,8 @@ fn plan(
             }
         }),
         title,
-        threads,
+        ranks: 1,
+        threads: 1,
     }
 }
 

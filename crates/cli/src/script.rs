@@ -479,6 +479,7 @@ impl Told<'_> {
             broken_directed_bonds: broken,
             fragments: Some(fragments),
             hash,
+            ranks: 1,
             threads: self.threads,
             simd: info.simd.to_string(),
             energy: EnergyReport::from(&ledger),

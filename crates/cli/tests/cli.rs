@@ -231,19 +231,81 @@ fn an_unstable_run_stops_with_1_and_keeps_its_last_good_state() {
     let dir = TempDir::new().unwrap();
     let file = dir.path().join("block.toml");
     std::fs::write(&file, BLOCK).unwrap();
+    let end = |name: &str, more: &[&str]| {
+        let out = dir.path().join(name);
+        let output = run(&file, &out, more);
+        let text = errors(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}");
+        assert!(text.contains("step ") && text.contains("point "), "{text}");
+        let report = report(&out);
+        let steps = report["steps"].as_u64().unwrap();
+        assert!(steps > 0 && steps < 1000, "{steps}");
+        let status = report["status"].as_str().unwrap();
+        assert!(status.starts_with("stopped: "));
+        let last = format!("points_{steps:08}.vtu");
+        let pvd = std::fs::read_to_string(out.join("points.pvd")).unwrap();
+        assert!(pvd.contains(&last), "{pvd}");
+        let last = std::fs::read(out.join(last)).unwrap();
+        (
+            steps,
+            status.to_string(),
+            report["state_hash"].clone(),
+            last,
+        )
+    };
+    let one = end("out", &[]);
+    // and all ranks that share it do
+    assert!(one == end("shared", &["--on-threads", "3"]));
+}
+
+#[test]
+fn what_ranks_cannot_share_is_told_once_and_writes_nothing() {
+    let dir = TempDir::new().unwrap();
+    let file = dir.path().join("block.toml");
     let out = dir.path().join("out");
-    let output = run(&file, &out, &[]);
-    let text = errors(&output);
-    assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("step ") && text.contains("point "), "{text}");
-    let report = report(&out);
-    let steps = report["steps"].as_u64().unwrap();
-    assert!(steps > 0 && steps < 1000, "{steps}");
-    assert!(report["status"].as_str().unwrap().starts_with("stopped: "));
-    let last = format!("points_{steps:08}.vtu");
-    let pvd = std::fs::read_to_string(out.join("points.pvd")).unwrap();
-    assert!(pvd.contains(&last), "{pvd}");
-    assert!(out.join(last).exists());
+    let refused = |text: &str, more: &[&str], why: &str| {
+        std::fs::write(&file, text).unwrap();
+        let output = run(&file, &out, &[&["--on-threads", "2"], more].concat());
+        let said = errors(&output).replace("\n  │ ", " ");
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert_eq!(said.matches(why).count(), 1, "{why}: {said}");
+        assert!(!out.exists() && output.stdout.is_empty());
+    };
+    refused(
+        &BLOCK.replace("m_ratio", "m_raito"),
+        &[],
+        "did you mean `m_ratio`?",
+    );
+    let touching = BLOCK.replace("contact = false", "contact = true");
+    refused(&touching, &[], "ranks do not share contact");
+    refused(
+        BLOCK,
+        &["--set", "body.cells=[4, 4, 4]"],
+        "2 ranks for a body of 1 block",
+    );
+    // where one rank has its points
+    let nowhere = r#"initial=[{ velocity = { x = "1 mm^2/s / max(z - 4 mm, 0 mm)" } }]"#;
+    refused(BLOCK, &["--set", nowhere], "is inf at");
+    let script = dir.path().join("in.block");
+    std::fs::write(&script, "units si\n").unwrap();
+    let output = run(&script, &out, &["--on-threads", "2"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(errors(&output).contains("ranks do not share scripts of LAMMPS"));
+    // a state goes on with as many
+    std::fs::write(&file, BLOCK).unwrap();
+    let more = [
+        "--set",
+        "run.time_step=\"1 ns\"",
+        "--stop-after",
+        "3",
+        "--on-threads",
+        "2",
+    ];
+    good(run(&file, &out, &more));
+    let output = peridyne(&["resume", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = errors(&output).replace("\n  │ ", " ");
+    assert!(said.contains("mpiexec -n 2 peridyne resume"), "{said}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Every good deck, shortened, and every small script writes the same bytes on any number of threads, and ends as `hashes.txt` says.
+//! Every good deck, shortened, and every small script writes the same bytes on any number of threads and ranks, and ends as `hashes.txt` says.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -12,12 +12,13 @@ use tempfile::TempDir;
 /// Steps of a run; statics and relaxations are run whole.
 const STEPS: i64 = 12;
 /// What `run.json` says of the machine and the clock.
-const CLOCK: [&str; 5] = [
+const CLOCK: [&str; 6] = [
     "seconds_stepping",
     "seconds",
     "ns_per_bond_step",
     "peak_memory_bytes",
     "threads",
+    "ranks",
 ];
 /// How lines of LAMMPS's own output begin that tell of the clock and of memory.
 const CLOCK_OF_LAMMPS: [&str; 2] = ["Loop time of ", "Per MPI rank memory"];
@@ -212,12 +213,43 @@ fn program(case: &Case, arguments: &[&str]) -> String {
     without_clock_of_lammps(text.lines().take_while(|line| !ours(line)))
 }
 
+/// On how many ranks a case runs that can be shared, as arguments.
+fn ranks(dir: &Path, case: &Case) -> Vec<&'static str> {
+    let out = dir.join(format!("{}-ranks", case.name));
+    let shared = |ranks: &&str| {
+        let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+            .args(["run", case.path.to_str().unwrap(), "--stop-after", "0"])
+            .args(["--on-threads", ranks, "--out", out.to_str().unwrap()])
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).replace(['│', '\n'], " ");
+        let said: Vec<&str> = said.split_whitespace().collect();
+        let said = said.join(" ");
+        let refused = ["ranks do not share", "ranks for a body of"];
+        let refused = refused.iter().any(|why| said.contains(why));
+        assert_eq!(
+            done.status.code(),
+            Some(if refused { 2 } else { 0 }),
+            "{}: {said}",
+            case.name
+        );
+        !refused
+    };
+    let ranks = ["3", "2"].into_iter().find(shared);
+    ranks.map_or(vec![], |ranks| vec!["--on-threads", ranks])
+}
+
+/// Cases that ran on ranks.
+static SHARED: AtomicUsize = AtomicUsize::new(0);
+
 /// Runs a case; all that it wrote.
-fn run(dir: &Path, case: &Case, threads: &str) -> BTreeMap<PathBuf, Vec<u8>> {
+fn run(dir: &Path, case: &Case, threads: &str, ranks: &[&str]) -> BTreeMap<PathBuf, Vec<u8>> {
     let out = dir.join(format!("{}-{threads}", case.name));
     let to = out.to_str().unwrap();
     let deck = case.path.to_str().unwrap();
-    let said = program(case, &["run", deck, "--threads", threads, "--out", to]);
+    let mut arguments = vec!["run", deck, "--threads", threads, "--out", to];
+    arguments.extend(ranks);
+    let said = program(case, &arguments);
     with_output(case, files(&out), said)
 }
 
@@ -234,7 +266,12 @@ fn with_output(
 }
 
 /// The same in parts: on one thread to the first stop, as if it were cut off there, from there on three to the next, and so on.
-fn run_in_parts(dir: &Path, case: &Case, stops: &[u64]) -> BTreeMap<PathBuf, Vec<u8>> {
+fn run_in_parts(
+    dir: &Path,
+    case: &Case,
+    stops: &[u64],
+    ranks: &[&str],
+) -> BTreeMap<PathBuf, Vec<u8>> {
     let out = dir.join(format!("{}-parts", case.name));
     let to = out.to_str().unwrap();
     let deck = case.path.to_str().unwrap();
@@ -245,6 +282,7 @@ fn run_in_parts(dir: &Path, case: &Case, stops: &[u64]) -> BTreeMap<PathBuf, Vec
             _ => vec!["resume", to],
         };
         arguments.extend(["--threads", ["1", "3", "2"][part % 3]]);
+        arguments.extend(ranks);
         let stop = stops.get(part).map(u64::to_string);
         if let Some(stop) = &stop {
             arguments.extend(["--stop-after", stop]);
@@ -278,7 +316,8 @@ fn last_state(out: &Path) -> Option<String> {
     steps.max().map(|step| step.to_string())
 }
 
-/// One case on one thread and on three, which halve no work evenly, in parts where it has some. How it ended: a line of the table.
+/// One case on one thread and on three, which halve no work evenly, in parts where it has some, and on ranks where these share it. How it ended: a line
+/// of the table.
 fn compare(dir: &Path, case: &Case) -> String {
     let (line, report) = compare_cut(dir, case, &|steps| case.stops(steps));
     let warned = report["warnings"].to_string();
@@ -289,7 +328,9 @@ fn compare(dir: &Path, case: &Case) -> String {
 /// The same with other stops, and the run's record.
 fn compare_cut(dir: &Path, case: &Case, stops: &dyn Fn(u64) -> Vec<u64>) -> (String, Value) {
     let name = &case.name;
-    let one = run(dir, case, "1");
+    let one = run(dir, case, "1", &[]);
+    let ranks = ranks(dir, case);
+    SHARED.fetch_add(ranks.len() / 2, Ordering::Relaxed);
     assert!(one.len() >= 2, "{name}");
     let report = Path::new("run.json");
     let steps = |of: &[u8]| serde_json::from_slice::<Value>(of).unwrap()["steps"].as_u64();
@@ -298,8 +339,8 @@ fn compare_cut(dir: &Path, case: &Case, stops: &dyn Fn(u64) -> Vec<u64>) -> (Str
         .map(stops)
         .unwrap_or_default();
     let many = match stops[..] {
-        [] => run(dir, case, "3"),
-        [..] => run_in_parts(dir, case, &stops),
+        [] => run(dir, case, "3", &ranks),
+        [..] => run_in_parts(dir, case, &stops, &ranks),
     };
     let names = |of: &BTreeMap<PathBuf, Vec<u8>>| of.keys().cloned().collect::<Vec<_>>();
     assert_eq!(names(&one), names(&many), "{name}: other files");
@@ -369,6 +410,11 @@ fn every_good_deck_writes_the_same_bytes_on_any_number_of_threads_and_ends_as_it
     cases.extend(laws());
     cases.extend(scripts());
     let lines = each(&cases, &|case| compare(dir.path(), case));
+    println!(
+        "{} of {} on ranks",
+        SHARED.load(Ordering::Relaxed),
+        cases.len()
+    );
     if std::env::var_os("PERIDYNE_RENEW_HASHES").is_some() {
         let text = format!("{}\n{HEADER}{}\n", features(), lines.join("\n"));
         return std::fs::write(table(), text).unwrap();

@@ -43,18 +43,65 @@ impl Comm {
         Ok(there)
     }
 
-    /// Numbers of all ranks, one rank's after the other's, on all of them: with blocks in the order of ranks, the blocks of the whole body, whose sum
-    /// does not depend on who computed which.
+    /// The bytes of every rank, in the order of ranks, on the first; `None` on the others.
     ///
     /// # Errors
     /// As of [`Comm::exchange`].
-    pub fn all_numbers(&self, own: &[f64]) -> Result<Vec<f64>, Failure> {
-        let bytes: Vec<u8> = own.iter().flat_map(|x| x.to_le_bytes()).collect();
-        let all = self.all(&bytes)?.concat();
-        let numbers = all.chunks_exact(8);
-        Ok(numbers
-            .map(|x| f64::from_le_bytes(x.try_into().unwrap()))
-            .collect())
+    pub fn first(&self, own: Vec<u8>) -> Result<Option<Vec<Vec<u8>>>, Failure> {
+        let size = (own.len() as u64).to_le_bytes();
+        if self.rank() > 0 {
+            let none = &mut [];
+            self.exchange(&[(0, &size)], none, || ())?;
+            if !own.is_empty() {
+                self.exchange(&[(0, &own)], none, || ())?;
+            }
+            return Ok(None);
+        }
+        let mut sizes = vec![[0; 8]; self.ranks()];
+        let mut receive: Vec<(usize, &mut [u8])> = { sizes.iter_mut().enumerate().skip(1) }
+            .map(|(rank, size)| (rank, &mut size[..]))
+            .collect();
+        self.exchange(&[], &mut receive, || ())?;
+        let mut all: Vec<Vec<u8>> = { sizes.into_iter() }
+            .map(|size| vec![0; u64::from_le_bytes(size) as usize])
+            .collect();
+        let mut receive: Vec<(usize, &mut [u8])> = { all.iter_mut().enumerate().skip(1) }
+            .filter(|(_, bytes)| !bytes.is_empty())
+            .map(|(rank, bytes)| (rank, &mut bytes[..]))
+            .collect();
+        self.exchange(&[], &mut receive, || ())?;
+        all[0] = own;
+        Ok(Some(all))
+    }
+
+    /// What the first rank has for each, in their order; the others have nothing to say.
+    ///
+    /// # Errors
+    /// As of [`Comm::exchange`].
+    pub fn of_first(&self, mut all: Vec<Vec<u8>>) -> Result<Vec<u8>, Failure> {
+        if self.rank() == 0 {
+            let sizes: Vec<[u8; 8]> = { all.iter() }
+                .map(|bytes| (bytes.len() as u64).to_le_bytes())
+                .collect();
+            let send = sizes.iter().enumerate().skip(1);
+            let send: Vec<(usize, &[u8])> = send.map(|(rank, size)| (rank, &size[..])).collect();
+            self.exchange(&send, &mut [], || ())?;
+            let send = all
+                .iter()
+                .enumerate()
+                .skip(1)
+                .filter(|(_, bytes)| !bytes.is_empty());
+            let send: Vec<(usize, &[u8])> = send.map(|(rank, bytes)| (rank, &bytes[..])).collect();
+            self.exchange(&send, &mut [], || ())?;
+            return Ok(all.swap_remove(0));
+        }
+        let mut size = [0; 8];
+        self.exchange(&[], &mut [(0, &mut size)], || ())?;
+        let mut own = vec![0; u64::from_le_bytes(size) as usize];
+        if !own.is_empty() {
+            self.exchange(&[], &mut [(0, &mut own)], || ())?;
+        }
+        Ok(own)
     }
 
     /// Returns when all ranks have come here.

@@ -26,11 +26,14 @@ impl Comm {
         Comm { kind: Kind::Alone }
     }
 
-    /// One of the processes that a launcher (`mpiexec`, `srun`) started; alone where there is none, or one process.
+    /// One of the processes that a launcher (`mpiexec`, `srun`) started; alone where there is none, or one process, or `PERIDYNE_MPI` is `off`.
     ///
     /// # Errors
     /// There is no MPI that can be used, or it knows nothing of the other processes: each would do the whole work, and none would know.
     pub fn of_launcher() -> Result<Comm, Failure> {
+        if std::env::var_os(launcher::ASKED).is_some_and(|asked| asked == launcher::OFF) {
+            return Ok(Comm::alone());
+        }
         match launcher::launched() {
             None => Ok(Comm::alone()),
             Some(launched) if launched.ranks == 1 => Ok(Comm::alone()),

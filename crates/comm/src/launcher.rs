@@ -2,6 +2,10 @@
 
 use std::fmt;
 
+/// Says which MPI to take, and no other is tried; or that each process is alone, whatever launched it.
+pub(crate) const ASKED: &str = "PERIDYNE_MPI";
+pub(crate) const OFF: &str = "off";
+
 /// What a launcher says of this process.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Launched {

@@ -320,6 +320,7 @@ impl Run {
             broken_directed_bonds: sim.broken(),
             fragments: plan.atoms.is_none().then(|| sim.fragments()),
             hash,
+            ranks: plan.ranks,
             threads: plan.threads,
             simd: info.simd.to_string(),
             energy: EnergyReport::from(&known.ledger),
@@ -391,10 +392,9 @@ fn sum_of_body(sim: &mut dyn Simulation) -> u32 {
     add(sim.vectors("reference").as_flattened());
     add(&sim.scalars("volume"));
     add(&sim.scalars("density"));
-    sim.families()
-        .material
-        .iter()
-        .for_each(|m| add(&[f64::from(*m)]));
+    if let Some(material) = sim.column("material") {
+        (0..material.values.len()).for_each(|i| add(&[material.values.at(i, 0)]));
+    }
     sum.finalize()
 }
 

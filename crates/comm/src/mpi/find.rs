@@ -1,10 +1,9 @@
 //! Which library is the MPI of this process?
 
 use super::abi::Abi;
+use crate::launcher::ASKED;
 use std::path::{Path, PathBuf};
 
-/// Says which library to take, and no other is tried.
-const ASKED: &str = "PERIDYNE_MPI";
 /// What a launcher is called that lies in a folder of `PATH`.
 const LAUNCHERS: [&str; 2] = ["mpiexec", "mpirun"];
 

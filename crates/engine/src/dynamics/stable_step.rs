@@ -30,11 +30,8 @@ pub fn largest_ratio<const D: usize>(
 ) -> f64 {
     let mut tiny = Tiny::new(body, interaction);
     let inner = |x: &[[f64; D]], y: &[[f64; D]]| -> f64 {
-        x.iter()
-            .zip(y)
-            .zip(mass)
-            .map(|((x, y), m)| m * (0..D).map(|a| x[a] * y[a]).sum::<f64>())
-            .sum()
+        let each = x.iter().zip(y).zip(mass);
+        body.sum(each.map(|((x, y), m)| m * (0..D).map(|a| x[a] * y[a]).sum::<f64>()))
     };
     lanczos(body, &inner, &mut |w| tiny.pull(w, |i| mass[i]))
 }
@@ -104,9 +101,10 @@ fn lanczos<const D: usize>(
 ) -> f64 {
     // every point in motion, no symmetry: a fixed low-discrepancy start
     let mut w = vec![[0.0; D]; body.points()];
-    for (rank, id) in by_place(body).into_iter().enumerate() {
+    for (place, id) in by_place(body).into_iter().enumerate() {
+        let place = body.id_of_all(place);
         w[id] = crate::array::from_fn(|a| {
-            ((rank * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
+            ((place * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
         });
     }
     let norm = |w: &[[f64; D]]| inner(w, w).sqrt();
@@ -114,7 +112,7 @@ fn lanczos<const D: usize>(
     w.iter_mut().flatten().for_each(|c| *c /= scale);
     let mut previous = vec![[0.0; D]; body.points()];
     let (mut alphas, mut betas): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
-    for _ in 0..STEPS.min(D * body.points()) {
+    for _ in 0..STEPS.min(D * body.all_points()) {
         let mut next = apply(&w);
         let alpha = inner(&next, &w);
         let beta = betas.last().copied().unwrap_or(0.0);
@@ -178,7 +176,7 @@ pub fn row_bound<const D: usize>(body: &Body<D>, interaction: &mut dyn Interacti
             bound = bound.max(row / body.density().at(i));
         }
     }
-    bound
+    body.most(bound)
 }
 
 /// Sweeps at displacements so small that the law is linear.
@@ -209,6 +207,7 @@ impl<'a, const D: usize> Tiny<'a, D> {
     fn pull(&mut self, w: &[[f64; D]], mass: impl Fn(usize) -> f64) -> Vec<[f64; D]> {
         let (body, u) = (self.body, &mut self.u);
         let peak = w.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
+        let peak = body.most(peak);
         let small = 1e-7 * body.spacing() / peak.max(f64::MIN_POSITIVE);
         body.set_vectors(u, |id, _| w[id].map(|c| small * c));
         self.interaction

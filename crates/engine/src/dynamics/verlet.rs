@@ -120,7 +120,7 @@ impl<const D: usize> Kernel for Advance<'_, D> {
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Fastest {
         let end = ((block + 1) * BLOCK).min(self.len);
-        let mut fastest = L::splat(0.0);
+        let (mut fastest, mut refused) = (L::splat(0.0), false);
         let mut i = block * BLOCK;
         debug_assert!(self.len.is_multiple_of(TILE));
         while i < end {
@@ -156,12 +156,14 @@ impl<const D: usize> Kernel for Advance<'_, D> {
                 }
                 // keeps what is not a number: `min` of negatives would not
                 fastest = L::select(squared.lt(fastest), fastest, squared);
-                if L::bits(fine) != (1u32 << TILE) - 1 {
-                    return f64::NAN;
-                }
+                // the others go on: what is undone is undone of all points
+                refused |= L::bits(fine) != (1u32 << TILE) - 1;
             }
             i += TILE;
         }
-        fastest.to_array().iter().copied().fold(0.0, f64::max)
+        match refused {
+            true => f64::NAN,
+            false => fastest.to_array().iter().copied().fold(0.0, f64::max),
+        }
     }
 }

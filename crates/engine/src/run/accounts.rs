@@ -7,6 +7,7 @@ use crate::body::view;
 use crate::condition::driven::Driven;
 use crate::constitutive::Laws;
 use crate::error::RunError;
+use crate::execute::exact::Exact;
 use crate::interaction::{BondStatus, Fault};
 use crate::observe::Ledger;
 
@@ -27,35 +28,67 @@ impl<const D: usize> System<D> {
             contact,
             ..self.accounts.ledger()
         };
-        for &s in self.body.slots() {
-            let i = s as usize;
-            let volume = self.body.volume().at(i);
-            let v2: f64 = (0..D).map(|a| self.v[a][i] * self.v[a][i]).sum();
-            ledger.kinetic += 0.5 * self.body.density().at(i) * volume * v2;
-        }
-        if let Some(kinetic) = self.coupled_kinetic() {
-            ledger.kinetic = kinetic;
-        }
+        let swept = &self.accounts.swept;
+        let (mut conditions, mut indenters) = (Exact::ZERO, Exact::ZERO);
+        let mut damping = Exact::ZERO;
         for load in &self.applied.loads {
-            if load.is_damping() {
-                ledger.dissipated -= load.work
-            } else {
-                ledger.work_conditions += load.work
+            match load.is_damping() {
+                true => damping.merge(&load.work),
+                false => conditions.merge(&load.work),
             }
         }
+        self.prescribed
+            .work()
+            .for_each(|work| conditions.merge(work));
+        { self.applied.rigid.iter() }.for_each(|i| indenters.merge(&i.work));
+        for d in &self.applied.driven {
+            match d {
+                Driven::Indenter(i) => indenters.merge(&i.work),
+                Driven::Load(l) => conditions.merge(&l.work),
+            }
+        }
+        let swept = [&swept.lost, &swept.made, &swept.dissipated].map(Exact::clone);
+        let [lost, made, dissipated] = swept;
+        let sums = [
+            self.kinetic(),
+            lost,
+            made,
+            dissipated,
+            damping,
+            conditions,
+            indenters,
+        ];
+        let sums = self.body.sums(sums);
+        let [
+            kinetic,
+            lost,
+            made,
+            dissipated,
+            damping,
+            conditions,
+            indenters,
+        ] = sums;
+        ledger.kinetic = self.coupled_kinetic().unwrap_or(kinetic);
+        ledger.released += lost;
+        ledger.made += made;
+        ledger.dissipated += dissipated - damping;
+        ledger.work_conditions += conditions;
+        ledger.work_indenter += indenters;
         if let Some(friction) = self.contact.as_ref().and_then(|c| c.friction.as_ref()) {
             ledger.contact += friction.energy;
             ledger.dissipated -= friction.work + friction.energy;
         }
-        ledger.work_conditions += self.prescribed.work();
-        ledger.work_indenter += self.applied.rigid.iter().map(|i| i.work).sum::<f64>();
-        for d in &self.applied.driven {
-            match d {
-                Driven::Indenter(i) => ledger.work_indenter += i.work,
-                Driven::Load(l) => ledger.work_conditions += l.work,
-            }
-        }
         ledger
+    }
+
+    /// Kinetic energy of this rank's points, each on its own.
+    fn kinetic(&self) -> Exact {
+        let each = self.body.slots().iter().map(|s| {
+            let i = *s as usize;
+            let v2: f64 = (0..D).map(|a| self.v[a][i] * self.v[a][i]).sum();
+            0.5 * self.body.density().at(i) * self.body.volume().at(i) * v2
+        });
+        each.collect()
     }
 
     /// The balance now, or why the run cannot be trusted.
@@ -98,14 +131,13 @@ impl<const D: usize> System<D> {
     /// Kinetic energy that the last half kick gave, point by point and never less than 0. A force that acts for the
     /// first time has done no work yet: what it gave is no sign of instability.
     fn last_kick(&self) -> f64 {
-        let mut energy = 0.0;
         // the trapezoidal rule counts its work
         if self.regime.implicit {
-            return energy;
+            return 0.0;
         }
         let f = self.inertia.as_ref().map_or(&self.f, |i| &i.push);
-        for &s in self.body.slots() {
-            let i = s as usize;
+        self.body.sum(self.body.slots().iter().map(|s| {
+            let i = *s as usize;
             let (rho, volume) = (self.body.density().at(i), self.body.volume().at(i));
             let (mut now, mut before) = (0.0, 0.0);
             for a in 0..D {
@@ -113,9 +145,8 @@ impl<const D: usize> System<D> {
                 now += v * v;
                 before += (v - 0.5 * self.clock.dt() / rho * f[a][i]).powi(2);
             }
-            energy += 0.5 * rho * volume * f64::max(now - before, 0.0);
-        }
-        energy
+            0.5 * rho * volume * f64::max(now - before, 0.0)
+        }))
     }
 
     /// A fault of the last forces, with point ids.
@@ -162,6 +193,9 @@ impl<const D: usize> System<D> {
                     crossed = Some((i, j));
                 }
             });
-        crossed.map(|(i, j)| (self.body.number(i), self.body.number(j)))
+        let own = crossed.map(|(i, j)| [self.body.number(i), self.body.number(j)]);
+        let all = self.body.all_of(&[own.unwrap_or([0; 2])]);
+        let found = all.concat().into_iter().filter(|ends| ends[0] > 0).min();
+        found.map(|[i, j]| (i, j))
     }
 }

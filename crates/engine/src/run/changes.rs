@@ -51,11 +51,11 @@ impl<const D: usize> System<D> {
                 .iter()
                 .any(|p| (0..D).map(|a| (x[a] - p[a]).powi(2)).sum::<f64>() < near)
         };
-        self.accounts.broken += self
-            .interaction
-            .cut(&self.body, CrackKind::Broken, &|from, to| {
-                is_gone(from) || is_gone(to)
-            });
+        self.accounts.swept.broken +=
+            self.interaction
+                .cut(&self.body, CrackKind::Broken, &|from, to| {
+                    is_gone(from) || is_gone(to)
+                });
         for s in &gone {
             let i = *s as usize;
             for a in 0..D {

@@ -35,20 +35,22 @@ fn density(kind: &ConditionKind) -> Option<(&[Option<Expression>; 3], Option<Opt
     }
 }
 
-/// A traction as a force density: what acts on an area, over the volume of each point.
+/// A traction as a force density: what acts on an area, over the volume of each point. All ranks ask at once.
 fn spread<const D: usize>(
+    body: &Body<D>,
     traction: Program<D>,
     areas: &[f64],
     volume: impl Fn(usize) -> f64,
 ) -> Program<D> {
-    let all: f64 = (0..areas.len()).map(&volume).sum();
-    let same = areas.iter().sum::<f64>() / all;
+    let all = body.sum((0..areas.len()).map(&volume));
+    let same = body.sum(areas.iter().copied()) / all;
     let each: Vec<f64> = areas
         .iter()
         .enumerate()
         .map(|(k, a)| a / volume(k))
         .collect();
-    match each.iter().all(|w| (w - same).abs() <= 1e-12 * same) {
+    let other = each.iter().any(|w| !((w - same).abs() <= 1e-12 * same));
+    match !body.exchange().any(other) {
         true => traction.scaled(same),
         false => traction.weighted(each),
     }
@@ -100,7 +102,7 @@ impl<const D: usize> Names<D> {
                 .condensed(carriers, period, set, &members, area)?;
             whole = Some(areas.iter().sum());
             let volume = |k: usize| carriers.volume[members[k] as usize];
-            program = spread(program, &areas, volume);
+            program = spread(body, program, &areas, volume);
         }
         let slots = ids.iter().map(|id| body.slots()[*id as usize]);
         let mut load = Load::condensed(program, slots.collect(), condensed);
@@ -187,9 +189,9 @@ impl<const D: usize> Names<D> {
                     let areas = { self.faces.areas(body, &c.set, &slots, *area) }
                         .map_err(|e| e.at(format!("conditions[{n}]")))?;
                     let volume = |k: usize| body.volume().at(slots[k] as usize);
-                    let program = spread(Program::new(value, &points), &areas, volume);
+                    let program = spread(body, Program::new(value, &points), &areas, volume);
                     let mut made = load(LoadKind::Body(program));
-                    made.of = Some((n, Some(areas.iter().sum())));
+                    made.of = Some((n, Some(body.sum(areas.iter().copied()))));
                     loads.push(made);
                 }
                 ConditionKind::Displacement(e) => constraints.push(Constraint::new(

@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::space::Point;
 use crate::space::face::{NoFace, Site, Sites};
 use crate::space::lattice::{Lattice, LatticeKind};
-use crate::spec::{BodySpec, Carriers, Members, Spec};
+use crate::spec::{BodySpec, Carriers, ConditionKind, ConditionSpec, Members, Spec};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -107,7 +107,7 @@ impl Faces {
     ) -> Result<Vec<f64>, BuildError> {
         let volume = |s: &u32| body.volume().at(*s as usize);
         if let Some(area) = given {
-            let all: f64 = slots.iter().map(volume).sum();
+            let all = body.sum(slots.iter().map(volume));
             return Ok(slots.iter().map(|s| area * volume(s) / all).collect());
         }
         if let Some((_, areas)) = self.named.iter().find(|(name, _)| name == set)
@@ -147,6 +147,39 @@ impl Faces {
             }
         }
         Ok(areas)
+    }
+
+    /// Finds the areas that tractions act on, of sets of a body that ranks will share.
+    ///
+    /// # Errors
+    /// As of [`Faces::areas`].
+    pub fn find<const D: usize>(
+        &mut self,
+        conditions: &[ConditionSpec],
+        body: &Body<D>,
+        sets: &[(String, Vec<u32>)],
+    ) -> Result<(), BuildError> {
+        for (n, c) in conditions.iter().enumerate() {
+            let ConditionKind::Traction { area: None, .. } = &c.kind else {
+                continue;
+            };
+            let here = |e: BuildError| e.at(format!("conditions[{n}]"));
+            let (slots, _) = body.slots_of(&c.set, sets).map_err(here)?;
+            let areas = self.areas(body, &c.set, &slots, None).map_err(here)?;
+            self.named.retain(|(name, _)| *name != c.set);
+            self.named.push((c.set.clone(), areas.into()));
+        }
+        Ok(())
+    }
+
+    /// Keeps the areas of points that are here: of each id of before, its id now.
+    pub fn keep(&mut self, sets: &[(String, Vec<u32>)], here: &[Option<u32>]) {
+        for (name, areas) in &mut self.named {
+            let members = sets.iter().find(|(set, _)| set == name);
+            let id = |k: usize| members.map_or(k, |(_, ids)| ids[k] as usize);
+            let kept = (0..areas.len()).filter(|k| here[id(*k)].is_some());
+            *areas = kept.map(|k| areas[k]).collect();
+        }
     }
 
     /// The same of points of the finer body from which this one was condensed.

@@ -34,8 +34,20 @@ fn called(name: Option<&str>) -> String {
     name.map_or("the body".into(), |name| format!("body `{name}`"))
 }
 
+/// All that may not be meant.
+pub(super) fn all<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+    sets: &[(String, Vec<u32>)],
+) -> Result<Vec<Message>, BuildError> {
+    let mut told = regions(spec, body);
+    told.extend(periods(spec, body)?);
+    told.extend(self::sets(spec, body, sets));
+    Ok(told)
+}
+
 /// Points stand for cells: are these as large as the region that they are to fill?
-pub(super) fn regions<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<Message> {
+fn regions<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<Message> {
     // atoms are points
     if spec.potential().is_some() {
         return vec![];
@@ -116,10 +128,7 @@ fn layers<const D: usize>(
 ///
 /// # Errors
 /// A body is longer than a period: it lies in its own image.
-pub(super) fn periods<const D: usize>(
-    spec: &Spec,
-    body: &Body<D>,
-) -> Result<Vec<Message>, BuildError> {
+fn periods<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<Vec<Message>, BuildError> {
     let mut told = vec![];
     if spec.potential().is_some() || spec.micromoduli().is_some() {
         return Ok(told);
@@ -171,11 +180,7 @@ pub(super) fn periods<const D: usize>(
 }
 
 /// A condition on places that every point meets is likely one in other units.
-pub(super) fn sets<const D: usize>(
-    spec: &Spec,
-    body: &Body<D>,
-    sets: &[(String, Vec<u32>)],
-) -> Vec<Message> {
+fn sets<const D: usize>(spec: &Spec, body: &Body<D>, sets: &[(String, Vec<u32>)]) -> Vec<Message> {
     let told = spec.sets.iter().filter_map(|set| {
         let (members, count, of) = match &set.members {
             Members::Within { body: name, members } => {

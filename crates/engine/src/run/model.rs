@@ -2,6 +2,7 @@
 
 use super::names::Names;
 use super::probes::state::Probe;
+use super::ranks::Gathered;
 use super::stages::Stages;
 use super::state_hash::hashed;
 use super::system::System;
@@ -88,7 +89,7 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn state_hash(&mut self) -> StateHash {
         self.finish();
-        hashed(&mut self.system)
+        hashed(&mut self.system, &Gathered::Own)
     }
 
     fn set_column(&mut self, name: &str, values: &[f64]) -> bool {
@@ -164,7 +165,7 @@ impl<const D: usize> Simulation for Model<D> {
         let accounts = &self.system.accounts;
         let rigid = self.system.applied.rigid.iter();
         Summary {
-            broken: accounts.broken,
+            broken: self.system.body.count(accounts.swept.broken),
             indenters: rigid.map(|i| i.rigid.center).collect(),
             transfers: self.system.transfer_accounts(),
             cycles: self.system.regime.cycles.then_some(accounts.cycles),

@@ -220,8 +220,8 @@ impl<const D: usize> Model<D> {
             }
         };
         if let Some(before) = broken.filter(|_| written) {
-            let broken = self.system.accounts.broken + self.system.count_broken();
-            self.system.accounts.broken = broken.saturating_sub(before);
+            let broken = self.system.accounts.swept.broken + self.system.count_broken();
+            self.system.accounts.swept.broken = broken.saturating_sub(before);
             self.system.break_transfers();
         }
         self.stale |= written;
@@ -310,7 +310,7 @@ impl<const D: usize> System<D> {
 
     /// Ids of the ends of whole bonds, the lower first.
     fn whole_bonds(&self) -> Vec<(u32, u32)> {
-        let (id, mut bonds) = (self.body.ids_by_slot(), vec![]);
+        let (id, mut bonds) = (self.body.ids_of_all(), vec![]);
         self.interaction
             .each_bond(&self.body, &mut |i, j, _, state| {
                 if state == BondStatus::Whole {
@@ -338,13 +338,17 @@ impl<const D: usize> View<'_, D> {
     fn lacking(&mut self, of: &Observable) -> Option<&'static str> {
         let mut there = self.may(of);
         if there && of.needs == Needs::Forces {
-            let rest = self.system.body.at_rest();
-            there = self
-                .system
-                .interaction
-                .each_force(&self.system.body, view(&rest), &mut |_| {});
+            there = self.look_forces();
         }
         (!there).then(|| of.needs.missing())
+    }
+
+    /// What points make of their bonds is that of now. False: a law has no forces of single bonds.
+    fn look_forces(&mut self) -> bool {
+        let system = &mut *self.system;
+        system.refresh_images();
+        let (body, u) = (&system.body, view(&system.u));
+        system.interaction.each_force(body, u, &mut |_| {})
     }
 
     /// Is there a column of each of these names?
@@ -435,10 +439,14 @@ impl<const D: usize> View<'_, D> {
     }
 
     /// A column that the law declares.
-    fn of_law(&self, name: &str) -> Option<Column> {
-        let system = &*self.system;
-        let mut declared = system.interaction.columns().into_iter();
+    fn of_law(&mut self, name: &str) -> Option<Column> {
+        let mut declared = self.system.interaction.columns().into_iter();
         let declaration = declared.find(|c| c.name == name)?;
+        if declaration.life == Life::Derived && declaration.on == On::Points {
+            // of the last evaluation of forces, which may have been another state's
+            self.look_forces();
+        }
+        let system = &*self.system;
         let (body, mut stored) = (&system.body, vec![]);
         if !system
             .interaction

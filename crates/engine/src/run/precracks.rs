@@ -31,6 +31,7 @@ pub(super) fn cut<const D: usize>(
             let shape = Crack::new(&crack.shape, body.period())
                 .map_err(|e| e.at(format!("precracks[{n}]")))?;
             let count = interaction.cut(body, kind, &|from, to| shape.crosses(&from, &to));
+            let count = body.count(count);
             if count == 0 {
                 warnings.push(format!("pre-crack {} cuts no bond", n + 1));
             }
@@ -47,7 +48,7 @@ pub(super) fn left<const D: usize>(body: &Body<D>, interaction: &dyn Interaction
     interaction.each_bond(body, &mut |_, _, _, state| {
         left += u64::from(state == BondStatus::Whole);
     });
-    left
+    body.count(left)
 }
 
 /// Points on a crack have lost the bonds on one of its sides only.
@@ -64,15 +65,17 @@ fn along_points<const D: usize>(
             1e-6 * body.spacing_at(slot),
         )
     };
-    let count = body.slots().iter().filter(on).count();
+    let count = body.count(body.slots().iter().filter(on).count() as u64);
     // a crack may meet a point or two
     if count < if D == 1 { 1 } else { 3 } {
         return None;
     }
-    let first = *body.slots().iter().find(on)? as usize;
+    let own = body.slots().iter().position(|slot| on(&slot));
+    let own = own.map_or(f64::INFINITY, |id| body.id_of_all(id) as f64);
+    let first = body.position_of(body.least(own) as usize);
     Some(message![
         format!("pre-crack {number} runs through {count} points, "),
-        place(&body.position(first)[..D]),
+        place(&first[..D]),
         " is one of them: they belong to one of its faces, and the crack is half a spacing beside where it was drawn. Move it, or the origin of the lattice, by half a spacing",
     ])
 }

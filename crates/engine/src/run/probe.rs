@@ -30,7 +30,7 @@ pub(super) fn bonds<const D: usize>(
     let lambda = match body.layout() {
         // no block has all the factors of a body, nor all its places
         Layout::Grid(grid)
-            if body.points() > LARGE && spec.bonds.factors.is_empty() && !model.varies() =>
+            if body.all_points() > LARGE && spec.bonds.factors.is_empty() && !model.varies() =>
         {
             let reach = model.stencil.as_ref().map_or(1, |s| s.reach());
             // in the plane and in space a block of many large families would cost more than the run

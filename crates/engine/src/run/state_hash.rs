@@ -3,8 +3,9 @@
 //! Points are hashed by id in blocks, bonds by the ids of their ends and the image that they lead to: how points and bonds lie in memory does not
 //! show. A bond that is whole adds nothing, so that a body where nothing broke costs a walk over its bonds.
 
+use super::ranks::Gathered;
 use super::system::System;
-use crate::body::view;
+use crate::body::{Field, view};
 use crate::columns::{Life, On};
 use crate::interaction::{BondStatus, history};
 use crate::observe::state_hash::{Words, hash_of_name};
@@ -28,18 +29,13 @@ enum Owner {
 }
 
 /// Chains a column of points, `each` numbers of every id, to the digests of blocks.
-fn chain(
-    digests: &mut [u64],
-    (name, each): (&str, usize),
-    points: usize,
-    value: impl Fn(usize, usize) -> f64 + Sync,
-) {
-    let (name, value) = (hash_of_name(name), &value);
-    digests.par_iter_mut().enumerate().for_each(|(n, digest)| {
-        let ids = n * BLOCK..points.min((n + 1) * BLOCK);
+fn chain(digests: &mut [u64], (name, each): (&str, usize), values: &[f64]) {
+    let name = hash_of_name(name);
+    let blocks = values.par_chunks(each * BLOCK);
+    digests.par_iter_mut().zip(blocks).for_each(|(digest, of)| {
         let mut words = Words::default();
         words.put([name]);
-        words.numbers(ids.flat_map(|id| (0..each).map(move |c| value(id, c))));
+        words.numbers(of.iter().copied());
         *digest = words.hash(*digest);
     });
 }
@@ -48,7 +44,7 @@ fn chain(
 struct Bonds<'a, const D: usize> {
     system: &'a System<D>,
     /// By slot.
-    id: Vec<u32>,
+    id: Cow<'a, [u32]>,
     /// Per block.
     sums: Vec<u64>,
     words: Words,
@@ -58,7 +54,7 @@ impl<const D: usize> Bonds<'_, D> {
     /// A directed bond between two slots, with numbers of its own in the column of this hash.
     fn add(&mut self, column: u64, [i, j]: [usize; 2], xi: [f64; D], numbers: &[f64]) {
         let body = &self.system.body;
-        let [from, to] = [i, j].map(|slot| body.position(slot));
+        let [from, to] = [i, j].map(|slot| body.home(slot));
         let image = (0..D).map(|a| {
             let further = |period: f64| ((xi[a] - (to[a] - from[a])) / period).round() as i64;
             body.period()[a].map_or(0, further) as u64
@@ -72,27 +68,26 @@ impl<const D: usize> Bonds<'_, D> {
     }
 }
 
-pub(super) fn hashed<const D: usize>(system: &mut System<D>) -> StateHash {
+/// Of the model of all ranks on the first of them; others help.
+pub(super) fn hashed<const D: usize>(system: &mut System<D>, all: &Gathered) -> StateHash {
     system.refresh_images();
     StateHash {
-        state: hash_of_state(system),
+        state: hash_of_state(system, all),
         ledger: hash_of_ledger(system),
     }
 }
 
-fn hash_of_state<const D: usize>(system: &System<D>) -> u64 {
+fn hash_of_state<const D: usize>(system: &System<D>, all: &Gathered) -> u64 {
     let mut words = Words::default();
-    let points = system.body.points() as u64;
+    let points = system.body.all_points() as u64;
     words.put([
         D as u64,
         points,
         system.clock.step(),
         system.clock.shown().to_bits(),
     ]);
-    for (digest, bonds) in digests_of_points(system)
-        .into_iter()
-        .zip(sums_of_bonds(system))
-    {
+    let points = digests_of_points(system, all);
+    for (digest, bonds) in points.into_iter().zip(sums_of_bonds(system)) {
         words.put([digest, bonds]);
     }
     for indenter in &system.applied.rigid {
@@ -102,7 +97,7 @@ fn hash_of_state<const D: usize>(system: &System<D>) -> u64 {
 }
 
 /// Of each block, all that its points remember.
-fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
+fn digests_of_points<const D: usize>(system: &System<D>, all: &Gathered) -> Vec<u64> {
     let mut columns: Vec<(Cow<'static, str>, Owner)> = vec![
         ("displacement".into(), Owner::Displacement),
         ("velocity".into(), Owner::Velocity),
@@ -113,27 +108,28 @@ fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
     columns.extend(declared(system, On::Points).map(|(name, each)| (name, Owner::Law(each))));
     columns.sort_by(|a, b| a.0.cmp(&b.0));
 
-    let (body, points) = (&system.body, system.body.points());
-    let mut digests = vec![0; points.div_ceil(BLOCK)];
-    let slot = |id: usize| body.slots()[id] as usize;
+    let mut digests = vec![0; system.body.all_points().div_ceil(BLOCK)];
+    let slots = || system.body.slots().iter().map(|s| *s as usize);
     for (name, owner) in columns {
-        let field = match owner {
-            Owner::Displacement => &system.u,
-            Owner::Velocity => &system.v,
-            Owner::Force => &system.f,
-            Owner::Transfer => {
-                let values = system.transferred(&name).unwrap_or_default();
-                chain(&mut digests, (&name, 1), points, |id, _| values[id]);
-                continue;
-            }
+        let of = |field: &Field<D>| -> Vec<f64> {
+            slots()
+                .flat_map(|s| (0..D).map(move |a| field[a][s]))
+                .collect()
+        };
+        let (each, own) = match owner {
+            Owner::Displacement => (D, of(&system.u)),
+            Owner::Velocity => (D, of(&system.v)),
+            Owner::Force => (D, of(&system.f)),
+            Owner::Transfer => (1, system.transferred(&name).unwrap_or_default()),
             Owner::Law(each) => {
                 let values = of_law(system, &name);
-                let value = |id: usize, c: usize| values[each * slot(id) + c];
-                chain(&mut digests, (&name, each), points, value);
-                continue;
+                let own = slots().flat_map(|s| &values[each * s..each * (s + 1)]);
+                (each, own.copied().collect())
             }
         };
-        chain(&mut digests, (&name, D), points, |id, a| field[a][slot(id)]);
+        if let Some(values) = all.columns(each, own) {
+            chain(&mut digests, (&name, each), &values);
+        }
     }
     digests
 }
@@ -160,8 +156,8 @@ fn of_law<const D: usize>(system: &System<D>, name: &str) -> Vec<f64> {
 fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
     let mut bonds = Bonds {
         system,
-        id: system.body.ids_by_slot(),
-        sums: vec![0; system.body.points().div_ceil(BLOCK)],
+        id: system.body.ids_of_all(),
+        sums: vec![0; system.body.all_points().div_ceil(BLOCK)],
         words: Words::default(),
     };
     let whole = hash_of_name(history::WHOLE);
@@ -185,7 +181,11 @@ fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
             });
         assert!(rows.next().is_none(), "a bond of each value");
     }
-    bonds.sums
+    let mut sums = vec![0u64; bonds.sums.len()];
+    for own in system.body.all_of(&bonds.sums) {
+        { sums.iter_mut().zip(own) }.for_each(|(sum, x)| *sum = sum.wrapping_add(x));
+    }
+    sums
 }
 
 fn hash_of_ledger<const D: usize>(system: &mut System<D>) -> Option<u64> {

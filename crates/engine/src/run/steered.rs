@@ -125,8 +125,8 @@ impl<const D: usize> Steered for Model<D> {
         let new: Vec<_> = new.collect();
         for old in std::mem::replace(&mut self.system.applied.driven, new) {
             match old {
-                Driven::Load(l) => self.system.accounts.past.conditions += l.work,
-                Driven::Indenter(i) => self.system.accounts.past.indenters += i.work,
+                Driven::Load(l) => self.system.accounts.past.conditions += l.work.value(),
+                Driven::Indenter(i) => self.system.accounts.past.indenters += i.work.value(),
             }
         }
     }

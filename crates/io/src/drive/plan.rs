@@ -64,6 +64,8 @@ pub struct Plan {
     /// Units of time and energy, for headers.
     pub time_unit: String,
     pub energy_unit: String,
+    pub ranks: usize,
+    /// Of each rank.
     pub threads: usize,
     /// What atoms have besides.
     pub atoms: Option<AtomsPlan>,

@@ -56,6 +56,8 @@ pub struct Asked {
     /// Steps done, and of how many.
     pub step: u64,
     pub steps: u64,
+    /// Processes that shared it.
+    pub ranks: u64,
 }
 
 impl Owner for Asked {
@@ -81,6 +83,7 @@ impl Owner for Asked {
         });
         archive.one("step", &mut self.step);
         archive.one("steps", &mut self.steps);
+        archive.one("ranks", &mut self.ranks);
     }
 }
 

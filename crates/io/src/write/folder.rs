@@ -28,7 +28,7 @@ impl Folder {
                 let mut why = "another run writes there".to_string();
                 if let Some(launched) = launched().filter(|launched| launched.ranks > 1) {
                     why += &format!(
-                        ": {launched}, and runs are not shared among ranks yet; start it without the launcher"
+                        ": {launched}, and each runs alone (PERIDYNE_MPI=off); give each a folder of its own, by --out"
                     );
                 }
                 let busy = io::Error::new(io::ErrorKind::ResourceBusy, why);

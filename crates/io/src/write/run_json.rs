@@ -49,6 +49,9 @@ pub struct RunReport {
     /// Of the last state, as `state_hash` and `ledger_hash`.
     #[serde(flatten, serialize_with = "digits")]
     pub hash: StateHash,
+    /// Processes that shared the run, 1: one had all of it.
+    pub ranks: usize,
+    /// Of each of them.
     pub threads: usize,
     /// Instruction set of the hot loop ("avx512", "avx2", "portable").
     pub simd: String,
@@ -424,6 +427,7 @@ mod tests {
                 state: 0xab,
                 ledger: None,
             },
+            ranks: 1,
             threads: 2,
             simd: "avx512".into(),
             energy: EnergyReport::from(&Ledger {

@@ -34,7 +34,8 @@ impl Share {
         }
         let filled = points.iter().filter(|n| **n > 0).count();
         if filled < ranks {
-            let message = format!("{ranks} ranks for a body of {filled} blocks of {CELLS} cells");
+            let blocks = if filled == 1 { "block" } else { "blocks" };
+            let message = format!("{ranks} ranks for a body of {filled} {blocks} of {CELLS} cells");
             let help = format!("a rank has one block at least: take {filled} ranks or fewer");
             return Err(BuildError::too_many("ranks", message).help(help));
         }
@@ -138,9 +139,13 @@ impl<const D: usize> Body<D> {
             Values::Uniform(x) => Values::Uniform(*x),
             Values::PerSlot(x) => Values::PerSlot(share.gathered(whole, x)),
         };
-        let mark = ids
-            .iter()
-            .filter_map(|id| self.mark.get(*id as usize).copied());
+        let mark = { ids.iter() }.filter_map(|id| self.mark.get(*id as usize).copied());
+        let mark = mark.collect();
+        let exchange = Exchange::among(comm, copies);
+        let mut of_slots = vec![0; grid.slots()];
+        { ids.iter().zip(&slots) }.for_each(|(id, slot)| of_slots[*slot as usize] = *id);
+        exchange.fill(&mut of_slots);
+        let subdomain = Subdomain::new(comm, ids, of_slots, self.points());
         Ok(Body {
             identity: Identity::new(),
             len: grid.slots(),
@@ -150,9 +155,9 @@ impl<const D: usize> Body<D> {
             period: self.period,
             material: share.gathered(whole, &self.material),
             horizon: share.gathered(whole, &self.horizon),
-            mark: mark.collect(),
-            exchange: Exchange::among(comm, copies),
-            subdomain: Some(Arc::new(Subdomain::new(comm, ids, self.points()))),
+            mark,
+            exchange,
+            subdomain: Some(Arc::new(subdomain)),
             slots,
             layout: Layout::Grid(grid),
         })

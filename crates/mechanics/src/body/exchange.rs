@@ -24,8 +24,8 @@
 //! - *Nothing is added back.* Every point gathers all its bonds, so a bond across a border is computed at both ends, from the same numbers and in the
 //!   same order of operations, and the forces of a point are summed in the order of its bonds, wherever the partners are. What copies would have is not written.
 //! - *Sums over the body* are those of fixed blocks, of which a rank owns whole ones. What blocks say is added without rounding
-//!   ([`Exact`](crate::execute::exact::Exact)), so it shows neither in which order nor who had which. So far energies and virials of bonds are; what sweeps report
-//!   ([`Tally`](crate::interaction::Tally)) is of this rank's points.
+//!   ([`Exact`](crate::execute::exact::Exact)), so it shows neither in which order nor who had which. What steps add up (what sweeps report,
+//!   [`Tally`](crate::interaction::Tally), and the work of what acts) stays such a sum of this rank's points, and ranks add theirs when somebody asks.
 //! - *Ids and slots of originals* name the ends of bonds for whoever walks over them ([`Exchange::original`]).
 //!
 //! Lists of clouds have no copies yet: they move a partner by whole periods to where it is nearest. Lists of near atoms make theirs anew with every list
@@ -121,7 +121,12 @@ impl Exchange {
     /// The slot that a slot is a copy of, or itself; of a point of another rank the first copy.
     #[inline]
     pub fn original(&self, slot: usize) -> usize {
-        let runs = self.others.as_ref().map_or(&self.runs, |o| &o.names);
+        let runs = match &self.others {
+            None => &self.runs,
+            // most are no copies
+            Some(others) if !others.is_named(slot) => return slot,
+            Some(others) => &others.names,
+        };
         let begun = runs.partition_point(|r| r.copy <= slot);
         let last = runs[..begun].last();
         let holds = last.filter(|r| slot < r.copy + r.len);
@@ -265,8 +270,9 @@ struct Others {
     comm: Arc<Comm>,
     send: Vec<Message>,
     receive: Vec<Message>,
-    /// What every copy is called, in their order.
+    /// What every copy is called, in their order, and a bit for each slot: is it one that is called otherwise?
     names: Vec<Run>,
+    named: Vec<u8>,
     /// What is sent, and what comes.
     room: Mutex<[Vec<u8>; 2]>,
     sent: AtomicU64,
@@ -311,7 +317,17 @@ impl Others {
         let receive = { wanted.iter().enumerate() }
             .filter(|(_, of)| !of.is_empty())
             .map(|(rank, of)| Message::new(rank, of.iter().map(|(here, _)| *here)));
+        let mut named = vec![
+            0;
+            names
+                .last()
+                .map_or(0, |run| (run.copy + run.len).div_ceil(8))
+        ];
+        for slot in names.iter().flat_map(|run| run.copy..run.copy + run.len) {
+            named[slot / 8] |= 1 << (slot % 8);
+        }
         Others {
+            named,
             send: send.collect(),
             receive: receive.collect(),
             names,
@@ -319,6 +335,12 @@ impl Others {
             sent: AtomicU64::new(0),
             comm: comm.clone(),
         }
+    }
+
+    fn is_named(&self, slot: usize) -> bool {
+        self.named
+            .get(slot / 8)
+            .is_some_and(|bits| bits >> (slot % 8) & 1 == 1)
     }
 
     /// Sends so many bytes of every slot that others want, as they are packed, and unpacks what they send. Slots lie in runs here and there that need not
@@ -423,7 +445,7 @@ impl Others {
     fn bytes(&self) -> usize {
         let spans = self.send.iter().chain(&self.receive);
         let spans: usize = spans.map(|m| size_of_val(&*m.spans)).sum();
-        spans + size_of_val(&*self.names)
+        spans + size_of_val(&*self.names) + self.named.len()
     }
 }
 

@@ -152,7 +152,20 @@ impl<const D: usize> Grid<D> {
 
     /// Quarters of the cell's edges from the lattice origin to a slot.
     pub fn quarter(&self, slot: usize) -> [i32; 3] {
+        self.quarter_of(self.cell(slot))
+    }
+
+    /// Reference position of the point that a slot is a copy of, if of any.
+    pub(super) fn home(&self, slot: usize) -> Point {
         let (c, b) = self.cell(slot);
+        let c = crate::array::from_fn(|a| {
+            let halo = self.halo[a] as i64;
+            halo + (c[a] - halo).rem_euclid(self.cells[a] as i64 - 2 * halo)
+        });
+        self.lattice.position(self.quarter_of((c, b)))
+    }
+
+    fn quarter_of(&self, (c, b): ([i64; D], usize)) -> [i32; 3] {
         let q = self.lattice.kind.basis()[b];
         crate::array::from_fn(|a| {
             if a < D {

@@ -11,6 +11,7 @@ pub mod grid;
 mod points;
 pub mod several;
 pub mod subdomain;
+mod together;
 pub mod values;
 
 pub use exchange::Exchange;
@@ -275,12 +276,10 @@ impl<const D: usize> Body<D> {
         u
     }
 
-    /// Mass of the body.
+    /// Mass of the body, of all ranks.
     pub fn mass(&self) -> f64 {
-        self.slots
-            .iter()
-            .map(|&s| self.volume.at(s as usize) * self.density.at(s as usize))
-            .sum()
+        let slots = self.slots.iter().map(|s| *s as usize);
+        self.sum(slots.map(|s| self.volume.at(s) * self.density.at(s)))
     }
 
     /// Bytes held by the body.

@@ -19,8 +19,11 @@ impl<const D: usize> Body<D> {
         id
     }
 
-    /// Number of the point in a slot, from 1 on; 0: there is none.
+    /// Number of the point in a slot among those of all ranks, from 1 on; 0: there is none.
     pub fn number(&self, slot: usize) -> u64 {
+        if let Some(of) = self.subdomain() {
+            return u64::from(of.of_slots()[slot]) + 1;
+        }
         let place = self.slots.iter().position(|s| *s as usize == slot);
         place.map_or(0, |i| i as u64 + 1)
     }

@@ -8,14 +8,21 @@ use std::sync::Arc;
 pub struct Subdomain {
     comm: Arc<Comm>,
     ids: Vec<u32>,
+    of_slots: Vec<u32>,
     points: usize,
 }
 
 impl Subdomain {
-    pub(super) fn new(comm: &Arc<Comm>, ids: Vec<u32>, points: usize) -> Subdomain {
+    pub(super) fn new(
+        comm: &Arc<Comm>,
+        ids: Vec<u32>,
+        of_slots: Vec<u32>,
+        points: usize,
+    ) -> Subdomain {
         Subdomain {
             comm: comm.clone(),
             ids,
+            of_slots,
             points,
         }
     }
@@ -28,6 +35,19 @@ impl Subdomain {
     /// Ids among all points, in the order of ids here.
     pub fn ids(&self) -> &[u32] {
         &self.ids
+    }
+
+    /// The id among all points of who is in each slot, copies too.
+    pub(crate) fn of_slots(&self) -> &[u32] {
+        &self.of_slots
+    }
+
+    /// What each rank says, in their order. All ask at once.
+    pub(super) fn every<const N: usize>(&self, own: [u8; N]) -> impl Iterator<Item = [u8; N]> {
+        let all = self.comm.all(&own);
+        let all = all.unwrap_or_else(|failure| self.comm.end(failure));
+        let as_many = |bytes: Vec<u8>| bytes.try_into().expect("all ranks say as much");
+        all.into_iter().map(as_many)
     }
 
     /// Points of the whole.

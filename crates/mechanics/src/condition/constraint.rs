@@ -4,6 +4,7 @@
 use super::Program;
 use super::prescribed::Prescribed;
 use crate::body::{Body, Field};
+use crate::execute::exact::Exact;
 use crate::space::Point;
 use crate::state::{Archive, Owner};
 
@@ -21,14 +22,14 @@ pub struct Constraint<const D: usize> {
     points: Vec<Point>,
     /// Displacement, velocity and force density at the last whole step.
     last: Vec<[[f64; 3]; D]>,
-    /// Work done on the body (energy).
-    pub work: f64,
+    /// Work done on the points of this rank (energy).
+    pub work: Exact,
 }
 
 impl<const D: usize> Owner for Constraint<D> {
     fn archive(&mut self, archive: &mut Archive<'_>) {
         archive.all("last", &mut self.last);
-        archive.one("work", &mut self.work);
+        archive.part("work", &mut self.work);
     }
 }
 
@@ -41,7 +42,7 @@ impl<const D: usize> Constraint<D> {
             slots,
             points,
             last,
-            work: 0.0,
+            work: Exact::ZERO,
         }
     }
 
@@ -145,7 +146,7 @@ impl<const D: usize> Constraint<D> {
                 let v1 = self.velocity(a, k, t, dt);
                 let gained = gained(i, a, [v0, v1]);
                 let given = 0.5 * (f0 + f[a][i]) * (u[a][i] - u0);
-                self.work += volume * (gained - given);
+                self.work.add(volume * (gained - given));
             }
         }
     }

@@ -5,6 +5,7 @@ use super::condensed::Condensed;
 use super::force_field::{ForceField, power};
 use super::point_force::{PointForce, Seen, Stiffness};
 use crate::body::{Body, Field};
+use crate::execute::exact::Exact;
 use crate::interaction::Evaluation;
 use crate::interaction::friction::Pressed;
 use crate::space::Point;
@@ -65,8 +66,8 @@ pub struct Load<const D: usize> {
     named: Named<D>,
     /// Sum of the force densities on the points before this load acted, without those that a list leaves alone.
     pub before: [f64; 3],
-    /// Work done on the body (energy).
-    pub work: f64,
+    /// Work done on the points of this rank (energy).
+    pub work: Exact,
 }
 
 /// What is kept of a force that the shelf has.
@@ -140,7 +141,7 @@ impl<const D: usize> Owner for Load<D> {
         // loads are asked for before the next increment begins
         archive.all("memory_before", &mut self.named.began);
         archive.one("before", &mut self.before);
-        archive.one("work", &mut self.work);
+        archive.part("work", &mut self.work);
     }
 }
 
@@ -168,7 +169,7 @@ impl<const D: usize> Load<D> {
             last,
             departed: vec![],
             before: [0.0; 3],
-            work: 0.0,
+            work: Exact::ZERO,
         }
     }
 
@@ -180,7 +181,7 @@ impl<const D: usize> Load<D> {
         }
     }
 
-    /// The whole force at a time, of one that adds force densities (force).
+    /// The whole force at a time, of one that adds force densities (force). All ranks ask at once.
     pub fn total(&mut self, body: &Body<D>, t: f64) -> Option<[f64; 3]> {
         let LoadKind::Body(density) = &self.kind else {
             return None;
@@ -188,16 +189,16 @@ impl<const D: usize> Load<D> {
         if let Some(condensed) = &mut self.condensed {
             condensed.evaluate(density, t);
         }
-        let mut total = [0.0; 3];
+        let mut total = [const { Exact::ZERO }; 3];
         for (k, &s) in self.slots.iter().enumerate() {
             for (a, total) in total.iter_mut().enumerate().take(D) {
-                *total += match &self.condensed {
+                total.add(match &self.condensed {
                     Some(condensed) => condensed.reaching(k, a),
                     None => body.volume.at(s as usize) * density.at(a, k, &self.points[k], t),
-                };
+                });
             }
         }
-        Some(total)
+        Some(body.sums(total))
     }
 
     /// Force density on each slot at the one of some times up to `end` at which it is largest, of a load that adds them.
@@ -277,7 +278,7 @@ impl<const D: usize> ForceField<D> for Load<D> {
         self.named.begin();
         for (f, &s) in self.last.iter().zip(&self.slots) {
             let i = s as usize;
-            self.work += 0.5 * dt * power(f, v, i) * body.volume.at(i);
+            self.work.add(0.5 * dt * power(f, v, i) * body.volume.at(i));
         }
     }
 
@@ -349,7 +350,7 @@ impl<const D: usize> ForceField<D> for Load<D> {
                 self.last[k][a] = added;
                 power += added * v[a][i];
             }
-            self.work += 0.5 * dt * power * body.volume.at(i);
+            self.work.add(0.5 * dt * power * body.volume.at(i));
         }
     }
 
@@ -368,7 +369,7 @@ impl<const D: usize> ForceField<D> for Load<D> {
             let i = s as usize;
             let along = (0..D).map(|a| (f[a] + g[a]) * (now[a][i] - then[a][i]));
             let along: f64 = along.sum();
-            self.work += 0.5 * body.volume.at(i) * along;
+            self.work.add(0.5 * body.volume.at(i) * along);
         }
     }
 

@@ -5,6 +5,7 @@ use super::constraint::Constraint;
 use super::prescribed::Prescribed;
 use super::still::Still;
 use crate::body::{Body, Field};
+use crate::execute::exact::Exact;
 use crate::state::{Archive, Owner};
 
 /// In the order in which they tell it.
@@ -74,8 +75,8 @@ impl<const D: usize> PrescribedMotion<D> {
         })
     }
 
-    /// Work done on the body (energy).
-    pub fn work(&self) -> f64 {
-        self.constraints.iter().map(|c| c.work).sum()
+    /// Work done on the points of this rank (energy).
+    pub fn work(&self) -> impl Iterator<Item = &Exact> {
+        self.constraints.iter().map(|c| &c.work)
     }
 }

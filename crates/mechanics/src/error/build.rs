@@ -24,6 +24,8 @@ pub enum BuildErrorKind {
     TooLarge { needed: f64, left: Option<f64> },
     /// Mechanics without an answer: a body that nothing holds, or whose energy has no meaning.
     IllPosed,
+    /// Another rank says what is wrong.
+    Elsewhere,
 }
 
 /// A specification that cannot be built: `kind`, `path` and `help` for programs, `message` for readers.
@@ -81,6 +83,11 @@ impl BuildError {
         message: impl Into<Message>,
     ) -> Self {
         Self::of(BuildErrorKind::TooLarge { needed, left }, path, message)
+    }
+    /// Rank `rank` says what is wrong.
+    pub fn elsewhere(rank: usize) -> Self {
+        let message = format!("rank {rank} found a mistake");
+        Self::of(BuildErrorKind::Elsewhere, "", message)
     }
     pub fn ill_posed(path: impl Into<String>, message: impl Into<Message>) -> Self {
         Self::of(BuildErrorKind::IllPosed, path, message)

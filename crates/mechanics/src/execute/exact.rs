@@ -3,6 +3,7 @@
 //! A number is a multiple of 2⁻¹⁰⁷⁴ below 2¹⁰²⁴, so an integer of 2100 bits holds any sum (U. Kulisch, *Computer Arithmetic and Validity*, 2nd ed. 2013,
 //! chapter 8). Its digits of 32 bits have room for carries, so that an addition touches three of them.
 
+use crate::state::{Archive, Owner};
 use peridyne_comm::Comm;
 
 /// Digits: 2⁻¹⁰⁷⁴ to 2¹⁰²⁴, and the carries of 2⁶⁴ numbers.
@@ -134,6 +135,27 @@ impl Exact {
         if below { -value } else { value }
     }
 
+    /// One number less.
+    pub fn take(&mut self, x: f64) {
+        self.add(-x);
+    }
+
+    /// Numbers whose sum it is: the nearest one, what is nearest to the rest, and so on; few, as long as what was added is of like size.
+    fn parts(&self) -> Vec<f64> {
+        let (mut rest, mut parts) = (self.clone(), vec![]);
+        loop {
+            let x = rest.value();
+            if x == 0.0 {
+                return parts;
+            }
+            parts.push(x);
+            if !x.is_finite() {
+                return parts;
+            }
+            rest.take(x);
+        }
+    }
+
     /// The sums of all ranks, on all of them.
     pub fn of_all(sums: &mut [Exact], ranks: &Comm) {
         let own: Vec<u8> = sums.iter().flat_map(Exact::to_bytes).collect();
@@ -171,6 +193,30 @@ impl Exact {
             low: number(DIGITS + 1) as usize,
             high: number(DIGITS + 2) as usize,
             other: f64::from_le_bytes(word(DIGITS + 3)),
+        }
+    }
+}
+
+impl Default for Exact {
+    fn default() -> Exact {
+        Exact::ZERO
+    }
+}
+
+impl FromIterator<f64> for Exact {
+    fn from_iter<I: IntoIterator<Item = f64>>(all: I) -> Exact {
+        let mut sum = Exact::ZERO;
+        all.into_iter().for_each(|x| sum.add(x));
+        sum
+    }
+}
+
+impl Owner for Exact {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let mut parts = self.parts();
+        archive.list("parts", &mut parts);
+        if archive.loads() {
+            *self = parts.into_iter().collect();
         }
     }
 }
@@ -239,6 +285,11 @@ mod tests {
             }
             assert_eq!(parts.value().to_bits(), wanted.to_bits());
         }
+        // a few numbers are the sum, to the last bit
+        let mut again: Exact = exact(&all).parts().into_iter().collect();
+        assert_eq!(again.value().to_bits(), wanted.to_bits());
+        all.iter().for_each(|x| again.take(*x));
+        assert_eq!(again.value().to_bits(), 0);
         // all but one of them taken away again
         let one = all[0];
         let back: Vec<f64> = all[1..].iter().map(|x| -x).collect();

@@ -34,19 +34,28 @@ impl Fragments {
                 sets.join(i as u32, j as u32);
             }
         });
+        let roots = { body.slots.iter() }.map(|slot| sets.root(*slot));
+        let mass = |slot: u32| body.volume.at(slot as usize) * body.density.at(slot as usize);
+        let masses = { body.slots.iter() }.map(|slot| mass(*slot));
+        Self::of_roots(roots.collect(), masses)
+    }
+
+    /// Of points that are named by one of the points that each is joined to; mass of each.
+    fn of_roots(roots: Vec<u32>, masses: impl Iterator<Item = f64>) -> Fragments {
         // pieces in order of their lowest id
         const UNSEEN: u32 = u32::MAX;
-        let mut piece = vec![UNSEEN; body.len];
+        let most = roots.iter().max().map_or(0, |root| *root as usize + 1);
+        let mut piece = vec![UNSEEN; most];
         let mut size: Vec<u32> = vec![];
-        let mut label = Vec::with_capacity(body.points());
-        for &slot in &body.slots {
-            let root = sets.root(slot) as usize;
-            if piece[root] == UNSEEN {
-                piece[root] = size.len() as u32;
+        let mut label = Vec::with_capacity(roots.len());
+        for root in roots {
+            let piece = &mut piece[root as usize];
+            if *piece == UNSEEN {
+                *piece = size.len() as u32;
                 size.push(0);
             }
-            size[piece[root] as usize] += 1;
-            label.push(piece[root]);
+            size[*piece as usize] += 1;
+            label.push(*piece);
         }
         let mut order: Vec<u32> = (0..size.len() as u32).collect();
         order.sort_by_key(|p| std::cmp::Reverse(size[*p as usize])); // stable: ties stay in order of lowest id
@@ -55,13 +64,38 @@ impl Fragments {
             rank[*p as usize] = r as u32;
         }
         let mut mass = vec![0.0; order.len()];
-        for (l, &slot) in label.iter_mut().zip(&body.slots) {
+        for (l, own) in label.iter_mut().zip(masses) {
             *l = rank[*l as usize];
-            let slot = slot as usize;
-            mass[*l as usize] += body.volume.at(slot) * body.density.at(slot);
+            mass[*l as usize] += own;
         }
         size.sort_unstable_by(|a, b| b.cmp(a));
         Fragments { label, size, mass }
+    }
+
+    /// What whole bonds of this rank's points join: ids among all points, the lowest of each piece beside the others.
+    pub fn joined<const D: usize>(
+        body: &Body<D>,
+        interaction: &dyn Interaction<D>,
+    ) -> Vec<[u32; 2]> {
+        let ids = body.ids_of_all();
+        let mut sets = Sets::new(body.all_points());
+        interaction.each_bond(body, &mut |i, j, _, state| {
+            if state == BondStatus::Whole {
+                sets.join(ids[i], ids[j]);
+            }
+        });
+        let all = 0..body.all_points() as u32;
+        all.map(|id| [id, sets.root(id)])
+            .filter(|[id, root]| id != root)
+            .collect()
+    }
+
+    /// Of so many points, from what is joined; their masses are not known.
+    pub fn of_joined<'a>(points: usize, joined: impl Iterator<Item = &'a [u32; 2]>) -> Fragments {
+        let mut sets = Sets::new(points);
+        joined.for_each(|[i, j]| sets.join(*i, *j));
+        let roots = (0..points as u32).map(|id| sets.root(id)).collect();
+        Self::of_roots(roots, std::iter::repeat(0.0))
     }
 
     /// Number of fragments, single points included.

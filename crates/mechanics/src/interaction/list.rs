@@ -111,7 +111,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             material: &body.material,
             motion,
         };
-        self.bonds.blocks.tally(&kernel)
+        self.bonds.blocks.tally(&kernel).0
     }
 
     /// n and 1/m at a slot.

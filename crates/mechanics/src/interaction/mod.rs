@@ -52,5 +52,5 @@ pub use point_energies::{PointEnergies, PointEnergiesMut};
 pub use repulsion::{PairTable, Repulsion, in_series};
 pub use several::SeveralInteraction;
 pub(crate) use sweep::Motion;
-pub use sweep::{Fault, Released, Sweep, Tally};
+pub use sweep::{BlockTally, Fault, Released, Sweep, Tally};
 pub use tangent::{BondTangent, Channel, EachTangent};

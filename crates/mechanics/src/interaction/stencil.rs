@@ -93,13 +93,14 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         }
     }
 
+    /// The lowest critical `e` of any point from now on, too.
     fn sweep<const FULL: bool>(
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
         f: FieldViewMut<D>,
         motion: Option<Motion<D>>,
-    ) -> Tally {
+    ) -> (Tally, f64) {
         let alive = Shared(self.bonds.alive.as_mut_ptr());
         let state = Shared(self.state.as_mut_ptr());
         let next = Shared(self.next.as_mut_ptr());
@@ -211,7 +212,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             body.exchange.fill(&mut self.fields[0]);
         }
         let motion = sweep.motion();
-        let total = if self.bonds.critical.is_empty() {
+        let (total, least_critical) = if self.bonds.critical.is_empty() {
             self.sweep::<false>(body, u, f, motion)
         } else {
             self.sweep::<true>(body, u, f, motion)
@@ -226,7 +227,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             self.bonds.blocks.run(&kernel);
             self.bonds.critical = critical;
             body.exchange.fill(&mut self.bonds.critical);
-            self.least_critical = total.least_critical;
+            self.least_critical = least_critical;
             self.look_least(body);
             // what breaks elsewhere is not known here
             let alone = !body.exchange.is_shared();

@@ -1,6 +1,7 @@
 //! What a sweep over all bonds may change, and what it reports besides forces.
 
 use crate::body::FieldView;
+use crate::execute::exact::Exact;
 use crate::execute::lane::Lane;
 use crate::spec::Release;
 use crate::state::words;
@@ -96,9 +97,9 @@ impl AddAssign for Released {
     }
 }
 
-/// What a sweep reports besides its forces.
+/// What a block of a sweep reports besides its forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tally {
+pub struct BlockTally {
     /// Directed bonds that broke.
     pub broken: u64,
     /// Energy that points lost with them.
@@ -107,6 +108,20 @@ pub struct Tally {
     pub dissipated: f64,
     /// The lowest critical `e` of any point from now on, where that is counted.
     pub least_critical: f64,
+    /// Why these forces mean nothing.
+    pub fault: Option<Fault>,
+}
+
+/// What a sweep does: that of its blocks, in any order, and of the points of this rank.
+#[derive(Debug, Clone, Default)]
+pub struct Tally {
+    /// Directed bonds that broke.
+    pub broken: u64,
+    /// What breaking did to the energy of points (energy), as [`Released`].
+    pub lost: Exact,
+    pub made: Exact,
+    /// What laws with memory dissipated (energy).
+    pub dissipated: Exact,
     /// Why these forces mean nothing.
     pub fault: Option<Fault>,
 }
@@ -136,9 +151,9 @@ impl Fault {
     }
 }
 
-impl Default for Tally {
-    fn default() -> Tally {
-        Tally {
+impl Default for BlockTally {
+    fn default() -> BlockTally {
+        BlockTally {
             broken: 0,
             released: Released::default(),
             dissipated: 0.0,
@@ -148,12 +163,22 @@ impl Default for Tally {
     }
 }
 
+impl AddAssign<&BlockTally> for Tally {
+    fn add_assign(&mut self, o: &BlockTally) {
+        self.broken += o.broken;
+        self.lost.add(o.released.lost);
+        self.made.add(o.released.made);
+        self.dissipated.add(o.dissipated);
+        self.fault = self.fault.or(o.fault);
+    }
+}
+
 impl AddAssign for Tally {
     fn add_assign(&mut self, o: Tally) {
         self.broken += o.broken;
-        self.released += o.released;
-        self.dissipated += o.dissipated;
-        self.least_critical = self.least_critical.min(o.least_critical);
+        self.lost.merge(&o.lost);
+        self.made.merge(&o.made);
+        self.dissipated.merge(&o.dissipated);
         self.fault = self.fault.or(o.fault);
     }
 }

@@ -93,6 +93,11 @@ impl<'a> Archive<'a> {
         }
     }
 
+    /// Are numbers read, well or not?
+    pub fn is_load(&self) -> bool {
+        matches!(self.way, Way::Load(_))
+    }
+
     /// Are numbers read, and all of them well so far? Whoever derives something from them looks again then.
     pub fn loads(&self) -> bool {
         matches!(self.way, Way::Load(_)) && self.error.is_none()

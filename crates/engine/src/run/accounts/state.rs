@@ -1,5 +1,6 @@
 //! What a run has done, which no state of now says any more.
 
+use crate::execute::exact::Exact;
 use crate::interaction::{Released, Tally};
 use crate::observe::Ledger;
 use crate::state::{Archive, Owner, words};
@@ -14,10 +15,11 @@ pub(in crate::run) struct Past {
 
 words!([] Past { dissipated: f64, conditions: f64, indenters: f64 });
 
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(in crate::run) struct Accounts {
-    /// Directed bonds that broke.
-    pub broken: u64,
+    /// What sweeps of this rank's points did.
+    pub swept: Tally,
+    /// Beside that, what all points did together.
     pub released: Released,
     /// Cycles of load, where increments are these.
     pub cycles: f64,
@@ -30,7 +32,10 @@ pub(in crate::run) struct Accounts {
 
 impl Owner for Accounts {
     fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.one("broken", &mut self.broken);
+        archive.one("broken", &mut self.swept.broken);
+        archive.part("lost", &mut self.swept.lost);
+        archive.part("made", &mut self.swept.made);
+        archive.part("dissipated", &mut self.swept.dissipated);
         archive.one("released", &mut self.released);
         archive.one("cycles", &mut self.cycles);
         archive.one("past_work", &mut self.past);
@@ -40,15 +45,9 @@ impl Owner for Accounts {
 }
 
 impl Accounts {
-    /// What bonds did in a sweep.
-    pub fn book(&mut self, tally: &Tally) {
-        self.broken += tally.broken;
-        self.released += tally.released;
-        self.past.dissipated += tally.dissipated;
-    }
-
     /// Whoever did the work of now gives way to others, whose accounts begin at 0.
     pub fn pass(&mut self, now: &Ledger) {
+        self.swept.dissipated = Exact::ZERO;
         self.past = Past {
             dissipated: now.dissipated,
             conditions: now.work_conditions,
@@ -56,7 +55,7 @@ impl Accounts {
         };
     }
 
-    /// What the ledger of any state has of them.
+    /// What the ledger of any state has of them, but for what was swept.
     pub fn ledger(&self) -> Ledger {
         Ledger {
             released: self.released.lost,

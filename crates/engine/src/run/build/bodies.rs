@@ -11,7 +11,7 @@ use crate::run::names::Names;
 use crate::run::parts::{Part, parts};
 use crate::run::reference::current_neighbours;
 use crate::run::sets::{assign_materials, sets};
-use crate::run::{atoms, clouds, own_horizons, traits};
+use crate::run::{atoms, clouds, meant, own_horizons, traits};
 use crate::spec::{BodySpec, FamilyChoice, Horizon, PieceSpec, Spec};
 use peridyne_comm::Comm;
 use std::sync::Arc;
@@ -42,9 +42,6 @@ impl<'a, const D: usize> Bodies<'a, D> {
         warnings: &mut Warnings,
     ) -> Result<Self, BuildError> {
         let (mut parts, mut body) = parts::<D>(spec)?;
-        if let Some(ranks) = ranks {
-            body = body.subdomain_of(ranks)?;
-        }
         match (potentials, spec.bonds.family) {
             (Some(potentials), _) if current_neighbours(spec) => {
                 atoms::check_box(potentials, &body.period())?;
@@ -56,10 +53,8 @@ impl<'a, const D: usize> Bodies<'a, D> {
             _ => {}
         }
         let [horizon, mut least_horizon] = horizons(&parts);
-        for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.bonded) {
-            let own = body.pieces().get(n).map_or(&body, |p| &p.body);
-            let atoms = current_neighbours(spec);
-            enough_memory(own, part.stencil.as_ref(), part.horizon, atoms)?;
+        if ranks.is_none() {
+            enough(spec, &parts, &body)?;
         }
         let smoothed = match &spec.bonds.smooth {
             None => None,
@@ -94,13 +89,23 @@ impl<'a, const D: usize> Bodies<'a, D> {
         {
             warnings.extend(atoms::crystal(spec, potentials, *kind, *spacing)?);
         }
-        let names = Names {
+        let mut names = Names {
             sets,
             carriers,
             carrier_sets,
             faces: Faces::new(spec)?,
             shelf: shelf.clone(),
         };
+        if let Some(ranks) = ranks {
+            // all ranks know all points until here, and find the same mistakes
+            warnings.extend(meant::all(spec, &body, &names.sets)?);
+            names
+                .faces
+                .find(&spec.loading.conditions, &body, &names.sets)?;
+            body = body.subdomain_of(ranks)?;
+            names.cut(&body);
+            enough(spec, &parts, &body)?;
+        }
         Ok(Bodies {
             parts,
             body,
@@ -112,6 +117,16 @@ impl<'a, const D: usize> Bodies<'a, D> {
             atoms: potentials.is_some(),
         })
     }
+}
+
+/// Is there room for these bodies and their bonds?
+fn enough<const D: usize>(spec: &Spec, parts: &[Part], body: &Body<D>) -> Result<(), BuildError> {
+    for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.bonded) {
+        let own = body.pieces().get(n).map_or(body, |p| &p.body);
+        let atoms = current_neighbours(spec);
+        enough_memory(own, part.stencil.as_ref(), part.horizon, atoms)?;
+    }
+    Ok(())
 }
 
 /// Gives each of several bodies its materials, and points their horizons.

@@ -50,7 +50,7 @@ impl<const D: usize> Bonds<D> {
         // a ratio is meant inclusively; only a length leaves the decision to round-off
         let ratios = constitutive.all().filter(|m| m.ratio).count();
         let near_horizon = match ratios {
-            0 => bodies.ends.max(interaction.near_horizon()),
+            0 => bodies.ends.max(body.count(interaction.near_horizon())),
             // lists do not say whose bonds they count
             _ => bodies.ends,
         };
@@ -72,11 +72,9 @@ impl<const D: usize> Bonds<D> {
                 "atoms feel those of their family in the reference whose bonds are whole, and nobody else: parts that come apart and meet again go through each other",
             );
         }
-        // what a part of a body has says nothing of the whole
+        // of a part it was told before it was cut
         if body.subdomain().is_none() {
-            warnings.extend(meant::regions(spec, body));
-            warnings.extend(meant::periods(spec, body)?);
-            warnings.extend(meant::sets(spec, body, &bodies.names.sets));
+            warnings.extend(meant::all(spec, body, &bodies.names.sets)?);
         }
         if { spec.interactions.contact.as_ref() }.is_some_and(|c| c.conductance.is_some())
             && spec.materials.iter().any(|m| m.fracture.is_some())
@@ -85,7 +83,7 @@ impl<const D: usize> Bonds<D> {
                 "contact conducts heat between points that were never bonded: none crosses a crack, whether its faces touch or not",
             );
         }
-        let asymmetry = interaction.asymmetry();
+        let asymmetry = body.most(interaction.asymmetry());
         if asymmetry > SYMMETRIC {
             warnings.push(format!(
                 "action is not reaction in this body (asymmetry {}): it has no energy, what is printed as strain energy is that of its symmetric part, and neither energy nor momentum need balance",
@@ -93,7 +91,7 @@ impl<const D: usize> Bonds<D> {
             ));
         }
         let made = Bonds {
-            directed: interaction.directed_bonds(),
+            directed: body.count(interaction.directed_bonds()),
             constitutive,
             interaction,
             cell_volume,
@@ -113,18 +111,18 @@ impl<const D: usize> Bonds<D> {
             let message = format!(
                 "the pre-crack cuts all bonds: none of the {} between {} points is left",
                 self.cut / 2,
-                body.points()
+                body.all_points()
             );
             return Err(BuildError::empty("precracks[0]", message).help(
                 "make it shorter than the body, or the spacing smaller; parts that nothing holds together are bodies of their own",
             ));
         }
-        if self.directed == 0 && body.points() > 1 && bonded && body.points() > body.pieces().len()
-        {
+        let points = body.all_points();
+        if self.directed == 0 && points > 1 && bonded && points > body.pieces().len() {
             return Err(BuildError::empty(
                 "horizon",
                 message![
-                    format!("no two of the {} points are within the horizon ", body.points()),
+                    format!("no two of the {points} points are within the horizon "),
                     Dimension::LENGTH.of(bodies.horizon),
                 ],
             )
@@ -146,6 +144,8 @@ fn cut<const D: usize>(
     warnings: &mut Warnings,
 ) -> Result<u64, BuildError> {
     let solid = spec.potential().is_none() && spec.micromoduli().is_none();
+    // no rank sees both sides of all gaps
+    let solid = solid && body.subdomain().is_none();
     let separate = match solid {
         true => gaps::across(spec, body, interaction),
         false => vec![],

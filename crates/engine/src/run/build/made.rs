@@ -19,6 +19,7 @@ use crate::run::contact::Rules;
 use crate::run::inertia::state::Inertia;
 use crate::run::names::Names;
 use crate::run::observation::View;
+use crate::run::ranks::agreed;
 use crate::run::sets::initial;
 use crate::run::system::{Regime, System, Watch};
 use crate::run::time_step::{Limits, time_step};
@@ -58,7 +59,7 @@ impl<const D: usize> Made<D> {
         warnings.extend(gaps::warnings(spec, &gaps, spacing));
         let measured = limits(spec, trust, &bodies, &mut bonds, repulsion.as_ref())?;
         let (inertia, limits) = measured;
-        let points = body.points();
+        let points = body.all_points();
         let dt = time_step(spec, points, &limits, repulsion.as_ref(), &mut warnings)?;
         bonds.constitutive.forget_stencils(); // the interaction has them
         let info = info(
@@ -131,7 +132,8 @@ impl<const D: usize> Made<D> {
         if let Some(velocity) = own_velocities(spec, &system.body) {
             system.body.scatter(&mut system.v, &velocity);
         }
-        initial(spec, names, system)?;
+        let begun = initial(spec, names, system);
+        agreed(&system.body, begun)?;
         if let (TimeStep::Auto, Some(potentials)) = (spec.run.schedule.time_step, potentials) {
             let dt = self.dt.min(atoms::step_of_speeds(system, potentials)?);
             system.clock = Clock::new(dt);
@@ -142,7 +144,7 @@ impl<const D: usize> Made<D> {
         if spec.run.schedule.stepper.rests() {
             maker.stand_for(spec)?;
         }
-        system.info.bytes = system.bytes();
+        system.info.bytes = system.body.count(system.bytes() as u64) as usize;
         let fields = spec.run.fields.as_deref().unwrap_or_default();
         View::of(system, &names.shelf, spec.loading.boltzmann).check_fields(fields)
     }
@@ -163,12 +165,15 @@ impl<const D: usize> Made<D> {
             steps => steps,
         };
         let end = steps as f64 * self.dt;
-        system.check_agreement(conditions, end)?;
+        agreed(&system.body, system.check_agreement(conditions, end))?;
         let loads = &mut system.applied.loads;
         let told = tell_loads(&system.body, loads, conditions, end);
         system.info.loads.extend(told);
-        let torn = torn(system, end);
-        system.info.warnings.extend(torn);
+        // no rank sees all loads
+        if system.body.subdomain().is_none() {
+            let torn = torn(system, end);
+            system.info.warnings.extend(torn);
+        }
         Ok(())
     }
 }
@@ -219,18 +224,20 @@ fn info<const D: usize>(
     let sizes = body.slots().iter();
     let sizes = sizes.map(|s| interaction.family_size(body, *s as usize));
     let (smallest, largest) = sizes.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
+    let (smallest, largest) = (body.least(smallest as f64), body.most(largest as f64));
+    let points = body.all_points();
     let sweeps = { constitutive.all().zip(&bodies.parts) }
         .map(|(m, part)| m.sweeps.clone().filter(|_| part.bonded));
     let shelf = &bodies.names.shelf;
     let kinds = |law: &LawSpec| matches!(law, LawSpec::Named(law) if shelf.kinds(&law.name));
     Info {
         dimension: D,
-        points: body.points() as u64,
+        points: points as u64,
         directed_bonds: bonds.directed,
         family: (
-            smallest,
-            bonds.directed as f64 / body.points() as f64,
-            largest,
+            smallest as usize,
+            bonds.directed as f64 / points as f64,
+            largest as usize,
         ),
         family_kind: interaction.family(),
         sweeps: sweeps.collect(),
@@ -239,11 +246,7 @@ fn info<const D: usize>(
         spacing: body.spacing(),
         section: spec.space.section,
         mass: body.mass(),
-        volume: body
-            .slots()
-            .iter()
-            .map(|s| body.volume().at(*s as usize))
-            .sum(),
+        volume: body.sum({ body.slots().iter() }.map(|s| body.volume().at(*s as usize))),
         // bonds of several kinds have no single one
         micromodulus: match spec.materials.iter().any(|m| kinds(&m.law)) {
             true => vec![],

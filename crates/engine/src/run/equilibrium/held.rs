@@ -47,7 +47,7 @@ impl<const D: usize> Problem<'_, D> {
         let support = self.system.held();
         let resting = vec![];
         // what touches may hold, too
-        if self.system.accounts.broken == 0
+        if self.system.accounts.swept.broken == 0
             || self.system.contact.is_some()
             || !self.system.applied.rigid.is_empty()
         {

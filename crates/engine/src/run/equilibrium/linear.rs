@@ -5,13 +5,14 @@ use super::problem::Problem;
 impl<const D: usize> Problem<'_, D> {
     /// Breaks the bonds that a linear solution stretches too far: they release what the linear body loses. Forces are those of what is left.
     pub(super) fn tear_linear(&mut self) {
-        let (broken, released) = (self.system.accounts.broken, self.system.accounts.released);
+        let before = self.system.accounts.swept.clone();
         let held: f64 = self.system.quadratic_energy().iter().sum();
         self.system.forces(true, self.system.clock.trial());
-        if self.system.accounts.broken > broken {
+        let swept = &mut self.system.accounts.swept;
+        if swept.broken > before.broken {
+            (swept.lost, swept.made) = (before.lost, before.made);
             self.system.stressed = None;
             let kept: f64 = self.system.quadratic_energy().iter().sum();
-            self.system.accounts.released = released;
             self.system.accounts.released.book(held - kept);
         }
         self.system.linear_forces();

@@ -117,10 +117,11 @@ impl<const D: usize> System<D> {
             steps: [0.0; 2],
             release: self.release,
         };
-        let tally = self
-            .interaction
-            .forces(&self.body, view(&rest), view_mut(&mut f), sweep, None);
-        self.accounts.book(&tally);
+        let mut tally =
+            self.interaction
+                .forces(&self.body, view(&rest), view_mut(&mut f), sweep, None);
+        tally.fault = None;
+        self.accounts.swept += tally;
         self.take_heat_of_flow();
     }
 
@@ -181,7 +182,7 @@ impl<const D: usize> Problem<'_, D> {
                 .iter_mut()
                 .for_each(|i| i.place(t));
             self.system.look_again();
-            let before = self.system.accounts.broken;
+            let before = self.system.accounts.swept.broken;
             let solved = match method {
                 Method::Linear => self.solve_linear(state, &support)?,
                 Method::Newton => self.solve_newton(state, &support)?,
@@ -199,7 +200,7 @@ impl<const D: usize> Problem<'_, D> {
                 true => self.tear_linear(),
                 false => self.system.forces(true, self.system.clock.trial()),
             }
-            if self.system.accounts.broken == before {
+            if self.system.accounts.swept.broken == before {
                 return Ok((total, way));
             }
             // the next solution is that of another body

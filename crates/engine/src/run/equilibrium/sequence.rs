@@ -105,7 +105,7 @@ impl<const D: usize> Problem<'_, D> {
         state: &mut StaticState<D>,
     ) -> Result<Solved, SolveError> {
         self.system.tell_toughness();
-        let accounts = self.system.accounts;
+        let accounts = self.system.accounts.clone();
         let last = state.sequence.take();
         let mut whole = vec![];
         if let Some(last) = &last {
@@ -153,7 +153,8 @@ impl<const D: usize> Problem<'_, D> {
             ends.iter()
                 .any(|[a, b]| (same(a, &from) && same(b, &to)) || (same(b, &from) && same(a, &to)))
         };
-        system.accounts.broken += system.interaction.cut(&system.body, CrackKind::Broken, &is);
+        system.accounts.swept.broken +=
+            system.interaction.cut(&system.body, CrackKind::Broken, &is);
         let kept: f64 = system.quadratic_energy().iter().sum();
         system.accounts.released.book(held - kept);
     }

@@ -1,8 +1,10 @@
 //! Probes: what is measured of a set of points, as columns of a history.
 
 use super::state::{Kind, Probe};
+use crate::body::Body;
 use crate::columns::{Dimension, Shape};
 use crate::error::BuildError;
+use crate::execute::exact::Exact;
 use crate::observe::{Column, ProbeColumn};
 use crate::run::model::Model;
 use crate::run::system::System;
@@ -56,7 +58,7 @@ impl<const D: usize> Model<D> {
             );
             return Err(BuildError::unknown(at("set"), &spec.set, message).help(help));
         };
-        if ids.is_empty() {
+        if self.system.body.count(ids.len() as u64) == 0 {
             return Err(BuildError::empty(
                 at("set"),
                 format!("the set `{}` has no points", spec.set),
@@ -93,7 +95,7 @@ impl<const D: usize> Model<D> {
                 (Kind::Over(*fold, of.clone(), parts), columns)
             }
             Measure::Value { at, of, part } => {
-                ids = vec![self.nearest_of(&ids, at)];
+                ids = self.nearest_of(&ids, at);
                 let (parts, columns) = self.parts(of, part, path, &column)?;
                 (Kind::Over(Fold::Sum, of.clone(), parts), columns)
             }
@@ -113,17 +115,21 @@ impl<const D: usize> Model<D> {
         Ok(Probe { ids, kind, columns })
     }
 
-    /// The point of these that is nearest to a place in the reference.
-    fn nearest_of(&self, ids: &[u32], at: &Point) -> u32 {
+    /// The point of these, of all ranks, that is nearest to a place in the reference, the first of several; nothing on the other ranks.
+    fn nearest_of(&self, ids: &[u32], at: &Point) -> Vec<u32> {
+        let body = &self.system.body;
         let far = |id: &u32| -> f64 {
-            let x = self
-                .system
-                .body
-                .position(self.system.body.slots()[*id as usize] as usize);
+            let x = body.position(body.slots()[*id as usize] as usize);
             (0..D).map(|a| (x[a] - at[a]).powi(2)).sum()
         };
-        let nearest = ids.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-        nearest.copied().unwrap_or(0)
+        let nearest = body.least(ids.iter().map(far).fold(f64::INFINITY, f64::min));
+        let own = ids.iter().find(|id| far(id) == nearest);
+        let of_all = |id: &u32| body.id_of_all(*id as usize) as f64;
+        let first = body.least(own.map_or(f64::INFINITY, of_all));
+        own.copied()
+            .filter(|id| of_all(id) == first)
+            .into_iter()
+            .collect()
     }
 
     /// Which components of a column are asked for, and what they are called.
@@ -212,7 +218,7 @@ impl<const D: usize> Model<D> {
                                 .at(self.system.body.slots()[*id as usize] as usize);
                             volume * named(&columns, name).values.at(*id as usize, 0)
                         };
-                        probe.ids.iter().map(of_point).sum::<f64>()
+                        self.system.body.sum(probe.ids.iter().map(of_point))
                     };
                     values.extend(ENERGIES.map(energy));
                 }
@@ -223,7 +229,7 @@ impl<const D: usize> Model<D> {
                             Some(c) => column.at(*id as usize, *c),
                             None => column.size(*id as usize),
                         });
-                        folded(*fold, each)
+                        folded(*fold, &self.system.body, each)
                     }));
                 }
                 Kind::Contour(contour) => values.extend(self.integral(contour)),
@@ -277,13 +283,10 @@ impl<const D: usize> System<D> {
     }
 
     fn reaction_of(&self, ids: &[u32]) -> Vec<f64> {
-        let mut sum = [0.0; D];
-        for (_, force) in self.reactions(ids) {
-            for a in 0..D {
-                sum[a] += force[a];
-            }
-        }
-        sum.to_vec()
+        let forces = self.reactions(ids);
+        let along = |a: usize| forces.iter().map(|(_, force)| force[a]).collect();
+        let sums: [Exact; D] = crate::array::from_fn(along);
+        self.body.sums(sums).to_vec()
     }
 
     fn moment_of(&self, ids: &[u32], about: &Point) -> Vec<f64> {
@@ -300,7 +303,7 @@ impl<const D: usize> System<D> {
                 let arm = |c: usize| x[c] + moved(c) - about[c];
                 arm(*a) * force[*b] - arm(*b) * force[*a]
             };
-            reactions.iter().map(of).sum()
+            self.body.sum(reactions.iter().map(of))
         };
         turns.map(moment).collect()
     }
@@ -317,12 +320,17 @@ fn named<'a>(columns: &'a [Column], name: &str) -> &'a Column {
     found.expect("looked at when the probe was made")
 }
 
-fn folded(fold: Fold, values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len() as f64;
+/// Of the values of all ranks.
+fn folded<const D: usize>(
+    fold: Fold,
+    body: &Body<D>,
+    values: impl ExactSizeIterator<Item = f64>,
+) -> f64 {
+    let count = values.len() as u64;
     match fold {
-        Fold::Mean => values.sum::<f64>() / count,
-        Fold::Sum => values.sum(),
-        Fold::Min => values.fold(f64::INFINITY, f64::min),
-        Fold::Max => values.fold(f64::NEG_INFINITY, f64::max),
+        Fold::Mean => body.sum(values) / body.count(count) as f64,
+        Fold::Sum => body.sum(values),
+        Fold::Min => body.least(values.fold(f64::INFINITY, f64::min)),
+        Fold::Max => body.most(values.fold(f64::NEG_INFINITY, f64::max)),
     }
 }

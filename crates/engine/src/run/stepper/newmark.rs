@@ -205,11 +205,11 @@ impl<const D: usize> NewmarkStepper<D> {
 
     /// Heals bonds that the end of a step brought back, breaks those that it stretched too far, and lets forces and accelerations jump.
     fn let_go(&mut self, system: &mut System<D>) {
-        let before = system.accounts.broken;
+        let before = system.accounts.swept.broken;
         let whole = system.f.clone();
         let healed = system.heal(system.clock.time());
         system.evolve();
-        if !healed && system.accounts.broken == before {
+        if !healed && system.accounts.swept.broken == before {
             return;
         }
         self.equations.forget();

@@ -112,7 +112,7 @@ impl<const D: usize> SplitStep<D> for VelocityVerlet {
             false => system.body.spacing(),
         };
         let f = system.inertia.as_ref().map_or(&system.f, |i| &i.push);
-        let fastest = self.verlet.advance(
+        let fastest = system.body.most(self.verlet.advance(
             &system.body,
             &mut system.u,
             &mut system.v,
@@ -120,7 +120,7 @@ impl<const D: usize> SplitStep<D> for VelocityVerlet {
             dt,
             self.pending,
             limit,
-        );
+        ));
         if !(fastest < limit * limit) {
             let error = refused(system, limit);
             self.retreat(system, limit);
@@ -200,7 +200,8 @@ impl VelocityVerlet {
         let shortest = system.interaction.shortest(&system.body, view(&system.u));
         let most = fraction.max(HELD);
         let parts = (fraction / (most * shortest)).ceil().clamp(1.0, PARTS) as u32;
-        parts.max(parts_of_indenters(system, fraction))
+        let parts = parts.max(parts_of_indenters(system, fraction));
+        system.body.most(f64::from(parts)) as u32
     }
 
     /// Velocities and displacements of before a drift that went no further than `limit` (length), or of the last kick alone.
@@ -253,30 +254,49 @@ fn refused<const D: usize>(system: &System<D>, limit: f64) -> RunError {
             path(i)
         }
     };
+    let body = &system.body;
     let nowhere = |i: usize| (0..D).any(|a| !system.u[a][i].is_finite());
-    let slots = || system.body.slots().iter().map(|s| *s as usize).enumerate();
-    let found = slots()
-        .find(|(_, i)| nowhere(*i))
-        .or_else(|| slots().max_by(|a, b| far(a.1).total_cmp(&far(b.1))));
-    let (id, i) = found.expect("a body has points");
-    let x = system.body.position(i);
-    let position = crate::array::from_fn(|a| if a < D { x[a] + system.u[a][i] } else { 0.0 });
-    let (id, path) = (id as u64 + 1, path(i));
-    if nowhere(i) || !path.is_finite() {
+    let slots = || body.slots().iter().map(|s| *s as usize).enumerate();
+    let number = |found: Option<(usize, usize)>| {
+        let own = found.map_or(f64::INFINITY, |(id, _)| body.id_of_all(id) as f64);
+        body.least(own)
+    };
+    // of all ranks the first that is nowhere, else the one that went furthest
+    let mut id = number(slots().find(|(_, i)| nowhere(*i)));
+    if id == f64::INFINITY {
+        let furthest = body.most(slots().fold(0.0, |most, (_, i)| far(i).max(most)));
+        id = number(slots().find(|(_, i)| far(*i) == furthest));
+    }
+    let own = slots()
+        .find(|(n, _)| body.id_of_all(*n) as f64 == id)
+        .map(|(_, i)| i);
+    let of = |x: Option<f64>| body.sum(x.into_iter());
+    let position = crate::array::from_fn(|a| {
+        of(own
+            .filter(|_| a < D)
+            .map(|i| body.position(i)[a] + system.u[a][i]))
+    });
+    let path = of(own.map(path));
+    let (id, nowhere) = (id as u64 + 1, own.is_some_and(nowhere));
+    if body.exchange().any(nowhere) || !path.is_finite() {
         return RunError::NotFinite { step, id, position };
     }
+    let pushed = is_pushed(system, own);
     RunError::TooFast {
         step,
         id,
         position,
         path,
         spacing: limit,
-        contact: is_pushed(system, i).then_some(system.info.contact_step),
+        contact: body
+            .exchange()
+            .any(pushed)
+            .then_some(system.info.contact_step),
     }
 }
 
-/// Does a slot's repulsion hold more energy than its bonds?
-fn is_pushed<const D: usize>(system: &System<D>, slot: usize) -> bool {
+/// Does a slot's repulsion hold more energy than its bonds? All ranks ask at once, the others of none.
+fn is_pushed<const D: usize>(system: &System<D>, slot: Option<usize>) -> bool {
     let mut seen = PointEnergies::default();
     system.interaction.observe(
         &system.body,
@@ -289,5 +309,5 @@ fn is_pushed<const D: usize>(system: &System<D>, slot: usize) -> bool {
             .central
             .add_energy_density(&system.body, &system.u, repulsion);
     }
-    seen.repulsion[slot] > seen.strain[slot]
+    slot.is_some_and(|slot| seen.repulsion[slot] > seen.strain[slot])
 }

@@ -44,7 +44,7 @@ impl<const D: usize> System<D> {
             self.tell_toughness();
             let room = self.body.len();
             let mut seen = watched.as_mut().map(|w| w.for_slots(room));
-            let tally = self.interaction.forces(
+            let mut tally = self.interaction.forces(
                 &self.body,
                 view(&self.u),
                 view_mut(&mut self.f),
@@ -55,8 +55,8 @@ impl<const D: usize> System<D> {
                 },
                 seen.as_mut(),
             );
-            self.fault = tally.fault;
-            self.accounts.book(&tally);
+            self.fault = tally.fault.take();
+            self.accounts.swept += tally;
             self.take_heat_of_flow();
         } else {
             self.f.iter_mut().for_each(|c| c.fill(0.0));

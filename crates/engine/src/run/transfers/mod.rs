@@ -46,7 +46,7 @@ impl<const D: usize> System<D> {
 
     /// The bonds that are whole now conduct, where others broke or healed since.
     pub(super) fn break_transfers(&mut self) {
-        self.transfers.seen = self.accounts.broken;
+        self.transfers.seen = self.accounts.swept.broken;
         if self.transfers.all.is_empty() {
             return;
         }
@@ -73,7 +73,7 @@ impl<const D: usize> System<D> {
     ) -> Result<(), RunError> {
         self.transfers.all.iter_mut().for_each(Transfer::keep);
         self.heat_by_deformation(pressed);
-        if self.transfers.seen != self.accounts.broken {
+        if self.transfers.seen != self.accounts.swept.broken {
             self.break_transfers();
         }
         self.conduct_contact();

@@ -12,6 +12,7 @@ use super::force_field::{ForceField, power};
 use super::reaction::Reaction;
 use super::rigid::{Kept, NewmarkStep, Path, Rigid, Wrench};
 use crate::body::{Body, Field};
+use crate::execute::exact::Exact;
 use crate::interaction::Evaluation;
 use crate::interaction::coulomb::Coefficients;
 use crate::interaction::friction::Pressed;
@@ -44,8 +45,8 @@ pub struct Indenter<const D: usize> {
     /// Points that can be touched before anything moved by `slack`.
     candidates: Vec<u32>,
     slack: f64,
-    /// Work done on the body (energy).
-    pub work: f64,
+    /// Work done on the points of this rank (energy).
+    pub work: Exact,
     /// Work of friction on both (energy), and what of it its springs hold.
     rubbed_work: f64,
     stored: f64,
@@ -55,7 +56,7 @@ pub struct Indenter<const D: usize> {
     pub torque: Point,
     /// The most that contact adds to `M⁻¹K` (1 / time²).
     stiff: f64,
-    kept: Option<(Kept, f64, f64)>,
+    kept: Option<(Kept, Exact, f64)>,
     /// Of an increment of statics: where it and the points were.
     from: Option<Departure<D>>,
 }
@@ -70,7 +71,6 @@ impl<const D: usize> Owner for Indenter<D> {
         pressed.sort_unstable_by_key(|(slot, _)| *slot);
         archive.list("pressed", &mut pressed);
         for (name, x) in [
-            ("work", &mut self.work),
             ("work_of_friction", &mut self.rubbed_work),
             ("stored", &mut self.stored),
             ("stiffest", &mut self.stiff),
@@ -85,6 +85,7 @@ impl<const D: usize> Owner for Indenter<D> {
         ] {
             archive.one(name, x);
         }
+        archive.part("work", &mut self.work);
         let rigid = self.rigid.keep();
         let departure = || Departure {
             rigid,
@@ -161,7 +162,7 @@ impl<const D: usize> Indenter<D> {
             pressed: HashMap::new(),
             candidates: vec![],
             slack: 0.0,
-            work: 0.0,
+            work: Exact::ZERO,
             rubbed_work: 0.0,
             stored: 0.0,
             reaction: Reaction::default(),
@@ -356,10 +357,11 @@ impl<const D: usize> Indenter<D> {
 impl<const D: usize> ForceField<D> for Indenter<D> {
     /// It moves to the end of the step, too.
     fn begin_step(&mut self, body: &Body<D>, v: &Field<D>, [t, dt]: [f64; 2], moved: f64) {
-        self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
+        self.kept = Some((self.rigid.keep(), self.work.clone(), self.rubbed_work));
         for (s, f) in &self.touched {
             let i = *s as usize;
-            self.work += 0.5 * dt * body.volume.at(i) * power(f, v, i);
+            let power = power(f, v, i);
+            self.work.add(0.5 * dt * body.volume.at(i) * power);
         }
         self.rigid.kick(dt);
         self.rub_away(body, v, dt);
@@ -431,8 +433,8 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
             for a in 0..D {
                 reaction.force[a] -= force[a];
                 f[a][i] += force[a];
-                self.work += 0.5 * dt * volume * force[a] * v[a][i];
             }
+            self.work.add(0.5 * dt * volume * power(&force, v, i));
             self.bear(&arm, &force, volume);
             let square: f64 = arm.iter().map(|c| c * c).sum();
             mobile += slope * volume * self.rigid.mobility(square);
@@ -460,7 +462,7 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
     }
 
     fn depart(&mut self, u: &Field<D>, pressed: Pressed) {
-        self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
+        self.kept = Some((self.rigid.keep(), self.work.clone(), self.rubbed_work));
         std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
         self.from = Some(Departure {
             rigid: self.rigid.keep(),
@@ -475,7 +477,7 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
         for (s, f) in from.touched.iter().chain(&self.touched) {
             let i = *s as usize;
             let path = (0..D).map(|a| f[a] * (u[a][i] - from.u[a][i]));
-            self.work += 0.5 * body.volume.at(i) * path.sum::<f64>();
+            self.work.add(0.5 * body.volume.at(i) * path.sum::<f64>());
         }
         self.account_rubbing(body, u);
     }

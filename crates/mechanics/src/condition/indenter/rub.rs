@@ -5,6 +5,7 @@
 use super::Indenter;
 use super::surface::Near;
 use crate::body::{Body, Field};
+use crate::condition::force_field::power;
 use crate::condition::rigid::Kept;
 use crate::interaction::Evaluation;
 use crate::interaction::coulomb::{
@@ -119,9 +120,9 @@ impl<const D: usize> Indenter<D> {
             for a in 0..D {
                 self.reaction.force[a] -= force[a];
                 f[a][i] += force[a];
-                self.work += 0.5 * dt * volume * force[a] * v[a][i];
                 self.touched[n].1[a] += force[a];
             }
+            self.work.add(0.5 * dt * volume * power(&force, v, i));
             let arm = touched.near.arm;
             self.bear(&arm, &force, volume);
         }

@@ -329,7 +329,8 @@ impl<const D: usize> Breaking<D> {
                 .sum();
             let mut released = Released::default();
             released.book(before - left + half * power);
-            tally.released = released;
+            tally.lost.add(released.lost);
+            tally.made.add(released.made);
             if motion.release == Release::AtOnce {
                 for a in 0..D {
                     f[a].swap_with_slice(&mut after[a]);

@@ -8,10 +8,9 @@ use super::store::Store;
 use super::view::BondView;
 use crate::body::{Body, Column, Field, FieldView, Identity, Subdomain, field};
 use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
-use crate::execute::exact::Exact;
 use crate::execute::simd::{Kernel, Simd};
 use crate::interaction::criterion::{Criteria, Measure};
-use crate::interaction::{Released, Repulsion, Tally, Toughness};
+use crate::interaction::{BlockTally, Repulsion, Tally, Toughness};
 use crate::space::Point;
 
 /// All bonds of a body, of any law. A bond is a bit of `byte(group, k)`, eight points of a group side by side.
@@ -74,7 +73,7 @@ pub type WholeBond<const D: usize> = (usize, [f64; D], f64, f64);
 /// What sweeps run on, with room for what each block of groups reports.
 pub struct Blocks {
     pub simd: Simd,
-    tallies: PerBlock<Tally>,
+    tallies: PerBlock<BlockTally>,
     sums: PerBlock<[f64; 2]>,
 }
 
@@ -82,7 +81,7 @@ impl Blocks {
     fn of<const D: usize>(blocks: usize, simd: Simd, body: &Body<D>) -> Blocks {
         Blocks {
             simd,
-            tallies: PerBlock::new(blocks, Tally::default()),
+            tallies: PerBlock::new(blocks, BlockTally::default()),
             sums: PerBlock::sums(blocks).among(body.subdomain().map(Subdomain::comm)),
         }
     }
@@ -91,21 +90,14 @@ impl Blocks {
         run_blocks(self.simd, kernel, self.sums.blocks());
     }
 
-    /// Of this rank's groups.
-    pub fn tally<K: Kernel<Out = Tally>>(&self, kernel: &K) -> Tally {
-        let mut total = Tally::default();
-        let mut sums = [const { Exact::ZERO }; 3];
+    /// Of this rank's groups, and the lowest critical `e` of any point from now on.
+    pub fn tally<K: Kernel<Out = BlockTally>>(&self, kernel: &K) -> (Tally, f64) {
+        let (mut total, mut least) = (Tally::default(), f64::INFINITY);
         self.tallies.for_each(self.simd, kernel, |tally| {
-            total += *tally;
-            let of = [tally.released.lost, tally.released.made, tally.dissipated];
-            sums.iter_mut().zip(of).for_each(|(sum, x)| sum.add(x));
+            total += tally;
+            least = least.min(tally.least_critical);
         });
-        let [lost, made, dissipated] = sums.map(|sum| sum.value());
-        Tally {
-            released: Released { lost, made },
-            dissipated,
-            ..total
-        }
+        (total, least)
     }
 
     pub fn sum<K: Kernel<Out = [f64; 2]>>(&self, kernel: &K) -> [f64; 2] {

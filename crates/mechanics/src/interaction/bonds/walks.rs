@@ -77,12 +77,18 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         body: &Body<D>,
         visit: &mut dyn FnMut([usize; 3], [usize; 2]),
     ) {
+        // of two ranks one counts a bond across their border
+        let of_all = body.subdomain().map(|of| of.of_slots());
         for (group, k, l) in bonds {
             let i = self.family.rows(group).slot(l);
             let end = self.family.ends(group, k).slot(l);
             let j = body.exchange.original(end);
             // a bond between a point and its own copy counts from one side only
-            if i < j || (i == j && end > i) {
+            let before = match of_all {
+                Some(ids) if i != j => ids[i] < ids[j],
+                _ => i < j,
+            };
+            if before || (i == j && end > i) {
                 visit([group, k, l], [i, j]);
             }
         }

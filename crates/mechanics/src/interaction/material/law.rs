@@ -125,13 +125,14 @@ impl<const D: usize, F: Family<D>, M: Material<D>> LawSweeps<D, F> for Compiled<
         if nothing {
             return Tally::default();
         }
-        blocks.tally(&Remember {
+        let kernel = Remember {
             view: self.sees(view),
             past,
             memory,
             volume,
             only,
-        })
+        };
+        blocks.tally(&kernel).0
     }
 
     fn energy(&self, simd: Simd, view: BondView<D, F>, group: usize, of: Kept<D>) -> [f64; TILE] {

@@ -256,7 +256,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             drift,
         };
         let of_whole = self.bonds.law.form_of_whole;
-        let tally = self.bonds.blocks.tally(&Tear {
+        let (tally, _) = self.bonds.blocks.tally(&Tear {
             law: self.asked(view),
             forms: if of_whole { self.bonds.law.form } else { 0 },
             torn,

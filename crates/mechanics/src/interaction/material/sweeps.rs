@@ -4,7 +4,7 @@ use super::view::{GroupOf, View, mirrored, save};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::Lane;
 use crate::execute::simd::Kernel;
-use crate::interaction::Tally;
+use crate::interaction::BlockTally;
 use crate::interaction::bonds::family::{Family, Slots, put};
 use crate::interaction::bonds::repulsion::Pushed;
 use crate::interaction::bonds::store::OwnRows;
@@ -179,13 +179,13 @@ pub struct Remember<'a, const D: usize, F, M> {
 }
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F, M> {
-    type Out = Tally;
+    type Out = BlockTally;
     type Home = M;
 
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Tally {
+    fn block<L: Lane>(&self, block: usize) -> BlockTally {
         let v = &self.view;
-        let mut tally = Tally::default();
+        let mut tally = BlockTally::default();
         for group in v.block(block) {
             if !self.only.is_empty() && self.only[group] == 0 {
                 continue;

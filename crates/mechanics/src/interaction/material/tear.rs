@@ -7,7 +7,7 @@ use crate::body::Body;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
-use crate::interaction::Tally;
+use crate::interaction::BlockTally;
 use crate::interaction::bonds::family::{Family, Slots};
 use crate::interaction::bonds::store::OwnRows;
 use crate::interaction::bonds::view::BondView;
@@ -48,14 +48,14 @@ pub struct Torn<'a, const D: usize> {
 }
 
 impl<const D: usize, F: Family<D>> Kernel for Tear<'_, D, F> {
-    type Out = Tally;
+    type Out = BlockTally;
     type Home = Self;
     const SELDOM: bool = true;
 
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Tally {
+    fn block<L: Lane>(&self, block: usize) -> BlockTally {
         let (v, torn) = (&self.law.bonds, &self.torn);
-        let mut tally = Tally::default();
+        let mut tally = BlockTally::default();
         for group in v.block(block) {
             if torn.groups[group] == 0 {
                 continue;

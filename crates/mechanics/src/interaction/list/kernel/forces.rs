@@ -6,7 +6,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
-use crate::interaction::{Motion, Tally, Toughness, history};
+use crate::interaction::{BlockTally, Motion, Toughness, history};
 use crate::law::Law;
 use crate::spec::Release;
 
@@ -27,12 +27,12 @@ pub struct Forces<'a, const D: usize, W, const FULL: bool> {
 }
 
 impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
-    type Out = Tally;
+    type Out = BlockTally;
     type Home = W;
 
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Tally {
-        let mut tally = Tally::default();
+    fn block<L: Lane>(&self, block: usize) -> BlockTally {
+        let mut tally = BlockTally::default();
         for slice in self.view.block(block) {
             let lines = self.view.list.start[slice]..self.view.list.start[slice + 1];
             // SAFETY: the list was made for these records; each slice is written by one block
@@ -49,7 +49,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         &self,
         slice: usize,
         lines: std::ops::Range<usize>,
-        tally: &mut Tally,
+        tally: &mut BlockTally,
     ) {
         let v = &self.view;
         let zero = L::splat(0.0);

@@ -9,7 +9,7 @@ use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{Lane, Piece, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::scale::TileFactors;
-use crate::interaction::{Motion, Tally, Toughness, history};
+use crate::interaction::{BlockTally, Motion, Toughness, history};
 use crate::law::Law;
 use crate::spec::Release;
 use std::mem::MaybeUninit;
@@ -36,13 +36,13 @@ pub struct Forces<'a, const D: usize, W, const FULL: bool> {
 }
 
 impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
-    type Out = Tally;
+    type Out = BlockTally;
     type Home = W;
 
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Tally {
+    fn block<L: Lane>(&self, block: usize) -> BlockTally {
         let v = &self.view;
-        let mut tally = Tally::default();
+        let mut tally = BlockTally::default();
         let mut offsets = Offsets::new();
         let mut rare: Waiting = [const { MaybeUninit::uninit() }; MOST];
         for n in v.block(block) {
@@ -85,7 +85,7 @@ struct Rare<'a, 'b, L, const D: usize, W, const FULL: bool, const SCALED: bool> 
     bonds: &'a [MaybeUninit<u16>],
     scale: TileFactors<'a>,
     acc: &'a mut [L; D],
-    tally: &'a mut Tally,
+    tally: &'a mut BlockTally,
 }
 
 impl<L: Lane, const D: usize, W: Law, const FULL: bool, const SCALED: bool> Piece
@@ -115,7 +115,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         tile: usize,
         offsets: &mut Offsets<D>,
         rare: &mut Waiting,
-        tally: &mut Tally,
+        tally: &mut BlockTally,
     ) {
         let v = &self.view;
         let i = v.slot(tile);
@@ -316,7 +316,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         rare: &[MaybeUninit<u16>],
         scale: TileFactors,
         acc: &mut [L; D],
-        tally: &mut Tally,
+        tally: &mut BlockTally,
     ) {
         let v = &self.view;
         let (i, own) = (at.i, at.own);

@@ -1,0 +1,423 @@
+//! The model of all ranks, as the first has it: it tells the others what to do with theirs.
+
+use super::RankModel;
+use crate::columns::Declaration;
+use crate::condition::carried::Motion;
+use crate::condition::driven::Drive;
+use crate::condition::reaction::Reaction;
+use crate::error::{BuildError, RunError, SolveError};
+use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, StateHash};
+use crate::run::{
+    AtomBond, Examined, Families, Info, ModeShape, Prescription, Seen, Simulation, Steered,
+    Summary, Wall, Watched,
+};
+use crate::space::Point;
+use crate::spec::{AnyLinearBody, ConditionSpec, IndenterSpec};
+use crate::state::{Archive, Owner};
+use crate::statics::Solved;
+use peridyne_comm::Comm;
+
+/// What all ranks do at once.
+enum Ask<'a> {
+    Start(bool),
+    Step,
+    Ledger,
+    Summary,
+    Fragments,
+    Hash,
+    Measure,
+    Columns,
+    Column(&'a str),
+    Snapshot(Vec<&'a str>, bool),
+    Members(&'a str),
+    Read(&'a str, usize),
+    Write(&'a str, usize, usize, &'a [f64]),
+    Save,
+    Load,
+    /// Nobody asks any more.
+    Leave,
+}
+
+impl<'a> Ask<'a> {
+    /// A line of words, and numbers after it.
+    fn to_bytes(&self) -> Vec<u8> {
+        let line = match self {
+            Ask::Start(bonds) => format!("start {bonds}"),
+            Ask::Step => "step".into(),
+            Ask::Ledger => "ledger".into(),
+            Ask::Summary => "summary".into(),
+            Ask::Fragments => "fragments".into(),
+            Ask::Hash => "hash".into(),
+            Ask::Measure => "measure".into(),
+            Ask::Columns => "columns".into(),
+            Ask::Column(name) => format!("column {name}"),
+            Ask::Snapshot(fields, bonds) => format!("snapshot {bonds} {}", fields.join(" ")),
+            Ask::Members(set) => format!("members {set}"),
+            Ask::Read(name, component) => format!("read {name} {component}"),
+            Ask::Write(name, component, first, _) => format!("write {name} {component} {first}"),
+            Ask::Save => "save".into(),
+            Ask::Load => "load".into(),
+            Ask::Leave => "leave".into(),
+        };
+        let mut bytes = line.into_bytes();
+        if let Ask::Write(_, _, _, values) = self {
+            bytes.push(b'\n');
+            bytes.extend(values.iter().flat_map(|x| x.to_le_bytes()));
+        }
+        bytes
+    }
+
+    /// `None`: no rank of this program says so.
+    fn of(bytes: &'a [u8], values: &'a mut Vec<f64>) -> Option<Ask<'a>> {
+        let end = bytes
+            .iter()
+            .position(|b| *b == b'\n')
+            .unwrap_or(bytes.len());
+        let line = std::str::from_utf8(&bytes[..end]).ok()?;
+        let numbers = bytes.get(end + 1..).unwrap_or_default().chunks_exact(8);
+        values.extend(numbers.map(|x| f64::from_le_bytes(x.try_into().expect("eight bytes"))));
+        let (what, of) = line.split_once(' ').unwrap_or((line, ""));
+        let mut words = of.split(' ');
+        Some(match what {
+            "start" => Ask::Start(of == "true"),
+            "step" => Ask::Step,
+            "ledger" => Ask::Ledger,
+            "summary" => Ask::Summary,
+            "fragments" => Ask::Fragments,
+            "hash" => Ask::Hash,
+            "measure" => Ask::Measure,
+            "columns" => Ask::Columns,
+            "column" => Ask::Column(of),
+            "snapshot" => {
+                let bonds = words.next()? == "true";
+                Ask::Snapshot(words.filter(|w| !w.is_empty()).collect(), bonds)
+            }
+            // names of sets may have spaces
+            "members" => Ask::Members(of),
+            "read" => Ask::Read(words.next()?, words.next()?.parse().ok()?),
+            "write" => {
+                let name = words.next()?;
+                let [component, first] = [words.next()?, words.next()?].map(|n| n.parse().ok());
+                Ask::Write(name, component?, first?, values)
+            }
+            "save" => Ask::Save,
+            "load" => Ask::Load,
+            "leave" => Ask::Leave,
+            _ => return None,
+        })
+    }
+}
+
+/// Hears what the first rank says, whoever says it.
+fn heard(comm: &Comm, said: &[u8]) -> Vec<u8> {
+    let all = comm.all(said).unwrap_or_else(|failure| comm.end(failure));
+    all.into_iter().next().expect("there is a first rank")
+}
+
+impl<const D: usize> RankModel<D> {
+    /// Does what the first rank asks of all, until it leaves.
+    ///
+    /// # Panics
+    /// This is the first rank, or the first one is another program.
+    pub fn follow(mut self) {
+        let comm = self.subdomain().comm().clone();
+        assert!(comm.rank() > 0, "the first rank follows nobody");
+        loop {
+            let (bytes, mut values) = (heard(&comm, &[]), vec![]);
+            let ask = Ask::of(&bytes, &mut values).expect("ranks are of one program");
+            match ask {
+                // what comes of it the first rank has, too
+                Ask::Start(bonds) => self.model.start(bonds),
+                Ask::Step => drop(self.step()),
+                Ask::Ledger => drop(self.model.ledger()),
+                Ask::Summary => drop(self.model.summary()),
+                Ask::Fragments => drop(self.fragments()),
+                Ask::Hash => drop(self.state_hash()),
+                Ask::Measure => drop(self.model.measure()),
+                Ask::Columns => drop(self.columns()),
+                Ask::Column(name) => drop(self.column(name)),
+                Ask::Snapshot(fields, bonds) => drop(self.snapshot(&fields, bonds)),
+                Ask::Members(set) => drop(self.members(set)),
+                Ask::Read(name, component) => drop(self.read(name, component)),
+                Ask::Write(name, component, first, values) => {
+                    self.write(name, component, first, values);
+                }
+                Ask::Save => drop(self.saved()),
+                Ask::Load => drop(self.load(vec![])),
+                Ask::Leave => return,
+            }
+        }
+    }
+}
+
+/// The model of all ranks, on the first of them. The others [follow](RankModel::follow) until it is dropped.
+///
+/// Columns, snapshots and states are gathered here. Not shared yet, and answered by a panic, is what [`Steered`] and [`Examined`] ask.
+pub struct AllRanks<const D: usize> {
+    own: RankModel<D>,
+}
+
+impl<const D: usize> AllRanks<D> {
+    /// # Panics
+    /// This is not the first rank.
+    pub fn new(own: RankModel<D>) -> AllRanks<D> {
+        assert_eq!(own.subdomain().comm().rank(), 0, "the first rank leads");
+        AllRanks { own }
+    }
+
+    fn ask(&self, ask: &Ask<'_>) {
+        heard(self.own.subdomain().comm(), &ask.to_bytes());
+    }
+}
+
+impl<const D: usize> Drop for AllRanks<D> {
+    fn drop(&mut self) {
+        // who has ended already hears nothing
+        let _ = self.own.subdomain().comm().all(&Ask::Leave.to_bytes());
+    }
+}
+
+fn not_shared(what: &str) -> ! {
+    panic!("ranks do not share {what} yet")
+}
+
+impl<const D: usize> RankModel<D> {
+    /// The states of all ranks, in their order, on the first.
+    fn saved(&mut self) -> Option<Vec<Vec<u8>>> {
+        let mut own = vec![];
+        let mut archive = Archive::save(&mut own);
+        self.model.archive(&mut archive);
+        archive.done().expect("memory takes what is written");
+        let comm = self.subdomain().comm();
+        comm.first(own).unwrap_or_else(|failure| comm.end(failure))
+    }
+
+    /// Takes the states of all ranks, which the first has. Did all find one of their model?
+    fn load(&mut self, all: Vec<Vec<u8>>) -> bool {
+        let comm = self.subdomain().comm();
+        let own = comm
+            .of_first(all)
+            .unwrap_or_else(|failure| comm.end(failure));
+        let mut bytes = &own[..];
+        let mut archive = Archive::load(&mut bytes);
+        self.model.archive(&mut archive);
+        let wrong = archive.done().is_err() || !bytes.is_empty();
+        !self.model.system.body.exchange().any(wrong)
+    }
+}
+
+impl<const D: usize> Owner for AllRanks<D> {
+    /// Goes on from what as many ranks wrote.
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let mut ranks = self.own.subdomain().comm().ranks() as u64;
+        archive.same("ranks", &mut ranks);
+        if archive.is_load() {
+            let mut all = vec![];
+            archive.lists("state", &mut all);
+            if archive.loads() {
+                self.ask(&Ask::Load);
+                if all.len() as u64 != ranks || !self.own.load(all) {
+                    archive.refuse("state");
+                }
+            }
+            return;
+        }
+        self.ask(&Ask::Save);
+        let all = self.own.saved();
+        archive.lists("state", &mut all.expect("this rank gathers"));
+    }
+}
+
+impl<const D: usize> Simulation for AllRanks<D> {
+    fn info(&self) -> &Info {
+        self.own.model.info()
+    }
+
+    fn start(&mut self, bonds: bool) {
+        self.ask(&Ask::Start(bonds));
+        self.own.model.start(bonds);
+    }
+
+    fn step(&mut self) -> Result<(), RunError> {
+        self.ask(&Ask::Step);
+        self.own.step()
+    }
+
+    fn stop_when(&mut self, stop: fn() -> bool) {
+        self.own.model.stop_when(stop);
+    }
+
+    fn step_number(&self) -> u64 {
+        self.own.model.step_number()
+    }
+
+    fn time(&self) -> f64 {
+        self.own.model.time()
+    }
+
+    fn clock(&self) -> f64 {
+        self.own.model.clock()
+    }
+
+    fn ledger(&mut self) -> Result<Ledger, RunError> {
+        self.ask(&Ask::Ledger);
+        self.own.model.ledger()
+    }
+
+    fn columns(&mut self) -> Vec<Declaration> {
+        self.ask(&Ask::Columns);
+        self.own.columns()
+    }
+
+    fn column(&mut self, name: &str) -> Option<Column> {
+        self.ask(&Ask::Column(name));
+        self.own.column(name)
+    }
+
+    fn snapshot(&mut self, fields: &[&str], bonds: bool) -> Snapshot {
+        self.ask(&Ask::Snapshot(fields.to_vec(), bonds));
+        let snapshot = self.own.snapshot(fields, bonds);
+        snapshot.expect("this rank gathers")
+    }
+
+    fn state_hash(&mut self) -> StateHash {
+        self.ask(&Ask::Hash);
+        self.own.state_hash().expect("this rank gathers")
+    }
+
+    fn set_column(&mut self, _: &str, _: &[f64]) -> bool {
+        false
+    }
+
+    fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool {
+        self.ask(&Ask::Read(name, component));
+        let Some(all) = self.own.read(name, component) else {
+            return false;
+        };
+        out.copy_from_slice(&all[first..first + out.len()]);
+        true
+    }
+
+    fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool {
+        self.ask(&Ask::Write(name, component, first, values));
+        self.own.write(name, component, first, values)
+    }
+
+    fn probe_columns(&self) -> Vec<ProbeColumn> {
+        self.own.model.probe_columns()
+    }
+
+    fn measure(&mut self) -> Vec<f64> {
+        self.ask(&Ask::Measure);
+        self.own.model.measure()
+    }
+
+    fn summary(&self) -> Summary {
+        self.ask(&Ask::Summary);
+        self.own.model.summary()
+    }
+
+    fn fragments(&self) -> u64 {
+        self.ask(&Ask::Fragments);
+        let fragments = self.own.fragments();
+        fragments.expect("this rank gathers").count() as u64
+    }
+
+    fn members(&self, set: &str) -> Option<Vec<u32>> {
+        self.ask(&Ask::Members(set));
+        self.own.members(set)
+    }
+}
+
+impl<const D: usize> Steered for AllRanks<D> {
+    fn depart(&mut self, _: &[Motion]) -> Result<f64, RunError> {
+        not_shared("halves of steps")
+    }
+
+    fn arrive(&mut self) -> Result<(), RunError> {
+        not_shared("halves of steps")
+    }
+
+    fn reflect(&mut self, _: &Wall, _: Option<&[u32]>) {
+        not_shared("walls")
+    }
+
+    fn prescribe(&mut self, _: Prescription, _: &[u32]) {
+        not_shared("motion from outside")
+    }
+
+    fn remove(&mut self, _: &[u32]) {
+        not_shared("points that are taken away")
+    }
+
+    fn set_time(&mut self, _: u64, _: f64) {
+        not_shared("times from outside")
+    }
+
+    fn set_time_step(&mut self, _: f64) {
+        not_shared("steps from outside")
+    }
+
+    fn set_conditions(
+        &mut self,
+        _: &[ConditionSpec],
+        _: &[(String, Vec<u32>)],
+        _: &[IndenterSpec],
+    ) -> Result<(), BuildError> {
+        not_shared("conditions from outside")
+    }
+
+    fn watch(&mut self, _: Watched) {
+        not_shared("what forces see")
+    }
+
+    fn watched(&mut self, _: Watched) -> Option<Seen> {
+        not_shared("what forces see")
+    }
+
+    fn set_driven(&mut self, _: &[(Drive, Option<Vec<u32>>)]) {
+        not_shared("values from outside")
+    }
+
+    fn exchange(&mut self, _: usize, _: Option<&Drive>) -> Option<Reaction> {
+        not_shared("values from outside")
+    }
+}
+
+impl<const D: usize> Examined for AllRanks<D> {
+    fn families(&self) -> Families {
+        not_shared("families")
+    }
+
+    fn energy_under_strain(&self, _: [[f64; 3]; 3]) -> Vec<f64> {
+        not_shared("energies under a strain")
+    }
+
+    fn bonds_of_atoms(&mut self, _: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
+        not_shared("bonds of atoms")
+    }
+
+    fn forces_under(&mut self, _: &[Point]) -> Vec<Point> {
+        not_shared("forces under displacements")
+    }
+
+    fn observed(&mut self) -> Observed {
+        not_shared("energies of points")
+    }
+
+    fn each_force(&mut self, _: &mut dyn FnMut(PointForce)) -> bool {
+        not_shared("forces of pairs")
+    }
+
+    fn relax(&mut self, _: f64) -> Result<Solved, RunError> {
+        not_shared("equilibria")
+    }
+
+    fn linear_body(&mut self) -> AnyLinearBody {
+        not_shared("linear bodies")
+    }
+
+    fn modes(&mut self, _: usize) -> Result<Vec<ModeShape>, SolveError> {
+        not_shared("modes")
+    }
+}
