@@ -50,7 +50,7 @@ impl<const D: usize> System<D> {
         let swept = [&swept.lost, &swept.made, &swept.dissipated].map(Exact::clone);
         let [lost, made, dissipated] = swept;
         let sums = [
-            self.kinetic(),
+            kinetic(self),
             lost,
             made,
             dissipated,
@@ -79,16 +79,6 @@ impl<const D: usize> System<D> {
             ledger.dissipated -= friction.work + friction.energy;
         }
         ledger
-    }
-
-    /// Kinetic energy of this rank's points, each on its own.
-    fn kinetic(&self) -> Exact {
-        let each = self.body.slots().iter().map(|s| {
-            let i = *s as usize;
-            let v2: f64 = (0..D).map(|a| self.v[a][i] * self.v[a][i]).sum();
-            0.5 * self.body.density().at(i) * self.body.volume().at(i) * v2
-        });
-        each.collect()
     }
 
     /// The balance now, or why the run cannot be trusted.
@@ -198,4 +188,15 @@ impl<const D: usize> System<D> {
         let found = all.concat().into_iter().filter(|ends| ends[0] > 0).min();
         found.map(|[i, j]| (i, j))
     }
+}
+
+/// Kinetic energy of this rank's points, each on its own.
+fn kinetic<const D: usize>(system: &System<D>) -> Exact {
+    let (body, v) = (&system.body, &system.v);
+    let each = body.slots().iter().map(|s| {
+        let i = *s as usize;
+        let v2: f64 = (0..D).map(|a| v[a][i] * v[a][i]).sum();
+        0.5 * body.density().at(i) * body.volume().at(i) * v2
+    });
+    each.collect()
 }

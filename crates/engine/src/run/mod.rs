@@ -1,6 +1,7 @@
 //! From a specification to a running model.
 
 mod accounts;
+mod agreed;
 mod archive;
 mod atoms;
 mod bind;
@@ -18,6 +19,7 @@ mod examined;
 mod faces;
 mod feasible;
 mod gaps;
+mod gathered;
 mod healing;
 mod implicit;
 mod indenters;

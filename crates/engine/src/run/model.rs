@@ -1,8 +1,8 @@
 //! The running model: a system, the stages that move it, and what may be asked of it.
 
+use super::gathered::Gathered;
 use super::names::Names;
 use super::probes::state::Probe;
-use super::ranks::Gathered;
 use super::stages::Stages;
 use super::state_hash::hashed;
 use super::system::System;

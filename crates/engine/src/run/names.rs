@@ -1,7 +1,6 @@
 //! What a deck calls by name: sets of points, and what may be named beside what is built in.
 
 use super::faces::Faces;
-use crate::body::Body;
 use crate::constitutive::Shelf;
 use crate::spec::Carriers;
 
@@ -19,17 +18,6 @@ pub(super) struct Names<const D: usize> {
 }
 
 impl<const D: usize> Names<D> {
-    /// What is left of the names in this part of the body.
-    pub fn cut(&mut self, part: &Body<D>) {
-        let Some(of) = part.subdomain() else { return };
-        let mut here = vec![None; of.points()];
-        (0..)
-            .zip(of.ids())
-            .for_each(|(id, old)| here[*old as usize] = Some(id));
-        self.faces.keep(&self.sets, &here);
-        self.renumber(&here);
-    }
-
     /// Points have these ids now, those that are left.
     pub fn renumber(&mut self, moved: &[Option<u32>]) {
         for (_, members) in &mut self.sets {

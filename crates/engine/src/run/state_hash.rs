@@ -3,7 +3,7 @@
 //! Points are hashed by id in blocks, bonds by the ids of their ends and the image that they lead to: how points and bonds lie in memory does not
 //! show. A bond that is whole adds nothing, so that a body where nothing broke costs a walk over its bonds.
 
-use super::ranks::Gathered;
+use super::gathered::Gathered;
 use super::system::System;
 use crate::body::{Field, view};
 use crate::columns::{Life, On};

@@ -3,7 +3,6 @@
 //! A number is a multiple of 2⁻¹⁰⁷⁴ below 2¹⁰²⁴, so an integer of 2100 bits holds any sum (U. Kulisch, *Computer Arithmetic and Validity*, 2nd ed. 2013,
 //! chapter 8). Its digits of 32 bits have room for carries, so that an addition touches three of them.
 
-use crate::state::{Archive, Owner};
 use peridyne_comm::Comm;
 
 /// Digits: 2⁻¹⁰⁷⁴ to 2¹⁰²⁴, and the carries of 2⁶⁴ numbers.
@@ -141,7 +140,7 @@ impl Exact {
     }
 
     /// Numbers whose sum it is: the nearest one, what is nearest to the rest, and so on; few, as long as what was added is of like size.
-    fn parts(&self) -> Vec<f64> {
+    pub fn parts(&self) -> Vec<f64> {
         let (mut rest, mut parts) = (self.clone(), vec![]);
         loop {
             let x = rest.value();
@@ -208,16 +207,6 @@ impl FromIterator<f64> for Exact {
         let mut sum = Exact::ZERO;
         all.into_iter().for_each(|x| sum.add(x));
         sum
-    }
-}
-
-impl Owner for Exact {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        let mut parts = self.parts();
-        archive.list("parts", &mut parts);
-        if archive.loads() {
-            *self = parts.into_iter().collect();
-        }
     }
 }
 

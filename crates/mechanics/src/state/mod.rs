@@ -8,6 +8,7 @@
 mod archive;
 mod words;
 
+use crate::execute::exact::Exact;
 pub use archive::{Archive, StateError};
 pub use words::{Word, words};
 
@@ -15,4 +16,14 @@ pub use words::{Word, words};
 pub trait Owner {
     /// Passes them through an archive, always in the same order; after reading, what follows from them is found anew.
     fn archive(&mut self, archive: &mut Archive<'_>);
+}
+
+impl Owner for Exact {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        let mut parts = self.parts();
+        archive.list("parts", &mut parts);
+        if archive.loads() {
+            *self = parts.into_iter().collect();
+        }
+    }
 }

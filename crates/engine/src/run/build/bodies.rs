@@ -103,7 +103,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
                 .faces
                 .find(&spec.loading.conditions, &body, &names.sets)?;
             body = body.subdomain_of(ranks)?;
-            names.cut(&body);
+            cut(&mut names, &body);
             enough(spec, &parts, &body)?;
         }
         Ok(Bodies {
@@ -117,6 +117,17 @@ impl<'a, const D: usize> Bodies<'a, D> {
             atoms: potentials.is_some(),
         })
     }
+}
+
+/// What is left of the names in this part of a body.
+fn cut<const D: usize>(names: &mut Names<D>, part: &Body<D>) {
+    let Some(of) = part.subdomain() else { return };
+    let mut here = vec![None; of.points()];
+    (0..)
+        .zip(of.ids())
+        .for_each(|(id, old)| here[*old as usize] = Some(id));
+    names.faces.keep(&names.sets, &here);
+    names.renumber(&here);
 }
 
 /// Is there room for these bodies and their bonds?

@@ -1,21 +1,24 @@
 //! The model of all ranks, as the first has it: it tells the others what to do with theirs.
 
-use super::RankModel;
+use super::model::RankModel;
 use crate::columns::Declaration;
 use crate::condition::carried::Motion;
 use crate::condition::driven::Drive;
 use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, StateHash};
+use crate::run::agreed::agreed_among;
+use crate::run::feasible::possible;
 use crate::run::{
-    AtomBond, Examined, Families, Info, ModeShape, Prescription, Seen, Simulation, Steered,
-    Summary, Wall, Watched,
+    AtomBond, Examined, Families, Info, ModeShape, Options, Prescription, Seen, Shelf, Simulation,
+    Steered, Summary, Wall, Watched,
 };
 use crate::space::Point;
-use crate::spec::{AnyLinearBody, ConditionSpec, IndenterSpec};
+use crate::spec::{AnyLinearBody, ConditionSpec, IndenterSpec, Spec};
 use crate::state::{Archive, Owner};
 use crate::statics::Solved;
 use peridyne_comm::Comm;
+use std::sync::Arc;
 
 /// What all ranks do at once.
 enum Ask<'a> {
@@ -420,4 +423,36 @@ impl<const D: usize> Examined for AllRanks<D> {
     fn modes(&mut self, _: usize) -> Result<Vec<ModeShape>, SolveError> {
         not_shared("modes")
     }
+}
+
+/// Builds the model of a spec whose body ranks share. The first rank has it; the others follow that one here until it is gone, and have nothing then.
+/// All ranks come here at once.
+///
+/// # Errors
+/// As of [`RankModel::new`].
+pub fn build(
+    spec: &Spec,
+    options: Options,
+    comm: &Arc<Comm>,
+) -> Result<Option<Box<dyn Simulation>>, BuildError> {
+    possible(spec, options.simd)?;
+    match spec.space.dimension {
+        1 => built::<1>(spec, options, comm),
+        2 => built::<2>(spec, options, comm),
+        _ => built::<3>(spec, options, comm),
+    }
+}
+
+fn built<const D: usize>(
+    spec: &Spec,
+    options: Options,
+    comm: &Arc<Comm>,
+) -> Result<Option<Box<dyn Simulation>>, BuildError> {
+    let own = RankModel::<D>::new(spec, options, &Shelf::standard(), comm);
+    let own = agreed_among(comm, own)?;
+    if comm.rank() == 0 {
+        return Ok(Some(Box::new(AllRanks::new(own))));
+    }
+    own.follow();
+    Ok(None)
 }

@@ -1,11 +1,16 @@
 //! What ranks share of a spec so far.
 
-use super::{FRAGMENT, WALKS};
 use crate::error::BuildError;
 use crate::spec::{
     BodySpec, ConditionKind, ConditionSpec, Criterion, FamilyChoice, FractureSpec, IndenterMotion,
     IndenterSpec, LawSpec, Measure, ProbeSpec, Spec, Stepper,
 };
+
+/// Observables that walk over bonds from one end, of which the other may be another rank's.
+pub(super) const WALKS: [&str; 2] = ["displacement_gradient", "strain"];
+
+/// The one that is found of all ranks together.
+pub(super) const FRAGMENT: &str = "fragment";
 
 /// Can ranks share the model of a spec?
 ///

@@ -23,7 +23,7 @@ pub(in crate::run) struct Everyone {
 
 impl Everyone {
     /// All ranks come here at once.
-    pub(super) fn of(comm: &Arc<Comm>, ids: &[u32], points: usize) -> Everyone {
+    pub fn of(comm: &Arc<Comm>, ids: &[u32], points: usize) -> Everyone {
         let mut all = Everyone {
             comm: comm.clone(),
             points,
