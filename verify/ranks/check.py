@@ -19,7 +19,7 @@ RANKS = [1, 2, 3, 4]
 # of messages from each rank to each
 LENGTHS = 4
 DECK = Path(__file__).resolve().parents[2] / "decks/good/ten_lines.toml"
-STEPS = 24
+STEPS = 200
 
 
 def environment(**more):
@@ -44,8 +44,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             for parts in [1, 2]:
                 out = Path(folder) / f"{parts}"
-                first = ["run", DECK, "--set", "contact=false", "--set", f"run.steps={STEPS}", "--set", "output.every=8", "--out", out]
-                cut = ["--stop-after", "11"] if parts == 2 else []
+                first = ["run", DECK, "--set", "contact=false", "--set", "body.spacing=1 mm", "--set", f"run.steps={STEPS}", "--set", "output.every=60", "--out", out]
+                cut = ["--stop-after", "110"] if parts == 2 else []
                 for words in [[*first, *cut], ["resume", out]][:parts]:
                     code, said, err = run([*launcher, program, *words, "--threads", "1", *more])
                     if code:
@@ -54,6 +54,7 @@ def main():
                 record = json.loads((out / "run.json").read_text())
                 files = {str(p.relative_to(out)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(out.rglob("*")) if p.is_file() and p.name not in ["run.json", "report.html"]}
                 ends[f"{name}, {parts}"] = (record["state_hash"], record["ledger_hash"], files)
+                hold(record["broken_directed_bonds"] > 10_000, f"{name}: {record['broken_directed_bonds']} broken")
                 hold(record["ranks"] == (int(name.split()[-1]) if name != "alone" else 1), f"{name}: {record['ranks']} ranks")
 
     def hold(true, what):
