@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, say};
 use peridyne_comm::{Comm, launcher};
+use peridyne_io::drive::refused_threads;
 use serde_json::json;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -79,8 +80,20 @@ pub fn alone(comm: &Comm, what: &str) -> Result<(), Failure> {
     }
 }
 
+/// Can so many threads be begun?
+pub fn some_threads(threads: Option<usize>) -> Result<(), Failure> {
+    if threads == Some(0) {
+        return Err(Failure::input("--threads 0: at least one thread must run"));
+    }
+    match threads.and_then(refused_threads) {
+        Some(text) => Err(Failure::input(text)),
+        None => Ok(()),
+    }
+}
+
 /// Threads of this rank: those that were asked for, else its share of the cores that it may use.
 pub fn threads_here(comm: &Comm, asked: Option<usize>) -> Result<Option<usize>, Failure> {
+    agreed(comm, some_threads(asked))?;
     if asked.is_some() || comm.ranks() == 1 {
         return Ok(asked);
     }

@@ -8,7 +8,7 @@ use crate::failure::{Failure, note, say};
 use crate::initial::InitialState;
 use crate::law;
 use crate::progress::Terminal;
-use crate::ranks::{ALONE, agreed, alone, shared, threads_here};
+use crate::ranks::{ALONE, agreed, alone, shared, some_threads, threads_here};
 use crate::report;
 use crate::script;
 use crate::signals;
@@ -22,7 +22,7 @@ use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, SpaceTimeSpec, UnitSystem, counted};
 use peridyne_io::drive::{
     AtomsPlan, DriveError, ExodusPlan, Plan, RigidBodies, SpaceTimeOptions, default_dir, drive,
-    refused_threads, too_many_threads,
+    too_many_threads,
 };
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::checkpoint::{Asked, Checkpoint};
@@ -110,12 +110,7 @@ pub fn with_threads(
     threads: Option<usize>,
     work: impl FnOnce(usize) -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {
-    if threads == Some(0) {
-        return Err(Failure::input("--threads 0: at least one thread must run"));
-    }
-    if let Some(text) = threads.and_then(refused_threads) {
-        return Err(Failure::input(text));
-    }
+    some_threads(threads)?;
     if let Some(text) = threads.and_then(too_many_threads) {
         note(&format!("warning: {text}"));
     }

@@ -276,6 +276,7 @@ fn what_ranks_cannot_share_is_told_once_and_writes_nothing() {
         &[],
         "did you mean `m_ratio`?",
     );
+    refused(BLOCK, &["--threads", "0"], "at least one thread must run");
     let touching = BLOCK.replace("contact = false", "contact = true");
     refused(&touching, &[], "ranks do not share contact");
     refused(
