@@ -18,8 +18,13 @@ from pathlib import Path
 RANKS = [1, 2, 3, 4]
 # of messages from each rank to each
 LENGTHS = 4
-DECK = Path(__file__).resolve().parents[2] / "decks/good/ten_lines.toml"
-STEPS = 200
+DECKS = Path(__file__).resolve().parents[2] / "decks/good"
+DECK = DECKS / "ten_lines.toml"
+# what is run of it on any number of ranks, of another one on three: keys, where it is cut off, bonds that break at least
+ASKED = {
+    "ten_lines": (["body.spacing=1 mm", "run.steps=200", "output.every=60"], 110, 10_000),
+    "two_bodies": (["output.every=40"], 70, 10_000),
+}
 
 
 def environment(**more):
@@ -39,13 +44,15 @@ def main():
     asked = asked.parse_args()
     program, wrong, ends = asked.program.resolve(), [], {}
 
-    def end(name, launcher, *more):
+    def end(name, launcher, *more, deck="ten_lines"):
         """A run to its end, and one that is cut off and goes on: all that they write but for the clock."""
+        keys, stop, broken = ASKED[deck]
+        keys = [word for key in keys for word in ["--set", key]]
         with tempfile.TemporaryDirectory() as folder:
             for parts in [1, 2]:
                 out = Path(folder) / f"{parts}"
-                first = ["run", DECK, "--set", "contact=false", "--set", "body.spacing=1 mm", "--set", f"run.steps={STEPS}", "--set", "output.every=60", "--out", out]
-                cut = ["--stop-after", "110"] if parts == 2 else []
+                first = ["run", DECKS / f"{deck}.toml", *keys, "--out", out]
+                cut = ["--stop-after", stop] if parts == 2 else []
                 for words in [[*first, *cut], ["resume", out]][:parts]:
                     code, said, err = run([*launcher, program, *words, "--threads", "1", *more])
                     if code:
@@ -53,8 +60,8 @@ def main():
                         return
                 record = json.loads((out / "run.json").read_text())
                 files = {str(p.relative_to(out)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(out.rglob("*")) if p.is_file() and p.name not in ["run.json", "report.html"]}
-                ends[f"{name}, {parts}"] = (record["state_hash"], record["ledger_hash"], files)
-                hold(record["broken_directed_bonds"] > 10_000, f"{name}: {record['broken_directed_bonds']} broken")
+                ends[deck, f"{name}, {parts}"] = (record["state_hash"], record["ledger_hash"], files)
+                hold(record["broken_directed_bonds"] > broken, f"{name}: {record['broken_directed_bonds']} broken")
                 hold(record["ranks"] == (int(name.split()[-1]) if name != "alone" else 1), f"{name}: {record['ranks']} ranks")
 
     def hold(true, what):
@@ -76,6 +83,7 @@ def main():
                 _, latency, speed = (found["speeds"][0][key] for key in ("between", "latency_s", "bytes_per_s"))
                 print(f"{ranks} ranks by {found['carrier'].split(' (')[0]}: {latency * 1e6:.2f} µs, {speed * 1e-9:.2f} GB/s")
             end(f"{mpi.name} on {ranks}", [mpi / "bin/mpiexec", "-n", ranks])
+        end(f"{mpi.name} on 3", [mpi / "bin/mpiexec", "-n", 3], deck="two_bodies")
         # a launcher, and no MPI
         code, out, err = run([mpi / "bin/mpiexec", "-n", 2, program, "ranks"], PERIDYNE_MPI="/nowhere/libmpi_abi.so.1")
         hold(code == 2 and out == "" and " ".join(err.replace("│", " ").split()).count("no MPI with the standard ABI") == 1 and "/nowhere/" in err, f"{mpi} without a library: {code}\n{out}{err}")
@@ -109,11 +117,13 @@ def main():
         found = json.loads(out) if code == 0 else {}
         hold(found.get("ranks") == ranks and found["messages"] == LENGTHS * ranks**2, f"{ranks} threads: {code}\n{out}{err}")
         end(f"threads {ranks}", [], "--on-threads", ranks)
-    end("alone", [])
-    one = ends["alone, 1"]
-    for name, found in ends.items():
-        hold(found == one, f"{name} is not what one process writes: {found}\n{one}")
-    print(f"{DECK.stem}, {len(ends)} times: {one[0]} {one[1]} and {len(one[2])} files")
+    for deck in ASKED:
+        end("alone", [], deck=deck)
+        one = ends[deck, "alone, 1"]
+        of_deck = {name: found for (of, name), found in ends.items() if of == deck}
+        for name, found in of_deck.items():
+            hold(found == one, f"{deck}, {name} is not what one process writes: {found}\n{one}")
+        print(f"{deck}, {len(of_deck)} times: {one[0]} {one[1]} and {len(one[2])} files")
     for what in wrong:
         print("WRONG", what)
     print(f"ranks: {len(wrong)} wrong")

@@ -13,7 +13,7 @@ use crate::deck;
 use crate::enough::enough;
 use crate::failure::{Failure, note, printed, say};
 use crate::law;
-use crate::run::{pictures, space_time, until, with_threads};
+use crate::run::{pictures, shared_by_ranks, space_time, until, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Info, Simulation};
@@ -84,6 +84,8 @@ struct Findings<'a> {
     fields: Vec<continuum::Found>,
     /// Points of each indenter that two of its sides push alike.
     ties: Vec<usize>,
+    /// Can ranks share the run? What they do not share yet; `None`: it is of a script.
+    ranks: Option<Result<(), String>>,
 }
 
 impl Findings<'_> {
@@ -146,6 +148,7 @@ struct Subject {
     steps: u64,
     increments: u64,
     fields: Option<FieldsPlan>,
+    ranks: Option<Result<(), String>>,
 }
 
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
@@ -161,6 +164,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
                 steps: setup.steps,
                 increments: 0,
                 fields: None,
+                ranks: None,
             };
             report(arguments, &subject, prepared.simulation.as_mut(), threads)
         });
@@ -190,6 +194,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             steps: deck.steps(sim.info().time_step) - deck.increments(),
             increments: deck.increments(),
             fields: crate::run::continuum(&deck),
+            ranks: Some(shared_by_ranks(&deck).map_err(|e| e.message.to_string())),
             units: deck.units,
             spec: deck.spec,
             script: false,
@@ -327,6 +332,7 @@ fn find<'a>(
         threads,
         fields: vec![],
         ties: vec![],
+        ranks: subject.ranks.clone(),
     };
     let until = until(found.spec, found.steps, found.info.time_step);
     found.ties = ties::ties(found.spec, reference, found.info.spacing, until);

@@ -139,7 +139,8 @@ pub fn run_deck(
     begin: Begin,
 ) -> Result<(), Failure> {
     if comm.ranks() > 1 {
-        agreed(comm, shares(deck))?;
+        let shared = shares(deck).map_err(|e| Failure::Input(deck.explain(&e).into()));
+        agreed(comm, shared)?;
     }
     let (rigid, spec) = RigidBodies::watched(&deck.spec);
     let made = deck::model_among(deck, &spec, &arguments.input, comm)?;
@@ -271,7 +272,7 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
 }
 
 /// What ranks do not share yet of what is asked for beside the model.
-fn shares(deck: &Deck) -> Result<(), Failure> {
+fn shares(deck: &Deck) -> Result<(), BuildError> {
     let limits = [
         ("modes", "modes of vibration", deck.modes > 0),
         (
@@ -285,10 +286,17 @@ fn shares(deck: &Deck) -> Result<(), Failure> {
         None => Ok(()),
         Some((path, what, _)) => {
             let message = format!("ranks do not share {what} yet");
-            let error = BuildError::unsupported(path, message).help(ALONE);
-            Err(Failure::Input(deck.explain(&error).into()))
+            Err(BuildError::unsupported(path, message).help(ALONE))
         }
     }
+}
+
+/// Can ranks share the run of a deck?
+///
+/// # Errors
+/// What they do not share yet.
+pub fn shared_by_ranks(deck: &Deck) -> Result<(), BuildError> {
+    peridyne::run::ranks::shared(&deck.spec).and_then(|()| shares(deck))
 }
 
 /// Does the deck ask for the steps that were done?

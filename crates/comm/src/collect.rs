@@ -43,6 +43,33 @@ impl Comm {
         Ok(there)
     }
 
+    /// What every rank has for this one, in their order; `own` is what this one has for each. Most have nothing for most.
+    ///
+    /// # Errors
+    /// As of [`Comm::exchange`].
+    pub fn to_each(&self, mut own: Vec<Vec<u8>>) -> Result<Vec<Vec<u8>>, Failure> {
+        let sizes: Vec<u8> = { own.iter() }
+            .flat_map(|bytes| (bytes.len() as u64).to_le_bytes())
+            .collect();
+        let here = self.rank();
+        let sizes = self.all(&sizes)?;
+        let of_this = sizes.iter().map(|sizes| {
+            let size = sizes[8 * here..][..8].try_into().expect("eight bytes");
+            vec![0; u64::from_le_bytes(size) as usize]
+        });
+        let mut all: Vec<Vec<u8>> = of_this.collect();
+        let there = |(rank, bytes): &(usize, &mut Vec<u8>)| *rank != here && !bytes.is_empty();
+        let send: Vec<(usize, &[u8])> = { own.iter_mut().enumerate().filter(there) }
+            .map(|(rank, bytes)| (rank, &bytes[..]))
+            .collect();
+        let mut receive: Vec<(usize, &mut [u8])> = { all.iter_mut().enumerate().filter(there) }
+            .map(|(rank, bytes)| (rank, &mut bytes[..]))
+            .collect();
+        self.exchange(&send, &mut receive, || ())?;
+        all[here] = std::mem::take(&mut own[here]);
+        Ok(all)
+    }
+
     /// The bytes of every rank, in the order of ranks, on the first; `None` on the others.
     ///
     /// # Errors

@@ -92,6 +92,24 @@ fn the_first_has_what_each_sent_and_each_what_the_first_has_for_it() {
 }
 
 #[test]
+fn each_has_what_every_other_one_had_for_it() {
+    let of = |from: usize, to: usize| match (from + 2 * to) % 3 {
+        0 => vec![],
+        _ => message(from, to, 1),
+    };
+    for ranks in RANKS {
+        let had = on_threads(ranks, |comm| {
+            let own = (0..ranks).map(|to| of(comm.rank(), to));
+            comm.to_each(own.collect()).unwrap()
+        });
+        for (to, all) in had.into_iter().enumerate() {
+            let wanted: Vec<Vec<u8>> = (0..ranks).map(|from| of(from, to)).collect();
+            assert_eq!(all, wanted, "{ranks}");
+        }
+    }
+}
+
+#[test]
 fn nobody_waits_for_a_rank_that_has_ended() {
     let ends = on_threads(3, |comm| match comm.rank() {
         1 => Ok(()),

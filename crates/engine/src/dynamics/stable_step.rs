@@ -3,6 +3,7 @@
 
 use crate::body::{Body, Field, Layout, view, view_mut, zeros};
 use crate::interaction::{Interaction, Sweep};
+use std::cmp::Ordering;
 
 /// Krylov steps; the top of a peridynamic spectrum is found to about a percent in these.
 const STEPS: usize = 30;
@@ -101,9 +102,8 @@ fn lanczos<const D: usize>(
 ) -> f64 {
     // every point in motion, no symmetry: a fixed low-discrepancy start
     let mut w = vec![[0.0; D]; body.points()];
-    for (place, id) in by_place(body).into_iter().enumerate() {
-        let place = body.id_of_all(place);
-        w[id] = crate::array::from_fn(|a| {
+    for (w, place) in w.iter_mut().zip(places(body)) {
+        *w = crate::array::from_fn(|a| {
             ((place * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
         });
     }
@@ -134,25 +134,24 @@ fn lanczos<const D: usize>(
     MARGIN * largest_of_tridiagonal(&alphas, &betas).max(0.0)
 }
 
-/// Ids in an order that is the body's own: a cloud whose lines come in another order has the same step.
-fn by_place<const D: usize>(body: &Body<D>) -> Vec<usize> {
-    let mut ids: Vec<usize> = (0..body.points()).collect();
+/// The place of each point among all in an order that is the body's own: a cloud whose lines come in another order has the same step.
+fn places<const D: usize>(body: &Body<D>) -> Vec<usize> {
     if matches!(body.layout(), Layout::Grid(_)) {
-        return ids;
+        return (0..body.points()).map(|id| body.id_of_all(id)).collect();
     }
-    let place: Vec<_> = body
-        .slots()
-        .iter()
-        .map(|&s| body.position(s as usize))
-        .collect();
-    let compare = |i: &usize, j: &usize| {
-        let axes = place[*i].iter().zip(&place[*j]);
-        axes.fold(std::cmp::Ordering::Equal, |o, (x, y)| {
-            o.then(x.total_cmp(y))
-        })
+    let own = body.slots().iter().enumerate().map(|(id, &s)| {
+        let [x, y, z] = body.position(s as usize);
+        [x, y, z, body.id_of_all(id) as f64]
+    });
+    let own: Vec<[f64; 4]> = own.collect();
+    let compare = |p: &[f64; 4], q: &[f64; 4]| {
+        let numbers = p.iter().zip(q);
+        numbers.fold(Ordering::Equal, |o, (x, y)| o.then(x.total_cmp(y)))
     };
-    ids.sort_by(compare);
-    ids
+    let mut all = body.all_of(&own).concat();
+    all.sort_unstable_by(compare);
+    let place = |x: &[f64; 4]| all.partition_point(|y| compare(y, x).is_lt());
+    own.iter().map(place).collect()
 }
 
 /// A bound on every eigenvalue of `M⁻¹K` (1 / time²) of bonds that act directly: the largest sum of magnitudes of a row

@@ -15,13 +15,14 @@ impl<const D: usize> System<D> {
     /// Energies of a state with whole velocities.
     pub(super) fn energy_now(&mut self) -> Ledger {
         self.refresh_images();
-        let [strain, mut contact] = match self.left_linearly() {
+        let [strain, contact] = match self.left_linearly() {
             true => self.quadratic_energy(),
             false => self.interaction.energy(&self.body, view(&self.u)),
         };
+        let mut touching = Exact::ZERO;
         if let Some(pairs) = &mut self.contact {
             pairs.find(&self.body, &self.u, self.interaction.as_ref());
-            contact += pairs.central.energy(&self.body, &self.u);
+            touching = pairs.central.energy(&self.body, &self.u);
         }
         let mut ledger = Ledger {
             strain,
@@ -57,6 +58,7 @@ impl<const D: usize> System<D> {
             damping,
             conditions,
             indenters,
+            touching,
         ];
         let sums = self.body.sums(sums);
         let [
@@ -67,8 +69,10 @@ impl<const D: usize> System<D> {
             damping,
             conditions,
             indenters,
+            touching,
         ] = sums;
         ledger.kinetic = self.coupled_kinetic().unwrap_or(kinetic);
+        ledger.contact += touching;
         ledger.released += lost;
         ledger.made += made;
         ledger.dissipated += dissipated - damping;

@@ -97,7 +97,7 @@ pub(super) fn names<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<(String,
     match &spec.body {
         BodySpec::Several(pieces) => {
             let all = pieces.iter().zip(body.pieces());
-            all.map(|(p, own)| (p.name.clone(), own.body.points() as u64))
+            all.map(|(p, own)| (p.name.clone(), own.body.all_points() as u64))
                 .collect()
         }
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => vec![],

@@ -26,11 +26,14 @@ pub(super) fn cloud_moments<const D: usize>(
     let bulk: Vec<Moments> = (0..list.rows().len())
         .filter_map(|row| family(body, &list, row, weight, &directions, horizon - cell))
         .collect();
-    let mean = |of: fn(&Moments) -> f64| bulk.iter().map(of).sum::<f64>() / bulk.len() as f64;
-    Ok((!bulk.is_empty()).then(|| Moments {
-        first: mean(|m| m.first),
-        second: mean(|m| m.second),
-        bare: mean(|m| m.bare),
+    let of = |of: fn(&Moments) -> f64| bulk.iter().map(of).collect();
+    let sums = body.sums([of(|m| m.first), of(|m| m.second), of(|m| m.bare)]);
+    let points = body.count(bulk.len() as u64);
+    let [first, second, bare] = sums.map(|sum| sum / points as f64);
+    Ok((points > 0).then_some(Moments {
+        first,
+        second,
+        bare,
     }))
 }
 

@@ -20,7 +20,7 @@ fn clouds<'a, const D: usize>(
                 .collect()
         }
         one => cloud(one)
-            .map(|c| (c, 0..body.points()))
+            .map(|c| (c, 0..body.all_points()))
             .into_iter()
             .collect(),
     }
@@ -46,14 +46,19 @@ pub(super) fn own_densities<const D: usize>(spec: &Spec, body: &mut Body<D>) {
     }
 }
 
-/// Velocities that clouds bring; `None`: they bring none.
+/// Velocities that clouds bring to points that are here; `None`: they bring none.
 pub(super) fn own_velocities<const D: usize>(spec: &Spec, body: &Body<D>) -> Option<Vec<Point>> {
     let mut velocity = vec![];
     for (cloud, ids) in clouds(spec, body) {
         if !cloud.velocity.is_empty() {
-            velocity.resize(body.points(), [0.0; 3]);
+            velocity.resize(body.all_points(), [0.0; 3]);
             velocity[ids].copy_from_slice(&cloud.velocity);
         }
     }
-    (!velocity.is_empty()).then_some(velocity)
+    let here = |all: Vec<Point>| {
+        (0..body.points())
+            .map(|id| all[body.id_of_all(id)])
+            .collect()
+    };
+    (!velocity.is_empty()).then(|| here(velocity))
 }

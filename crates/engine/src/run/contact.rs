@@ -255,29 +255,28 @@ impl Rules {
         body: &Body<D>,
         bonds: f64,
     ) -> Option<ContactLimit> {
-        let mut grains = vec![
-            Grain {
-                volume: 0.0,
-                density: f64::INFINITY
-            };
-            self.kinds.len()
-        ];
         let kind = self.kind_of(body);
-        for &s in body.slots() {
-            let s = s as usize;
-            let grain = &mut grains[kind(s)];
-            grain.volume = grain.volume.max(body.volume().at(s));
-            grain.density = grain.density.min(body.density().at(s));
-        }
+        // the extreme of what points of each kind have
+        let most = |of: &dyn Fn(usize) -> f64| {
+            let mut most = vec![f64::NEG_INFINITY; self.kinds.len()];
+            for &s in body.slots() {
+                let most = &mut most[kind(s as usize)];
+                *most = most.max(of(s as usize));
+            }
+            most.into_iter().map(|own| body.most(own)).collect()
+        };
+        let volumes: Vec<f64> = most(&|s| body.volume().at(s));
+        let densities: Vec<f64> = most(&|s| -body.density().at(s));
+        let grains = { volumes.into_iter().zip(densities) }.map(|(volume, density)| Grain {
+            volume: volume.max(0.0),
+            density: -density,
+        });
+        let grains: Vec<Grain> = grains.collect();
         let mut repulsion = self.repulsion.clone();
         if !repulsion.own.is_empty() {
             // the stiffest point of each kind
-            let mut most = vec![0.0f64; self.kinds.len()];
-            for &s in body.slots() {
-                let s = s as usize;
-                most[kind(s)] = most[kind(s)].max(repulsion.own[s]);
-            }
-            let of = |a: usize, b: usize| in_series(most[a], most[b]);
+            let most: Vec<f64> = most(&|s| repulsion.own[s].max(0.0));
+            let of = |a: usize, b: usize| in_series(most[a].max(0.0), most[b].max(0.0));
             repulsion.stiffness = PairTable::new(most.len(), of);
         }
         let mut near = 0.0f64;

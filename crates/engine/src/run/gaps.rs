@@ -2,11 +2,11 @@
 
 use super::Gap;
 use crate::body::Body;
-use crate::family::Cells;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::{BondStatus, Interaction};
 use crate::message;
 use crate::quantity::{Dimension, Message, place};
+use crate::space::cells::Cells;
 use crate::spec::{BodySpec, PieceSpec, Spec};
 
 /// Points further apart than so many spacings are not next to each other: diagonal neighbours are up to √3 apart, the
@@ -21,12 +21,8 @@ const FEW: u64 = 4;
 /// Nearer than this part of a spacing, the cells of two points overlap.
 const OVERLAP: f64 = 0.9;
 
-/// The shortest distance between every two bodies that come nearer to each other than `reach` (length).
-pub(super) fn between<const D: usize>(
-    body: &Body<D>,
-    reach: f64,
-    range: impl Fn(usize, usize) -> f64,
-) -> Vec<Gap> {
+/// The shortest distance (length) between every two bodies that come nearer to each other than `reach`.
+pub(super) fn between<const D: usize>(body: &Body<D>, reach: f64) -> Vec<([usize; 2], f64)> {
     let count = body.pieces().len();
     if count < 2 {
         return vec![];
@@ -44,9 +40,10 @@ pub(super) fn between<const D: usize>(
         .flatten()
         .fold(f64::INFINITY, |m, p| m.min(0.49 * p));
     let reach = reach.min(half);
+    let slots: Vec<u32> = (0..of.len() as u32).collect();
     let cells = Cells::new(
         crate::array::from_fn(|a| x[a].as_slice()),
-        of.len(),
+        &slots,
         body.period(),
         reach,
     );
@@ -60,12 +57,8 @@ pub(super) fn between<const D: usize>(
             }
         });
     }
-    let gap = |(bodies, square): ([usize; 2], f64)| Gap {
-        bodies,
-        distance: square.sqrt(),
-        contact: range(bodies[0], bodies[1]),
-    };
-    nearest.into_iter().map(gap).collect()
+    let root = |(bodies, square): ([usize; 2], f64)| (bodies, square.sqrt());
+    nearest.into_iter().map(root).collect()
 }
 
 /// What is wrong with them.

@@ -62,14 +62,15 @@ impl<const D: usize> System<D> {
                 "bonds heal that break by their stretch, energy, work, stress, rate or cycles",
             ));
         }
-        let mut may = vec![false; self.body.len()];
+        let mut may = vec![0; self.body.len()];
         match sets.iter().find(|(name, _)| *name == healing.set) {
             Some((_, ids)) => {
                 for id in ids {
-                    may[self.body.slots()[*id as usize] as usize] = true;
+                    may[self.body.slots()[*id as usize] as usize] = 1;
                 }
+                self.body.exchange().fill(&mut may);
             }
-            None if healing.set == "all" => may.fill(true),
+            None if healing.set == "all" => may.fill(1),
             None => {
                 return Err(BuildError::invalid(
                     "healing",
@@ -97,7 +98,7 @@ impl<const D: usize> System<D> {
             return false;
         };
         let heals = |i: usize, j: usize, e: f64| {
-            history::stretch(e).abs() < below && healing.may[i] && healing.may[j]
+            history::stretch(e).abs() < below && [i, j].iter().all(|s| healing.may[*s] == 1)
         };
         let (body, u) = (&self.body, &self.u);
         // bonds of absent cracks do not heal, however near their ends are: who may is asked of those that do
@@ -107,7 +108,7 @@ impl<const D: usize> System<D> {
             false
         };
         self.interaction.mend(body, view(u), &look);
-        if !any.get() {
+        if !body.exchange().any(any.get()) {
             return false;
         }
         let [before, _] = self.interaction.energy(body, view(u));

@@ -6,11 +6,11 @@ use crate::body::Body;
 use crate::constitutive::{Bulk, ConstitutiveModel, Shelf};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
-use crate::family::Cells;
 use crate::interaction::Interface;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::Dimension;
+use crate::space::cells::Cells;
 use crate::spec::{Calibration, InterfaceSpec, PieceSpec, Spec};
 
 /// An interface with its law, and places of the two bodies.
@@ -157,9 +157,10 @@ fn near<const D: usize>(all: &Body<D>, bodies: [usize; 2], reach: f64) -> Vec<u3
             .map(|(s, _)| all.position(*s as usize)[a])
             .collect()
     });
+    let slots: Vec<u32> = (0..of.len() as u32).collect();
     let cells = Cells::new(
         crate::array::from_fn(|a| x[a].as_slice()),
-        of.len(),
+        &slots,
         all.period(),
         reach,
     );

@@ -140,14 +140,18 @@ impl<const D: usize> State for View<'_, D> {
     fn each_bond(&mut self, visit: &mut dyn FnMut(FamilyBond)) {
         self.ids();
         let (system, id) = (&*self.system, &self.id);
+        let (body, u) = (&system.body, &system.u);
         system
             .interaction
-            .each_bond(&system.body, &mut |i, j, xi, state| {
+            .each_partner(body, &mut |i, j, xi, state| {
                 let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let eta: [f64; D] = crate::array::from_fn(|a| u[a][j] - u[a][i]);
                 visit(FamilyBond {
-                    ends: [i, j].map(|s| id[s] as usize),
+                    id: id[i] as usize,
                     xi: full(&xi),
+                    eta: full(&eta),
                     weight: system.constitutive.at(i).0.weight(&xi, r0),
+                    volume: body.volume().at(j),
                     whole: state == BondStatus::Whole,
                 });
             });
@@ -279,20 +283,15 @@ impl<const D: usize> System<D> {
         let known = self.interaction.each_force(body, view(&self.u), visit);
         if let Some(contact) = &mut self.contact {
             contact.find(body, &self.u, self.interaction.as_ref());
-            contact.central.each_pull(&self.u, |touch| {
-                let pull = touch.pull;
-                for (i, j, sign) in [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)] {
-                    let y = touch.y.map(|y| sign * y);
-                    let force = y.map(|y| pull * body.volume().at(j) * y);
-                    let own = Some(force.map(|f| 0.5 * f));
-                    visit(BondForce {
-                        i,
-                        j,
-                        y,
-                        force,
-                        own,
-                    });
-                }
+            contact.central.each_end(body, &self.u, |end| {
+                let force = end.y.map(|y| end.pull * end.volume * y);
+                visit(BondForce {
+                    i: end.at,
+                    j: end.other.unwrap_or(end.at),
+                    y: end.y,
+                    force,
+                    own: Some(force.map(|f| 0.5 * f)),
+                });
             });
         }
         known

@@ -83,7 +83,7 @@ pub(super) fn bonds<const D: usize>(
             lambda
         }
         Layout::Grid(_) | Layout::Cloud(_) | Layout::Several(_)
-            if interaction.asymmetry() > SYMMETRIC =>
+            if body.most(interaction.asymmetry()) > SYMMETRIC =>
         {
             row_bound(body, interaction)
         }

@@ -1,5 +1,6 @@
 //! Toughness of places and times: before every test each point is told what it bears.
 
+use super::agreed::agreed;
 use super::system::System;
 use crate::condition::toughness::{Bears, ToughnessField};
 use crate::error::{BuildError, RunError};
@@ -74,7 +75,7 @@ impl<const D: usize> System<D> {
         let mut field = ToughnessField::new(base, factors);
         let heat = self.temperatures(field.feels_heat());
         let at = |s: usize| heat.get(s).copied().unwrap_or(0.0);
-        field.set(&self.body, 0.0, at).map_err(|unfit| {
+        let fits = field.set(&self.body, 0.0, at).map_err(|unfit| {
             let message = message![
                 format!("the factor is {} at ", unfit.value),
                 place(&self.body.position(unfit.slot)[..D]),
@@ -82,7 +83,8 @@ impl<const D: usize> System<D> {
             ];
             BuildError::invalid(format!("toughness[{}]", unfit.number), message)
                 .help("no_failure = true spares a set")
-        })?;
+        });
+        agreed(&self.body, fits)?;
         Ok(Some(field))
     }
 
@@ -97,13 +99,20 @@ impl<const D: usize> System<D> {
             return Ok(());
         };
         let at = |s: usize| heat.get(s).copied().unwrap_or(0.0);
-        field
-            .set(&self.body, t, at)
-            .map_err(|unfit| RunError::Toughness {
+        let unfit = field.set(&self.body, t, at).err().map(|unfit| {
+            let [x, y, z] = self.body.position(unfit.slot);
+            [x, y, z, unfit.value]
+        });
+        // what one rank finds all know
+        let all = self.body.all_of(unfit.as_slice()).concat();
+        match all.first() {
+            None => Ok(()),
+            Some([x, y, z, value]) => Err(RunError::Toughness {
                 step: self.clock.step() + 1,
-                position: self.body.position(unfit.slot),
-                value: unfit.value,
-            })
+                position: [*x, *y, *z],
+                value: *value,
+            }),
+        }
     }
 
     /// The temperature of every slot of now; none where nobody asks.

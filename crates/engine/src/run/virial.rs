@@ -2,18 +2,16 @@
 
 use super::system::System;
 use crate::body::view;
+use crate::execute::exact::Exact;
 use crate::interaction::add_virial;
 
 /// Axes of the components of a virial.
 const AXES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
-/// Adds a pair whose force density on either end is `pull` times the partner's volume along `y`.
-fn add<const D: usize>(virial: &mut [f64; 6], y: &[f64; D], pull: f64, volumes: [f64; 2]) {
-    for (sum, (m, n)) in virial.iter_mut().zip(AXES) {
-        if n < D {
-            *sum -= y[m] * y[n] * pull * volumes[0] * volumes[1];
-        }
-    }
+/// What a pair whose force density on either end is `pull` times the partner's volume along `y` has of it.
+fn of_pair<const D: usize>(y: &[f64; D], pull: f64, volumes: [f64; 2]) -> [f64; 6] {
+    let there = |(m, n): (usize, usize)| if n < D { y[m] * y[n] } else { 0.0 };
+    AXES.map(|axes| -there(axes) * pull * volumes[0] * volumes[1])
 }
 
 impl<const D: usize> System<D> {
@@ -45,10 +43,11 @@ impl<const D: usize> System<D> {
         let Some(contact) = &self.contact else {
             return;
         };
-        contact.central.each_pull(&self.u, |touch| {
-            let volumes = [touch.i, touch.j].map(|s| self.body.volume().at(s));
-            add(&mut points[touch.i], &touch.y, 0.5 * touch.pull, volumes);
-            add(&mut points[touch.j], &touch.y, 0.5 * touch.pull, volumes);
+        let body = &self.body;
+        contact.central.each_end(body, &self.u, |end| {
+            let volumes = [body.volume().at(end.at), end.volume];
+            let of_pair = of_pair(&end.y, 0.5 * end.pull, volumes);
+            { points[end.at].iter_mut().zip(of_pair) }.for_each(|(sum, of)| *sum += of);
         });
     }
 
@@ -57,10 +56,13 @@ impl<const D: usize> System<D> {
         let Some(contact) = &self.contact else {
             return;
         };
-        contact.central.each_pull(&self.u, |touch| {
-            let volumes = [touch.i, touch.j].map(|s| self.body.volume().at(s));
-            add(virial, &touch.y, touch.pull, volumes);
+        let mut sums = [const { Exact::ZERO }; 6];
+        contact.central.each_once(&self.body, &self.u, |touch| {
+            let of_pair = of_pair(&touch.y, touch.pull, touch.volumes);
+            { sums.iter_mut().zip(of_pair) }.for_each(|(sum, of)| sum.add(of));
         });
+        let sums = self.body.sums(sums);
+        { virial.iter_mut().zip(sums) }.for_each(|(all, of)| *all += of);
     }
 
     /// At the current state, with the bonds that are whole now.

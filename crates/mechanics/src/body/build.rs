@@ -191,7 +191,7 @@ impl<const D: usize> Body<D> {
         if self.subdomain.is_some() {
             return Err(BuildError::unsupported(
                 "ranks",
-                "parts of clouds are not made yet: ranks share a lattice body on its stencil",
+                "a part of a body is no cloud of its own",
             ));
         }
         let points = self.slots.iter().map(|s| *s as usize);

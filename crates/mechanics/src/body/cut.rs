@@ -1,22 +1,25 @@
-//! Cuts a lattice body into the parts that ranks have: runs of its slots, and copies of what is within reach of them.
+//! Cuts bodies into the parts that ranks have.
 //!
-//! A part has the cells of the whole grid from one to another, in the order of memory, so that a neighbour is as many cells away as in the whole. Ranks own
-//! whole blocks of tiles, the same ones that sums are made of: slabs across the axis that is slowest in memory, whose borders may lie within a layer. What is near
-//! by but somebody else's is a copy, as periodic images are ([`Exchange`]).
+//! Ranks own whole blocks, the same ones that sums are made of, in their order: of lattices blocks of tiles, of clouds blocks of points, of several bodies those of
+//! one after the other. What is near by but somebody else's is a copy, as periodic images are ([`Exchange`]).
+//!
+//! A part of a lattice has the cells of the whole grid from one to another, in the order of memory, so that a neighbour is as many cells away as in the whole:
+//! slabs across the axis that is slowest in memory, whose borders may lie within a layer.
+
+mod blocks;
+mod cloud;
+mod several;
 
 use super::exchange::{Copies, Exchange};
-use super::grid::BLOCK;
 use super::subdomain::Subdomain;
 use super::{Body, Grid, Identity, Layout, Values};
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
+use blocks::{CELLS, by_ranks};
 use peridyne_comm::Comm;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Cells of a block.
-const CELLS: usize = BLOCK * TILE;
 
 /// Cells of the whole grid, of each sublattice: those whose points a rank owns, and those that it has.
 struct Share {
@@ -25,44 +28,18 @@ struct Share {
 }
 
 impl Share {
-    /// Of all ranks, in their order, with as many points each as whole blocks allow.
-    fn by_ranks<const D: usize>(grid: &Grid<D>, ranks: usize) -> Result<Vec<Share>, BuildError> {
-        let tiles = grid.stride / TILE;
-        let mut points = vec![0; tiles.div_ceil(BLOCK)];
-        for (tile, owned) in grid.owned.iter().enumerate() {
-            points[tile % tiles / BLOCK] += owned.count_ones() as usize;
-        }
-        let filled = points.iter().filter(|n| **n > 0).count();
-        if filled < ranks {
-            let blocks = if filled == 1 { "block" } else { "blocks" };
-            let message = format!("{ranks} ranks for a body of {filled} {blocks} of {CELLS} cells");
-            let help = format!("a rank has one block at least: take {filled} ranks or fewer");
-            return Err(BuildError::too_many("ranks", message).help(help));
-        }
-        let all: usize = points.iter().sum();
+    /// Of all ranks, that have these blocks.
+    fn of_blocks<const D: usize>(grid: &Grid<D>, blocks: &[Range<usize>]) -> Vec<Share> {
         let reach = grid.guard - TILE;
-        let (mut shares, mut begin, mut passed, mut left) = (vec![], 0, 0, filled);
-        for rank in 0..ranks {
-            let (mut end, mut here) = (begin, 0);
-            // those after it have one each
-            let after = ranks - rank - 1;
-            while here == 0 || left > after && passed < all * (rank + 1) / ranks {
-                passed += points[end];
-                here += points[end];
-                left -= usize::from(points[end] > 0);
-                end += 1;
-            }
-            let own = match after {
-                0 => begin * CELLS..grid.stride,
-                _ => begin * CELLS..end * CELLS,
+        let share = |of: &Range<usize>| {
+            let own = of.start * CELLS..(of.end * CELLS).min(grid.stride);
+            let near = match own.is_empty() {
+                true => 0..0,
+                false => own.start.saturating_sub(reach)..(own.end + reach).min(grid.stride),
             };
-            shares.push(Share {
-                near: own.start.saturating_sub(reach)..(own.end + reach).min(grid.stride),
-                own,
-            });
-            begin = end;
-        }
-        Ok(shares)
+            Share { own, near }
+        };
+        blocks.iter().map(share).collect()
     }
 
     /// The grid of the rank that has it.
@@ -109,21 +86,32 @@ impl Share {
 }
 
 impl<const D: usize> Body<D> {
-    /// The part of this body that a rank has. All ranks ask at once, with the same body.
+    /// The part of this body that a rank has. A cloud has copies of all within `reach` (length), a lattice those that its stencil reaches. All ranks ask at
+    /// once, with the same body.
     ///
     /// # Errors
-    /// The body is not one lattice, or has fewer blocks of 256 cells with points than there are ranks.
-    pub fn subdomain_of(&self, comm: &Arc<Comm>) -> Result<Body<D>, BuildError> {
-        let whole = match &self.layout {
-            Layout::Grid(grid) => grid,
-            Layout::Cloud(_) | Layout::Several(_) => {
-                return Err(BuildError::unsupported(
-                    "ranks",
-                    "parts of bodies that are not one lattice are not made yet",
-                ));
-            }
-        };
-        let all = Share::by_ranks(whole, comm.ranks())?;
+    /// There are fewer blocks of 256 cells with points (of 256 points of a cloud) than there are ranks.
+    pub fn subdomain_of(&self, comm: &Arc<Comm>, reach: f64) -> Result<Body<D>, BuildError> {
+        let blocks = by_ranks(&self.points_of_blocks(), comm.ranks())?;
+        Ok(self.part(&blocks, comm, reach))
+    }
+
+    /// The part with its rank's blocks, of those of all ranks.
+    fn part(&self, blocks: &[Range<usize>], comm: &Arc<Comm>, reach: f64) -> Body<D> {
+        match &self.layout {
+            Layout::Grid(grid) => self.part_of_lattice(grid, blocks, comm),
+            Layout::Cloud(x) => self.part_of_cloud(x, blocks, comm, reach),
+            Layout::Several(_) => self.part_of_several(blocks, comm, reach),
+        }
+    }
+
+    fn part_of_lattice(
+        &self,
+        whole: &Grid<D>,
+        blocks: &[Range<usize>],
+        comm: &Arc<Comm>,
+    ) -> Body<D> {
+        let all = Share::of_blocks(whole, blocks);
         let share = &all[comm.rank()];
         let grid = share.grid(whole);
         let copies = self.copies(whole, &grid, &all, comm.rank());
@@ -146,7 +134,7 @@ impl<const D: usize> Body<D> {
         { ids.iter().zip(&slots) }.for_each(|(id, slot)| of_slots[*slot as usize] = *id);
         exchange.fill(&mut of_slots);
         let subdomain = Subdomain::new(comm, ids, of_slots, self.points());
-        Ok(Body {
+        Body {
             identity: Identity::new(),
             len: grid.slots(),
             spacing: self.spacing,
@@ -160,7 +148,7 @@ impl<const D: usize> Body<D> {
             subdomain: Some(Arc::new(subdomain)),
             slots,
             layout: Layout::Grid(grid),
-        })
+        }
     }
 
     /// Who is there, but is not this rank's.
@@ -225,13 +213,13 @@ mod tests {
             .zip(&whole.slots)
             .for_each(|(id, slot)| ids[*slot as usize] = id);
         whole.exchange.fill(&mut ids);
-        let can = |ranks: &usize| super::Share::by_ranks(whole.grid(), *ranks).is_ok();
+        let can = |ranks: &usize| super::by_ranks(&whole.points_of_blocks(), *ranks).is_ok();
         let most = (1..).take_while(can).count();
         let name = format!("{kind:?} {periodic:?}");
         assert!(most >= 3, "{name} {most}");
         for ranks in [1, 2, 3, most] {
             let seen = on_threads(ranks, |comm| {
-                let part = whole.subdomain_of(&Arc::new(comm)).unwrap();
+                let part = whole.subdomain_of(&Arc::new(comm), 0.0).unwrap();
                 let of = part.subdomain().unwrap();
                 assert_eq!(of.points(), sites.len());
                 let mut here = vec![u32::MAX; part.len];
@@ -306,7 +294,7 @@ mod tests {
             assert!(seen.into_iter().eq(0..sites.len() as u32), "{name}");
         }
         let refused = on_threads(most + 1, |comm| {
-            whole.subdomain_of(&Arc::new(comm)).is_err()
+            whole.subdomain_of(&Arc::new(comm), 0.0).is_err()
         });
         assert!(refused.iter().all(|r| *r));
         assert!(matches!(whole.density, Values::PerSlot(_)));

@@ -46,6 +46,17 @@ struct Run {
     len: usize,
 }
 
+impl Run {
+    /// The same so many slots further on.
+    fn moved(&self, by: usize) -> Run {
+        Run {
+            copy: by + self.copy,
+            original: by + self.original,
+            len: self.len,
+        }
+    }
+}
+
 /// One more copy, in a later slot than all others.
 fn push(runs: &mut Vec<Run>, copy: usize, original: usize) {
     let next = |r: &&mut Run| r.copy + r.len == copy && r.original + r.len == original;
@@ -76,17 +87,18 @@ impl Exchange {
 
     /// Of bodies side by side, by their first slots.
     pub(super) fn joined<'a>(bodies: impl Iterator<Item = (usize, &'a Exchange)>) -> Exchange {
-        let shifted = |(first, of): (usize, &'a Exchange)| {
-            of.runs.iter().map(move |r| Run {
-                copy: first + r.copy,
-                original: first + r.original,
-                len: r.len,
-            })
-        };
-        Exchange {
-            runs: bodies.flat_map(shifted).collect(),
-            others: None,
+        let mut joined = Exchange::default();
+        let mut others: Option<Joined> = None;
+        for (first, of) in bodies {
+            joined.runs.extend(of.runs.iter().map(|r| r.moved(first)));
+            if let Some(of) = &of.others {
+                others
+                    .get_or_insert_with(|| Joined::none(of))
+                    .push(first, of);
+            }
         }
+        joined.others = others.map(|all| Arc::new(all.end()));
+        joined
     }
 
     /// Of a part of a body. All ranks come here at once.
@@ -116,6 +128,17 @@ impl Exchange {
         let of_others = { self.others.iter() }.flat_map(|o| o.receive.iter());
         let of_others = of_others.flat_map(|m| m.spans.iter().cloned().flatten());
         self.pairs().map(|(copy, _)| copy).chain(of_others)
+    }
+
+    /// Of a body of so many slots, in each that is a copy of another rank's point that rank.
+    pub(crate) fn owners(&self, slots: usize) -> Vec<u32> {
+        let mut owners = vec![0; slots];
+        for message in self.others.iter().flat_map(|o| &o.receive) {
+            for slot in message.spans.iter().cloned().flatten() {
+                owners[slot] = message.rank as u32;
+            }
+        }
+        owners
     }
 
     /// The slot that a slot is a copy of, or itself; of a point of another rank the first copy.
@@ -264,6 +287,50 @@ impl Message {
     }
 }
 
+/// Those of bodies side by side, one after the other.
+struct Joined {
+    comm: Arc<Comm>,
+    send: BTreeMap<usize, Vec<usize>>,
+    receive: BTreeMap<usize, Vec<usize>>,
+    names: Vec<Run>,
+}
+
+impl Joined {
+    fn none(like: &Others) -> Joined {
+        Joined {
+            comm: like.comm.clone(),
+            send: BTreeMap::new(),
+            receive: BTreeMap::new(),
+            names: vec![],
+        }
+    }
+
+    fn push(&mut self, first: usize, of: &Others) {
+        for (all, of) in [(&mut self.send, &of.send), (&mut self.receive, &of.receive)] {
+            for message in of {
+                let slots = message.spans.iter().cloned().flatten();
+                all.entry(message.rank)
+                    .or_default()
+                    .extend(slots.map(|s| first + s));
+            }
+        }
+        self.names.extend(of.names.iter().map(|r| r.moved(first)));
+    }
+
+    fn end(self) -> Others {
+        let messages = |all: BTreeMap<usize, Vec<usize>>| -> Vec<Message> {
+            let each = all.into_iter();
+            each.map(|(rank, slots)| Message::new(rank, slots.into_iter()))
+                .collect()
+        };
+        Others {
+            send: messages(self.send),
+            receive: messages(self.receive),
+            ..Others::named(&self.comm, self.names)
+        }
+    }
+}
+
 /// Points that other ranks have copies of, and copies of theirs.
 #[derive(Debug)]
 struct Others {
@@ -281,55 +348,40 @@ struct Others {
 impl Others {
     /// Asks the other ranks for what is wanted of each: slots here and there.
     fn new(comm: &Arc<Comm>, wanted: Vec<Vec<(usize, usize)>>, names: Vec<Run>) -> Others {
-        let ended = |failure| comm.end(failure);
-        let own: Vec<u8> = { wanted.iter() }
-            .flat_map(|of| (of.len() as u64).to_le_bytes())
-            .collect();
-        let counts = comm.all(&own).unwrap_or_else(ended);
-        let mut asked: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
-        for (rank, counts) in counts.iter().enumerate() {
-            let of_this = &counts[8 * comm.rank()..][..8];
-            let count = u64::from_le_bytes(of_this.try_into().expect("eight bytes"));
-            if count > 0 {
-                asked.insert(rank, vec![0; 4 * count as usize]);
-            }
-        }
-        let wishes: Vec<(usize, Vec<u8>)> = { wanted.iter().enumerate() }
-            .filter(|(_, of)| !of.is_empty())
-            .map(|(rank, of)| {
-                let slots = of
-                    .iter()
-                    .flat_map(|(_, there)| (*there as u32).to_le_bytes());
-                (rank, slots.collect())
-            })
-            .collect();
-        let send: Vec<(usize, &[u8])> = wishes.iter().map(|(r, w)| (*r, &w[..])).collect();
-        let mut receive: Vec<(usize, &mut [u8])> =
-            asked.iter_mut().map(|(r, w)| (*r, &mut w[..])).collect();
-        comm.exchange(&send, &mut receive, || ())
-            .unwrap_or_else(|failure| comm.end(failure));
+        let wishes = { wanted.iter() }.map(|of| {
+            let slots = of.iter().map(|(_, there)| *there as u32);
+            slots.flat_map(u32::to_le_bytes).collect()
+        });
+        let asked = { comm.to_each(wishes.collect()) }.unwrap_or_else(|failure| comm.end(failure));
         let slots = |bytes: &[u8]| -> Vec<usize> {
             let each = bytes.chunks_exact(4);
             each.map(|s| u32::from_le_bytes(s.try_into().expect("four bytes")) as usize)
                 .collect()
         };
-        let send = { asked.iter() }.map(|(rank, of)| Message::new(*rank, slots(of).into_iter()));
+        let send = { asked.iter().enumerate() }
+            .filter(|(_, of)| !of.is_empty())
+            .map(|(rank, of)| Message::new(rank, slots(of).into_iter()));
         let receive = { wanted.iter().enumerate() }
             .filter(|(_, of)| !of.is_empty())
             .map(|(rank, of)| Message::new(rank, of.iter().map(|(here, _)| *here)));
-        let mut named = vec![
-            0;
-            names
-                .last()
-                .map_or(0, |run| (run.copy + run.len).div_ceil(8))
-        ];
+        Others {
+            send: send.collect(),
+            receive: receive.collect(),
+            ..Others::named(comm, names)
+        }
+    }
+
+    /// Nothing is sent, but copies have these names.
+    fn named(comm: &Arc<Comm>, names: Vec<Run>) -> Others {
+        let end = names.last().map_or(0, |run| run.copy + run.len);
+        let mut named = vec![0; end.div_ceil(8)];
         for slot in names.iter().flat_map(|run| run.copy..run.copy + run.len) {
             named[slot / 8] |= 1 << (slot % 8);
         }
         Others {
             named,
-            send: send.collect(),
-            receive: receive.collect(),
+            send: vec![],
+            receive: vec![],
             names,
             room: Mutex::default(),
             sent: AtomicU64::new(0),

@@ -1,6 +1,7 @@
 //! What a part of a body knows of the whole.
 
 use peridyne_comm::Comm;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What a part of a body knows of the whole.
@@ -10,6 +11,9 @@ pub struct Subdomain {
     ids: Vec<u32>,
     of_slots: Vec<u32>,
     points: usize,
+    /// Of a cloud: slots of own points, and what the first one is in the whole.
+    own: Range<usize>,
+    first: usize,
 }
 
 impl Subdomain {
@@ -24,7 +28,24 @@ impl Subdomain {
             ids,
             of_slots,
             points,
+            own: 0..0,
+            first: 0,
         }
+    }
+
+    /// Of a cloud: slots of own points, and what the first one is in the whole.
+    pub(super) fn of_cloud(self, own: Range<usize>, first: usize) -> Subdomain {
+        Subdomain { own, first, ..self }
+    }
+
+    /// The slots that points of this part of a cloud lie in.
+    pub(crate) fn own_slots(&self) -> Range<usize> {
+        self.own.clone()
+    }
+
+    /// What a slot of this part of a cloud is in the whole.
+    pub(super) fn slot_of_all(&self, slot: usize) -> usize {
+        self.first + slot - self.own.start
     }
 
     /// The ranks that have the other parts.

@@ -77,7 +77,32 @@ impl<const D: usize> Body<D> {
     pub fn home(&self, slot: usize) -> Point {
         match (&self.layout, self.subdomain()) {
             (Layout::Grid(grid), Some(_)) => grid.home(slot),
+            (Layout::Several(pieces), Some(_)) => {
+                let piece = &pieces[self.piece_of(slot)];
+                piece.body.home(slot - piece.first)
+            }
             _ => self.position(self.exchange.original(slot)),
+        }
+    }
+
+    /// Slots of a cloud that are not copies of other ranks' points.
+    pub(crate) fn own_slots(&self) -> std::ops::Range<usize> {
+        self.subdomain().map_or(0..self.len, |of| of.own_slots())
+    }
+
+    /// Of points in the order of the slots of the whole, also where a slot is a part's.
+    pub(crate) fn order(&self, slot: usize) -> u64 {
+        match (&self.layout, self.subdomain()) {
+            (Layout::Grid(grid), Some(_)) => {
+                let (sublattice, cell) = grid.place(slot);
+                (sublattice as u64) << 40 | cell as u64
+            }
+            (Layout::Cloud(_), Some(of)) => of.slot_of_all(slot) as u64,
+            (Layout::Several(pieces), Some(_)) => {
+                let n = self.piece_of(slot);
+                (n as u64) << 52 | pieces[n].body.order(slot - pieces[n].first)
+            }
+            (_, None) => slot as u64,
         }
     }
 

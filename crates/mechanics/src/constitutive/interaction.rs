@@ -157,7 +157,7 @@ impl ConstitutiveModel {
             crate::array::from_fn(|a| crate::array::from_fn(|b| k * xi[a] * xi[b]))
         };
         Ok(Box::new(LinearInteraction::new(
-            links, self.simd, self.slice, modulus,
+            body, links, self.simd, self.slice, modulus,
         )))
     }
 

@@ -4,7 +4,6 @@
 //! each of them (sliced ELLPACK). Rows are the slots, sorted by family size within small windows: points of one
 //! slice have families of nearly one size, and little of a line is padding. Four bytes and a bit per bond.
 
-use super::cells::Cells;
 use crate::body::{Body, Identity, Layout};
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
@@ -12,7 +11,9 @@ use crate::execute::memory;
 use crate::message;
 use crate::quantity::{Dimension, place, rounded};
 use crate::space::AXES;
+use crate::space::cells::Cells;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rows that are sorted together: about one cell of the order in which a cloud is stored.
 const WINDOW: usize = 64;
@@ -22,8 +23,10 @@ const WINDOW: usize = 64;
 pub struct HorizonList {
     /// The body whose pairs these are.
     pub(crate) body: Identity,
-    /// Slot of each row; every slot of the body has one.
+    /// Slot of each row; every slot of the body has one, copies of other ranks' points excepted.
     pub(crate) rows: Vec<u32>,
+    /// The first slot that has a row.
+    first: usize,
     /// First line of each slice, and the end.
     pub(crate) start: Vec<usize>,
     /// `[lines][TILE]` slots; the row's own slot where there is no bond. Partners of a row ascend.
@@ -88,57 +91,45 @@ impl HorizonList {
             let horizon = of(i, j as usize);
             horizon * horizon
         };
+        let own = body.own_slots();
+        let mut there: Vec<u32> = body.slots.clone();
+        there.extend(body.exchange.copies().map(|s| s as u32));
+        there.sort_unstable();
         let cells = Cells::new(
             crate::array::from_fn(|a| x[a].as_slice()),
-            body.points(),
+            &there,
             body.period,
             horizon,
         );
 
-        let (size, near) = count(&cells, body, horizon, &limit)?;
-        let mut rows: Vec<u32> = (0..body.len as u32).collect();
-        for window in rows.chunks_mut(WINDOW) {
-            window.sort_by_key(|s| (std::cmp::Reverse(size[*s as usize]), *s));
-        }
-        let mut start = vec![0];
-        for slice in rows.chunks(TILE) {
-            let lines = slice.iter().map(|s| size[*s as usize]).max().unwrap_or(0);
-            start.push(start[start.len() - 1] + lines as usize);
-        }
+        let laid = count(&cells, body, horizon, &limit).and_then(|(size, near)| {
+            let (rows, start) = lines(own.clone(), &size);
+            affordable(&size, start[start.len() - 1], horizon, body.spacing)?;
+            Ok((rows, start, size.iter().map(|s| *s as u64).sum(), near))
+        });
+        let (rows, start, directed, near) = match body.exchange.any(laid.is_err()) {
+            true => laid.and(Err(BuildError::elsewhere(0)))?,
+            false => laid?,
+        };
         let lines = start[start.len() - 1];
-        memory::afford(
-            "horizon",
-            &format!(
-                "{} bonds",
-                rounded(size.iter().map(|s| f64::from(*s)).sum::<f64>(), 3)
-            ),
-            lines as f64 * (4 * TILE + 1) as f64,
-            message![
-                "the horizon ",
-                Dimension::LENGTH.of(horizon),
-                format!(
-                    " is {:.1} spacings: check its unit and its decimal point; three to six spacings are usual",
-                    horizon / body.spacing
-                ),
-            ],
-        )?;
         let mut list = HorizonList {
             body: body.identity,
             rows,
+            first: own.start,
             start,
             partner: vec![0; lines * TILE],
-            directed: size.iter().map(|s| *s as u64).sum(),
+            directed,
             near_horizon: near,
         };
-        list.fill(&cells, body.points(), &limit);
+        list.fill(&cells, own.start + body.points(), &limit);
         Ok(list)
     }
 
-    /// Write the lines, slices in parallel.
+    /// Write the lines, slices in parallel; points end at a slot.
     fn fill<const D: usize>(
         &mut self,
         cells: &Cells<D>,
-        points: usize,
+        end: usize,
         limit: &(impl Fn(usize, u32) -> f64 + Sync),
     ) {
         let mut slices = Vec::with_capacity(self.start.len() - 1);
@@ -154,7 +145,7 @@ impl HorizonList {
             .for_each_init(Vec::new, |family, (rows, partner)| {
                 for (l, &i) in rows.iter().enumerate() {
                     family.clear();
-                    if (i as usize) < points {
+                    if (i as usize) < end {
                         cells.candidates(i as usize, |j, square| {
                             if j != i && square <= limit(i as usize, j) {
                                 family.push(j);
@@ -174,7 +165,7 @@ impl HorizonList {
         self.directed
     }
 
-    /// Slot of each row; every slot of the body has one.
+    /// Slot of each row; every slot of the body has one, copies of other ranks' points excepted.
     pub fn rows(&self) -> &[u32] {
         &self.rows
     }
@@ -196,7 +187,7 @@ impl HorizonList {
 
     /// Row of a slot of the body.
     pub fn row(&self, slot: usize) -> usize {
-        let first = slot / WINDOW * WINDOW;
+        let first = (slot - self.first) / WINDOW * WINDOW;
         let is_slot = |s: &u32| *s as usize == slot;
         first + self.rows[first..].iter().position(is_slot).unwrap_or(0)
     }
@@ -221,6 +212,40 @@ impl HorizonList {
     }
 }
 
+/// Slots in the order of rows, by the sizes of their families, and where the lines of each slice begin and end.
+fn lines(own: Range<usize>, size: &[u32]) -> (Vec<u32>, Vec<usize>) {
+    let mut rows: Vec<u32> = own.map(|slot| slot as u32).collect();
+    for window in rows.chunks_mut(WINDOW) {
+        window.sort_by_key(|s| (std::cmp::Reverse(size[*s as usize]), *s));
+    }
+    let mut start = vec![0];
+    for slice in rows.chunks(TILE) {
+        let lines = slice.iter().map(|s| size[*s as usize]).max().unwrap_or(0);
+        start.push(start[start.len() - 1] + lines as usize);
+    }
+    (rows, start)
+}
+
+/// Is there memory for so many lines?
+fn affordable(size: &[u32], lines: usize, horizon: f64, spacing: f64) -> Result<(), BuildError> {
+    memory::afford(
+        "horizon",
+        &format!(
+            "{} bonds",
+            rounded(size.iter().map(|s| f64::from(*s)).sum::<f64>(), 3)
+        ),
+        lines as f64 * (4 * TILE + 1) as f64,
+        message![
+            "the horizon ",
+            Dimension::LENGTH.of(horizon),
+            format!(
+                " is {:.1} spacings: check its unit and its decimal point; three to six spacings are usual",
+                horizon / spacing
+            ),
+        ],
+    )
+}
+
 /// Family size of every slot, and the number of pairs at the horizon.
 fn count<const D: usize>(
     cells: &Cells<D>,
@@ -229,10 +254,12 @@ fn count<const D: usize>(
     limit: &(impl Fn(usize, u32) -> f64 + Sync),
 ) -> Result<(Vec<u32>, u64), BuildError> {
     let mut size = vec![0u32; body.len];
-    let near = size[..body.points()]
+    let first = body.own_slots().start;
+    let near = size[first..first + body.points()]
         .par_iter_mut()
         .enumerate()
         .map(|(i, size)| {
+            let i = first + i;
             let mut near = 0;
             let mut twin = None;
             cells.candidates(i, |j, square| {
@@ -252,11 +279,8 @@ fn count<const D: usize>(
     match near {
         Ok(near) => Ok((size, near)),
         Err((i, j)) => {
-            let id = |slot: usize| {
-                let id = body.slots.iter().position(|s| *s as usize == slot);
-                id.map_or(0, |id| id + 1)
-            };
-            let (a, b) = (id(i).min(id(j)), id(i).max(id(j)));
+            let (i_th, j_th) = (body.number(i), body.number(j));
+            let (a, b) = (i_th.min(j_th), i_th.max(j_th));
             let p = body.position(i);
             Err(BuildError::conflict(
                 "body",

@@ -179,11 +179,17 @@ impl<const D: usize> Links<D> {
     /// Every undirected bond once: slots i < j (images resolved), ξ from i to j.
     pub fn each(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         let grid = body.grid();
+        // of two ranks one counts a bond across their border
+        let of_all = body.subdomain().map(|of| of.of_slots());
         self.each_directed(grid, |i, j, sub, k| {
             let link = &self.links[sub][k];
             let j = body.exchange.original(j);
+            let before = match of_all {
+                Some(ids) if i != j => ids[i] < ids[j],
+                _ => i < j,
+            };
             // a bond between a point and its own image counts from one side only
-            if i < j || (i == j && link.shift > 0) {
+            if before || (i == j && link.shift > 0) {
                 visit(i, j, link.xi);
             }
         });

@@ -1,6 +1,5 @@
 //! Families: which points talk to which. Each kind enumerates its bonds in one place.
 
-pub(crate) mod cells;
 pub mod horizon;
 pub(crate) mod links;
 pub(crate) mod neighbours;
@@ -8,7 +7,6 @@ pub mod nodes;
 pub(crate) mod offsets;
 pub mod stencil;
 
-pub use cells::Cells;
 pub use neighbours::periods;
 
 /// Fraction of a partner's volume that lies inside the horizon, linear over one cell:

@@ -5,15 +5,19 @@
 //! fastest one went; the sum of that bounds them all and needs no memory per point. Linked cells make a build O(N).
 
 mod cells;
+pub(crate) mod ghosts;
 pub mod near;
+mod rings;
 
 use crate::body::{Body, FieldView};
 use cells::Cells;
+use ghosts::Ghosts;
 
 /// A point that holds together with no other.
 pub const LOOSE: u16 = u16::MAX;
 
-/// The half list of near pairs: every point i with its neighbours j > i, both in order of slot.
+/// The half list of near pairs: every point i with its neighbours j > i, both in order of slot. On ranks that share a body each has the pairs of its
+/// points, with [ghosts](Ghosts) as numbers from the slots on, and the order is that of the slots of the whole.
 #[derive(Debug, Clone)]
 pub struct Neighbours<const D: usize> {
     reach: f64,
@@ -81,11 +85,12 @@ impl<const D: usize> Neighbours<D> {
         self.path = f64::INFINITY;
     }
 
-    /// Make the list valid at displacement `u`: build it if it is not. Pairs that `keep` refuses are left out; it is
-    /// asked once per near pair and build. Returns whether the list was built.
+    /// Make the list valid at displacement `u`: build it if it is not, with the points of other ranks that are near. Pairs that `keep` refuses are left
+    /// out; it is asked once per near pair and build, by slots, of ghosts by those of their copies. Returns whether the list was built.
     pub fn update(
         &mut self,
         body: &Body<D>,
+        ghosts: &mut Ghosts<D>,
         u: FieldView<D>,
         keep: &dyn Fn(usize, usize) -> bool,
     ) -> bool {
@@ -95,14 +100,43 @@ impl<const D: usize> Neighbours<D> {
             return false;
         }
         self.path = 0.0;
-        self.cells.sort(body, u);
-        self.find(body, u, keep);
-        self.compress();
+        ghosts.find(body, u, self.reach);
+        let moved = ghosts.after(u);
+        let u = crate::array::from_fn(|a| &*moved[a]);
+        self.cells.sort(body, ghosts.all(), u);
+        let own = self.group.len();
+        if own > 0 {
+            let groups = ghosts.ask(|slot| self.group[slot]);
+            self.group.extend(groups);
+        }
+        self.find(body, ghosts, u, keep);
+        self.group.truncate(own);
+        let mut listed = vec![false; ghosts.all().len()];
+        self.compress(body, ghosts, |n| {
+            if let Some(ghost) = (n as usize).checked_sub(body.len) {
+                listed[ghost] = true;
+            }
+        });
+        let called = ghosts.keep(&listed);
+        if !called.is_empty() {
+            let rows = self.rows.iter_mut().map(|(i, _)| i);
+            for n in rows.chain(&mut self.partner) {
+                if let Some(ghost) = (*n as usize).checked_sub(body.len) {
+                    *n = body.len as u32 + called[ghost];
+                }
+            }
+        }
         self.builds += 1;
         true
     }
 
-    fn find(&mut self, body: &Body<D>, u: FieldView<D>, keep: &dyn Fn(usize, usize) -> bool) {
+    fn find(
+        &mut self,
+        body: &Body<D>,
+        ghosts: &Ghosts<D>,
+        u: FieldView<D>,
+        keep: &dyn Fn(usize, usize) -> bool,
+    ) {
         let (cells, apart, reach) = (&self.cells, self.apart, self.reach);
         let difference = |i: u32, j: u32| {
             (0..D)
@@ -156,17 +190,30 @@ impl<const D: usize> Neighbours<D> {
                 room > 0.0 && square < room * room
             }
         };
+        let own = body.len as u32;
         let found = &mut self.found;
         found.clear();
         cells.each_near(alike, |i, j| {
             if apart > 0.0 && together(i, j) && difference(i, j) < apart * apart {
                 return;
             }
-            let (i, j) = (i.min(j), i.max(j));
-            if !keep(i as usize, j as usize) {
+            let (mut i, mut j) = (i.min(j), i.max(j));
+            let kept = match ghosts.of(body, j as usize) {
+                None => keep(i as usize, j as usize),
+                // both are of others
+                Some(_) if i >= own => false,
+                Some(ghost) => {
+                    if ghost.order < body.order(i as usize) {
+                        (i, j) = (j, i);
+                    }
+                    let copy = ghosts.copy((i.max(j) - own) as usize);
+                    copy.is_none_or(|copy| keep(i.min(j) as usize, copy))
+                }
+            };
+            if !kept {
                 return;
             }
-            let (p, q) = (body.position(i as usize), body.position(j as usize));
+            let [p, q] = [i, j].map(|n| ghosts.position(body, n as usize));
             let y: [f64; D] =
                 crate::array::from_fn(|a| q[a] - p[a] + (u[a][j as usize] - u[a][i as usize]));
             let back = periods(body, &y);
@@ -177,13 +224,25 @@ impl<const D: usize> Neighbours<D> {
         });
     }
 
-    fn compress(&mut self) {
-        self.found.sort_unstable();
+    /// The pairs that were found, in order; says who is listed.
+    fn compress(&mut self, body: &Body<D>, ghosts: &Ghosts<D>, mut list: impl FnMut(u32)) {
+        match ghosts.all().is_empty() {
+            true => self.found.sort_unstable(),
+            false => {
+                let order = |n: u64| match ghosts.of(body, n as usize) {
+                    None => body.order(n as usize),
+                    Some(ghost) => ghost.order,
+                };
+                let ends = |pair: &u64| [order(pair >> 32), order(pair & u64::from(u32::MAX))];
+                self.found.sort_unstable_by_key(ends);
+            }
+        }
         self.rows.clear();
         self.partner.clear();
         for pair in &self.found {
-            let i = (pair >> 32) as u32;
-            self.partner.push(*pair as u32);
+            let (i, j) = ((pair >> 32) as u32, *pair as u32);
+            [i, j].into_iter().for_each(&mut list);
+            self.partner.push(j);
             let end = self.partner.len() as u32;
             match self.rows.last_mut() {
                 Some(row) if row.0 == i => row.1 = end,
@@ -192,7 +251,7 @@ impl<const D: usize> Neighbours<D> {
         }
     }
 
-    /// Every point that has neighbours j > i, with them (slots, ascending).
+    /// Every point that has neighbours j > i, with them (slots and ghosts, in order).
     pub fn rows(&self) -> impl Iterator<Item = (usize, &[u32])> {
         let mut start = 0;
         self.rows.iter().map(move |&(i, end)| {
@@ -227,14 +286,9 @@ pub fn periods<const D: usize>(body: &Body<D>, y: &[f64; D]) -> [f64; D] {
     crate::array::from_fn(|a| body.period[a].map_or(0.0, |p| p * (y[a] / p).round()))
 }
 
-/// From i to j in the reference, to the image of j that is nearest now: with `u_j − u_i` the way between them.
-pub fn base<const D: usize>(body: &Body<D>, u: FieldView<D>, [i, j]: [usize; 2]) -> [f64; D] {
-    let (p, q) = (body.position(i), body.position(j));
-    let xi: [f64; D] = crate::array::from_fn(|a| q[a] - p[a]);
-    let now = periods(
-        body,
-        &crate::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i])),
-    );
+/// From one point to another that is ξ away in the reference, to the image of it that is nearest now, `moved` more (lengths): with that the way between them.
+pub fn base<const D: usize>(body: &Body<D>, xi: &[f64; D], moved: &[f64; D]) -> [f64; D] {
+    let now = periods(body, &crate::array::from_fn(|a| xi[a] + moved[a]));
     crate::array::from_fn(|a| xi[a] - now[a])
 }
 

@@ -9,6 +9,7 @@
 
 use super::pull::Pull;
 use crate::body::{Body, Field, view};
+use crate::family::neighbours::ghosts::Ghosts;
 use crate::family::neighbours::{Neighbours, base};
 
 /// How far cohesion reaches, in distances of faces that touch: shorter, and it would depend on how faces lie on each other; longer, and each
@@ -143,6 +144,10 @@ pub struct Cohesion<const D: usize> {
     kind: Vec<u16>,
     /// Of every listed pair: from i to j in the reference, to the image of j that is near.
     bases: Vec<[f64; D]>,
+    ghosts: Ghosts<D>,
+    /// Of ghosts: rows of the table, and volumes.
+    kinds_there: Vec<u16>,
+    volumes_there: Vec<f64>,
 }
 
 impl<const D: usize> Cohesion<D> {
@@ -166,6 +171,9 @@ impl<const D: usize> Cohesion<D> {
             kinds,
             kind,
             bases: vec![],
+            ghosts: Ghosts::default(),
+            kinds_there: vec![],
+            volumes_there: vec![],
         }
     }
 
@@ -179,27 +187,52 @@ impl<const D: usize> Cohesion<D> {
 
     /// Find the pairs anew if points may have moved too far.
     pub fn update(&mut self, body: &Body<D>, u: &Field<D>) {
+        // copies are of one body
         let apart = |i: usize, j: usize| body.piece_of(i) != body.piece_of(j);
-        if !self.neighbours.update(body, view(u), &apart) {
-            return;
+        let ghosts = &mut self.ghosts;
+        if self.neighbours.update(body, ghosts, view(u), &apart) {
+            self.look(body, u);
         }
+        self.ghosts.follow(view(u));
+    }
+
+    /// At the pairs as they are when they are found.
+    fn look(&mut self, body: &Body<D>, u: &Field<D>) {
+        self.kinds_there = self.ghosts.ask(|s| self.kind[s]);
+        self.volumes_there = self.ghosts.ask(|s| body.volume.at(s));
         self.bases.clear();
         for (i, row) in self.neighbours.rows() {
-            let each = row.iter().map(|j| base(body, view(u), [i, *j as usize]));
+            let (p, ui) = (
+                self.ghosts.position(body, i),
+                self.ghosts.displacement(u, i),
+            );
+            let each = row.iter().map(|j| {
+                let j = *j as usize;
+                let (q, uj) = (
+                    self.ghosts.position(body, j),
+                    self.ghosts.displacement(u, j),
+                );
+                let xi = crate::array::from_fn(|a| q[a] - p[a]);
+                base(body, &xi, &crate::array::from_fn(|a| uj[a] - ui[a]))
+            });
             self.bases.extend(each);
         }
     }
 
     /// Visit the pairs that attract each other, at the `u` of the last [`Cohesion::update`] or near it.
-    pub fn each_pull(&self, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
+    pub fn each_pull(&self, body: &Body<D>, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
+        let of = |n: usize| match n.checked_sub(body.len) {
+            None => (self.kind[n] as usize, body.volume.at(n)),
+            Some(ghost) => (self.kinds_there[ghost] as usize, self.volumes_there[ghost]),
+        };
         let mut bases = self.bases.iter();
         for (i, row) in self.neighbours.rows() {
-            let ui: [f64; D] = crate::array::from_fn(|a| u[a][i]);
+            let (ui, (a, vi)) = (self.ghosts.displacement(u, i), of(i));
             for (&j, base) in row.iter().zip(&mut bases) {
                 let j = j as usize;
-                let y: [f64; D] = crate::array::from_fn(|a| base[a] + (u[a][j] - ui[a]));
+                let (uj, (b, vj)) = (self.ghosts.displacement(u, j), of(j));
+                let y: [f64; D] = crate::array::from_fn(|a| base[a] + (uj[a] - ui[a]));
                 let r = y.iter().map(|c| c * c).sum::<f64>().sqrt();
-                let [a, b] = [i, j].map(|s| self.kind[s] as usize);
                 let Adhesion { strength, range } = self.table[a * self.kinds + b];
                 if r >= range || r == 0.0 {
                     continue;
@@ -208,6 +241,7 @@ impl<const D: usize> Cohesion<D> {
                 visit(Pull {
                     i,
                     j,
+                    volumes: [vi, vj],
                     y,
                     r,
                     pull: strength * left / r,
@@ -221,6 +255,7 @@ impl<const D: usize> Cohesion<D> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.neighbours.bytes()
+            + self.ghosts.bytes()
             + 2 * self.kind.capacity()
             + size_of::<[f64; D]>() * self.bases.capacity()
     }

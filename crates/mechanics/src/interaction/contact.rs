@@ -5,9 +5,11 @@
 
 use super::cohesion::Cohesion;
 use super::nearness::{Bounds, Nearness};
-use super::pull::Pull;
+use super::pull::{End, Pull};
 use super::{EachTangent, Repulsion};
 use crate::body::{Body, Field, view};
+use crate::execute::exact::Exact;
+use crate::family::neighbours::ghosts::Ghosts;
 use crate::family::neighbours::{LOOSE, Neighbours, base, periods};
 
 /// A listed pair, in the order of the list.
@@ -36,11 +38,12 @@ pub struct Touch<const D: usize> {
 }
 
 impl<const D: usize> Touch<D> {
-    fn pull(&self) -> Pull<D> {
+    fn pull(&self, volumes: [f64; 2]) -> Pull<D> {
         let over = self.r - self.d;
         Pull {
             i: self.i,
             j: self.j,
+            volumes,
             y: self.y,
             r: self.r,
             // two points on one spot have no direction
@@ -59,6 +62,10 @@ impl<const D: usize> Touch<D> {
 pub struct Contact<const D: usize> {
     repulsion: Repulsion,
     neighbours: Neighbours<D>,
+    ghosts: Ghosts<D>,
+    /// Of ghosts: rows of the tables, and volumes.
+    kinds_there: Vec<u32>,
+    volumes_there: Vec<f64>,
     /// `[slots]`: which row of the tables of `repulsion` a point has; empty: that of its material.
     kind: Vec<u16>,
     pairs: Vec<Pair<D>>,
@@ -102,6 +109,9 @@ impl<const D: usize> Contact<D> {
             neighbours: Neighbours::new(body, range, skin)
                 .apart(apart)
                 .groups(groups(body, bonded)),
+            ghosts: Ghosts::default(),
+            kinds_there: vec![],
+            volumes_there: vec![],
             kind: vec![],
             pairs: vec![],
             near,
@@ -148,11 +158,9 @@ impl<const D: usize> Contact<D> {
         in_family: &dyn Fn(usize, usize) -> bool,
     ) {
         self.update(body, u, in_family);
-        self.each_pull(u, |Pull { i, j, y, pull, .. }| {
-            let (vi, vj) = (body.volume.at(i), body.volume.at(j));
+        self.each_end(body, u, |end| {
             for a in 0..D {
-                f[a][i] += pull * vj * y[a];
-                f[a][j] -= pull * vi * y[a];
+                f[a][end.at] += end.pull * end.volume * end.y[a];
             }
         });
     }
@@ -167,19 +175,31 @@ impl<const D: usize> Contact<D> {
         if let Some(cohesion) = &mut self.cohesion {
             cohesion.update(body, u);
         }
-        if !self
-            .neighbours
-            .update(body, view(u), &|i, j| !in_family(i, j))
-        {
-            return;
+        let ghosts = &mut self.ghosts;
+        let other = |i, j| !in_family(i, j);
+        if self.neighbours.update(body, ghosts, view(u), &other) {
+            self.look(body, u);
         }
+        self.ghosts.follow(view(u));
+    }
+
+    /// At the pairs as they are when they are found.
+    fn look(&mut self, body: &Body<D>, u: &Field<D>) {
         self.pairs.clear();
         self.bounds.clear();
+        self.kinds_there = self.ghosts.ask(|s| self.kind_of(body, s) as u32);
+        self.volumes_there = self.ghosts.ask(|s| body.volume.at(s));
         for (i, row) in self.neighbours.rows() {
-            let p = body.position(i);
+            let (p, ui) = (
+                self.ghosts.position(body, i),
+                self.ghosts.displacement(u, i),
+            );
             for &j in row {
                 let j = j as usize;
-                let q = body.position(j);
+                let (q, uj) = (
+                    self.ghosts.position(body, j),
+                    self.ghosts.displacement(u, j),
+                );
                 let xi: [f64; D] = crate::array::from_fn(|a| q[a] - p[a]);
                 let then = periods(body, &xi);
                 let square: f64 = (0..D).map(|a| (xi[a] - then[a]).powi(2)).sum();
@@ -191,7 +211,7 @@ impl<const D: usize> Contact<D> {
                     self.bounds.push(near.bounds(materials, same, r0, distance));
                 }
                 self.pairs.push(Pair {
-                    base: base(body, view(u), [i, j]),
+                    base: base(body, &xi, &crate::array::from_fn(|a| uj[a] - ui[a])),
                     distance,
                     stiffness: self.repulsion.between(materials, [i, j]),
                 });
@@ -201,10 +221,17 @@ impl<const D: usize> Contact<D> {
 
     /// Rows of the tables of repulsion.
     fn materials(&self, body: &Body<D>, ends: [usize; 2]) -> [usize; 2] {
-        ends.map(|s| match self.kind.get(s) {
-            Some(kind) => *kind as usize,
-            None => body.material_of(s),
+        ends.map(|n| match n.checked_sub(body.len) {
+            None => self.kind_of(body, n),
+            Some(ghost) => self.kinds_there[ghost] as usize,
         })
+    }
+
+    fn kind_of(&self, body: &Body<D>, slot: usize) -> usize {
+        match self.kind.get(slot) {
+            Some(kind) => *kind as usize,
+            None => body.material_of(slot),
+        }
     }
 
     /// What two points resist with once they repel (force / length); `None`: others come in between before they do, as they are this far apart in
@@ -240,36 +267,42 @@ impl<const D: usize> Contact<D> {
 
     /// Tangents of all contacts, as those of bonds between points that touch. `u` as for [`Contact::energy`].
     pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut EachTangent<D>) {
-        self.each_pull(u, |pull| pull.tangents(body, visit));
+        self.each_pull(body, u, |pull| pull.tangents(visit));
     }
 
     /// Adds what points that touch resist with (force / length) to sums by slot; `u` as for [`Contact::energy`].
     pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
-        self.each_pull(u, |touch| {
-            let [vi, vj] = [touch.i, touch.j].map(|s| body.volume.at(s));
+        self.each_pull(body, u, |touch| {
+            let [vi, vj] = touch.volumes;
             for s in [touch.i, touch.j] {
                 sum[s] += touch.slope.abs().max(touch.pull.abs()) * vi * vj;
             }
         });
     }
 
-    /// Energy of all contacts (energy). `u` is that of the last [`Contact::add_forces`] or [`Contact::update`].
-    pub fn energy(&self, body: &Body<D>, u: &Field<D>) -> f64 {
-        let mut energy = 0.0;
-        self.each_pull(u, |touch| {
-            energy += touch.energy * body.volume.at(touch.i) * body.volume.at(touch.j);
+    /// Energy of all contacts (energy), of which ranks that share one have it once. `u` is that of the last [`Contact::add_forces`] or [`Contact::update`].
+    pub fn energy(&self, body: &Body<D>, u: &Field<D>) -> Exact {
+        let mut energy = Exact::ZERO;
+        self.each_once(body, u, |pull| {
+            let [vi, vj] = pull.volumes;
+            energy.add(pull.energy * vi * vj);
         });
         energy
+    }
+
+    /// Visit every central force that this rank counts, each of all ranks once.
+    pub fn each_once(&self, body: &Body<D>, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
+        self.each_pull(body, u, |pull| {
+            if pull.i < body.len {
+                visit(pull);
+            }
+        });
     }
 
     /// Add the energy density of all contacts to `out`, per slot, half of a pair's at each end (energy / volume).
     /// `u` as for [`Contact::energy`].
     pub fn add_energy_density(&self, body: &Body<D>, u: &Field<D>, out: &mut [f64]) {
-        self.each_pull(u, |touch| {
-            let half = 0.5 * touch.energy;
-            out[touch.i] += half * body.volume.at(touch.j);
-            out[touch.j] += half * body.volume.at(touch.i);
-        });
+        self.each_end(body, u, |end| out[end.at] += 0.5 * end.energy * end.volume);
     }
 
     /// Number of pairs that repel, at the `u` of the last [`Contact::add_forces`] or [`Contact::update`].
@@ -294,16 +327,26 @@ impl<const D: usize> Contact<D> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.neighbours.bytes()
+            + self.ghosts.bytes()
             + self.cohesion.as_ref().map_or(0, Cohesion::bytes)
             + size_of::<Pair<D>>() * self.pairs.capacity()
             + size_of::<Bounds>() * self.bounds.capacity()
     }
 
+    /// Visit both ends of every central force, those that are here, a point's in the order of the slots of its partners.
+    pub fn each_end(&self, body: &Body<D>, u: &Field<D>, mut visit: impl FnMut(End<D>)) {
+        self.each_pull(body, u, |pull| pull.ends(body.len).for_each(&mut visit));
+    }
+
     /// Visit every central force: of pairs closer than allowed, then of those that attract each other.
-    pub fn each_pull(&self, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
-        self.each_contact(u, |touch| visit(touch.pull()));
+    pub fn each_pull(&self, body: &Body<D>, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
+        let volume = |n: usize| match n.checked_sub(body.len) {
+            None => body.volume.at(n),
+            Some(ghost) => self.volumes_there[ghost],
+        };
+        self.each_contact(u, |touch| visit(touch.pull([touch.i, touch.j].map(volume))));
         if let Some(cohesion) = &self.cohesion {
-            cohesion.each_pull(u, visit);
+            cohesion.each_pull(body, u, visit);
         }
     }
 
@@ -347,10 +390,11 @@ impl<const D: usize> Contact<D> {
     ) {
         let mut pairs = self.pairs.iter().enumerate();
         for (i, row) in self.neighbours.rows() {
-            let ui: [f64; D] = crate::array::from_fn(|a| u[a][i]);
+            let ui = self.ghosts.displacement(u, i);
             for (&j, (n, pair)) in row.iter().zip(&mut pairs) {
                 let j = j as usize;
-                let y: [f64; D] = crate::array::from_fn(|a| pair.base[a] + (u[a][j] - ui[a]));
+                let uj = self.ghosts.displacement(u, j);
+                let y: [f64; D] = crate::array::from_fn(|a| pair.base[a] + (uj[a] - ui[a]));
                 visit(n, [i, j], y, pair);
             }
         }

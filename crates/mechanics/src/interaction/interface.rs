@@ -243,6 +243,14 @@ impl<const D: usize> Interface<D> {
         });
     }
 
+    pub fn each_partner(&self, visit: &mut EachBond<D>) {
+        let points = &self.points;
+        let cloud = &points.cloud;
+        self.bonds.each_partner(cloud, &mut |i, j, xi, state| {
+            visit(points.whole(i), points.whole(j), xi, state);
+        });
+    }
+
     /// [`mend`](Interaction::mend), of slots of the body of all.
     pub fn mend(&mut self, u: FieldView<D>, heals: &Heals) -> Option<u64> {
         let points = &self.points;

@@ -9,7 +9,9 @@ use super::{
     BondStatus, BondTangent, EachBond, EachForce, EachTangent, FactorsOf, Interaction,
     PointEnergiesMut, Sweep, Tally,
 };
-use crate::body::{Body, Column, Field, FieldView, FieldViewMut, Grid, Identity, Values, zeros};
+use crate::body::{
+    Body, Column, Field, FieldView, FieldViewMut, Grid, Identity, Subdomain, Values, zeros,
+};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
@@ -38,6 +40,7 @@ pub struct LinearInteraction<const D: usize> {
 impl<const D: usize> LinearInteraction<D> {
     /// `modulus` gives `C` from ξ (force density / length); `held`: is the body in plane strain?
     pub fn new(
+        body: &Body<D>,
         links: Links<D>,
         simd: Simd,
         held: bool,
@@ -51,7 +54,7 @@ impl<const D: usize> LinearInteraction<D> {
                 .iter()
                 .map(|list| list.iter().map(|l| modulus(l.xi)).collect())
                 .collect(),
-            sums: PerBlock::sums(links.blocks()),
+            sums: PerBlock::sums(links.blocks()).among(body.subdomain().map(Subdomain::comm)),
             scale: Scale::default(),
             grows: if held { 1.25 } else { 1.0 },
             expansion: vec![],
@@ -354,6 +357,13 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         self.links
             .each(body, &mut |i, j, xi| visit(i, j, xi, BondStatus::Whole));
+    }
+
+    fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        self.links.each_directed(body.grid(), |i, j, sub, k| {
+            let j = body.exchange.original(j);
+            visit(i, j, self.links.links[sub][k].xi, BondStatus::Whole);
+        });
     }
 
     fn scale_bonds(&mut self, body: &Body<D>, factors: &FactorsOf<D>) -> Result<(), BuildError> {

@@ -82,7 +82,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         &self.bonds.room.records
     }
 
-    fn share(&mut self) {
+    /// Pressures of this state.
+    fn share(&mut self, body: &Body<D>) {
         let alive = Seen(self.bonds.alive.as_ptr());
         let fields = Shared(self.fields.as_mut_ptr());
         let kernel = Share::<D, W> {
@@ -90,6 +91,13 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             fields,
         };
         self.bonds.blocks.run(&kernel);
+        self.tell_pressures(body);
+    }
+
+    /// Those of points, to their copies.
+    fn tell_pressures(&mut self, body: &Body<D>) {
+        let pressures = &mut self.fields;
+        body.exchange.fill_numbers(pressures, 1, |slot, _| 2 * slot);
     }
 
     fn sweep<const FULL: bool>(
@@ -176,14 +184,11 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
                     let i = slot as usize;
                     self.fields[2 * i] = self.pressure_factor(i) * seen.dilatation[i];
                 }
+                self.tell_pressures(body);
             }
             seen.dilate::<W, D>(body, |i| self.per_weight(body, i));
         } else if W::SHARES {
-            self.share();
-        }
-        if W::SHARES {
-            let pressures = &mut self.fields;
-            body.exchange.fill_numbers(pressures, 1, |slot, _| 2 * slot);
+            self.share(body);
         }
         let motion = sweep.motion();
         let total = if self.bonds.critical.is_empty() {
@@ -284,7 +289,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.check(body, &[u]);
         self.pack_now(u);
         if W::SHARES {
-            self.share();
+            self.share(body);
         }
         let view = self.view(self.moved());
         self.each_line(|place, whole, [i, j]| {

@@ -1,13 +1,31 @@
 //! A central force of two points, and its tangents.
 
 use super::{BondTangent, EachTangent};
-use crate::body::Body;
+
+/// One of two points that act on each other along the line between them.
+#[derive(Debug, Clone, Copy)]
+pub struct End<const D: usize> {
+    /// Its slot.
+    pub at: usize,
+    /// That of the other one; `None`: another rank's.
+    pub other: Option<usize>,
+    /// Volume of the other.
+    pub volume: f64,
+    /// From it to the other now.
+    pub y: [f64; D],
+    /// Its force density over the volume of the other, along y.
+    pub pull: f64,
+    /// Energy of both / volume².
+    pub energy: f64,
+}
 
 /// A central force of a pair.
 #[derive(Debug, Clone, Copy)]
 pub struct Pull<const D: usize> {
+    /// Slots, or numbers from the slots on of [ghosts](crate::family::neighbours::ghosts).
     pub i: usize,
     pub j: usize,
+    pub volumes: [f64; 2],
     /// From i to j now, and its length.
     pub y: [f64; D],
     pub r: f64,
@@ -20,8 +38,26 @@ pub struct Pull<const D: usize> {
 }
 
 impl<const D: usize> Pull<D> {
+    /// Its ends that are here, of a body of so many slots.
+    pub fn ends(self, slots: usize) -> impl Iterator<Item = End<D>> {
+        let [vi, vj] = self.volumes;
+        let both = [
+            (self.i, self.j, vj, self.y),
+            (self.j, self.i, vi, self.y.map(|c| -c)),
+        ];
+        let here = both.into_iter().filter(move |(at, ..)| *at < slots);
+        here.map(move |(at, other, volume, y)| End {
+            at,
+            other: (other < slots).then_some(other),
+            volume,
+            y,
+            pull: self.pull,
+            energy: self.energy,
+        })
+    }
+
     /// `V_j (slope n⊗n + pull (1 − n⊗n))` of both ends; none of two points on one spot.
-    pub fn tangents(&self, body: &Body<D>, visit: &mut EachTangent<D>) {
+    pub fn tangents(&self, visit: &mut EachTangent<D>) {
         let &Pull {
             i, j, y, r, pull, ..
         } = self;
@@ -29,8 +65,8 @@ impl<const D: usize> Pull<D> {
             return;
         }
         let n = y.map(|c| c / r);
-        for (i, j, way) in [(i, j, 1.0), (j, i, -1.0)] {
-            let volume = body.volume.at(j);
+        let [vi, vj] = self.volumes;
+        for (i, j, volume, way) in [(i, j, vj, 1.0), (j, i, vi, -1.0)] {
             let block = crate::array::from_fn(|a| {
                 crate::array::from_fn(|b| {
                     let along = (self.slope - pull) * n[a] * n[b];

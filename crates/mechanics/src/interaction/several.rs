@@ -370,6 +370,17 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
+    fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        for (p, bonds) in self.each(body) {
+            bonds.each_partner(&p.body, &mut |i, j, xi, state| {
+                visit(i + p.first, j + p.first, xi, state);
+            });
+        }
+        for interface in &self.interfaces {
+            interface.each_partner(visit);
+        }
+    }
+
     fn mend(&mut self, body: &Body<D>, u: FieldView<D>, heals: &Heals) -> Option<u64> {
         let mut sum = None;
         // springs and micromoduli beside them have no bonds that break

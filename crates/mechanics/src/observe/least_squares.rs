@@ -11,21 +11,16 @@ pub fn gradient(state: &mut dyn State) -> Vec<[f64; 9]> {
     let (d, n) = (state.dimension(), state.points());
     let mut shape = vec![[0.0; 9]; n];
     let mut moved = vec![[0.0; 9]; n];
-    let u: Vec<_> = (0..n).map(|i| state.displacement(i)).collect();
-    let volume: Vec<_> = (0..n).map(|i| state.volume(i)).collect();
     state.each_bond(&mut |bond| {
         if !bond.whole {
             return;
         }
-        let [i, j] = bond.ends;
-        // both change their sign at the other end, their product does not
-        for (at, other) in [(i, j), (j, i)] {
-            let weight = bond.weight * volume[other];
-            for a in 0..d {
-                for b in 0..d {
-                    shape[at][3 * a + b] += weight * bond.xi[a] * bond.xi[b];
-                    moved[at][3 * a + b] += weight * (u[j][a] - u[i][a]) * bond.xi[b];
-                }
+        let weight = bond.weight * bond.volume;
+        let (shape, moved) = (&mut shape[bond.id], &mut moved[bond.id]);
+        for a in 0..d {
+            for b in 0..d {
+                shape[3 * a + b] += weight * bond.xi[a] * bond.xi[b];
+                moved[3 * a + b] += weight * bond.eta[a] * bond.xi[b];
             }
         }
     });

@@ -15,15 +15,18 @@ pub struct Observed {
     pub whole: Vec<f64>,
 }
 
-/// A bond of the reference family, once.
+/// A bond of the reference family, from one of its points.
 #[derive(Debug, Clone, Copy)]
 pub struct FamilyBond {
-    /// Ids of its ends; through a periodic boundary the same point may be both.
-    pub ends: [usize; 2],
-    /// From the first to the second in the reference (length).
+    /// Id of the point.
+    pub id: usize,
+    /// To the partner in the reference, and how far the partner has moved against the point (lengths).
     pub xi: Point,
+    pub eta: Point,
     /// `ω ν`: influence function times volume fraction.
     pub weight: f64,
+    /// Volume of the partner.
+    pub volume: f64,
     pub whole: bool,
 }
 
@@ -73,7 +76,7 @@ pub trait State {
     fn damage(&mut self) -> Vec<f64>;
     /// Number of the fragment of each point, 0 is the largest.
     fn fragments(&mut self) -> Vec<u32>;
-    /// Every bond of the reference family once.
+    /// Every bond of the reference family from each of its points, but for those that a pre-crack made absent.
     fn each_bond(&mut self, visit: &mut dyn FnMut(FamilyBond));
     /// Every force of a pair, seen from each of its points: bonds, repulsion inside families, contact. False: a law has no forces
     /// of single bonds.

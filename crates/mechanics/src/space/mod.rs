@@ -1,5 +1,6 @@
 //! Space: lattices, regions, rotations, rigid shapes and surfaces of triangles. Everything here is three numbers wide; unused axes are 0.
 
+pub mod cells;
 pub mod face;
 pub mod fill;
 pub mod lattice;

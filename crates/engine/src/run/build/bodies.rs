@@ -9,9 +9,9 @@ use crate::run::faces::Faces;
 use crate::run::feasible::enough_memory;
 use crate::run::names::Names;
 use crate::run::parts::{Part, parts};
-use crate::run::reference::current_neighbours;
+use crate::run::reference::{cell, current_neighbours};
 use crate::run::sets::{assign_materials, sets};
-use crate::run::{atoms, clouds, meant, own_horizons, traits};
+use crate::run::{atoms, clouds, gaps, meant, own_horizons, traits};
 use crate::spec::{BodySpec, FamilyChoice, Horizon, PieceSpec, Spec};
 use peridyne_comm::Comm;
 use std::sync::Arc;
@@ -31,6 +31,8 @@ pub(super) struct Bodies<'a, const D: usize> {
     pub ends: u64,
     /// Are all points atoms?
     pub atoms: bool,
+    /// The shortest distances (length) between bodies that are nearer than the horizon or the range of contact.
+    pub nearest: Vec<([usize; 2], f64)>,
 }
 
 impl<'a, const D: usize> Bodies<'a, D> {
@@ -96,13 +98,15 @@ impl<'a, const D: usize> Bodies<'a, D> {
             faces: Faces::new(spec)?,
             shelf: shelf.clone(),
         };
+        let nearest = gaps::between(&body, reach(spec, &parts, &body, horizon));
         if let Some(ranks) = ranks {
             // all ranks know all points until here, and find the same mistakes
             warnings.extend(meant::all(spec, &body, &names.sets)?);
             names
                 .faces
                 .find(&spec.loading.conditions, &body, &names.sets)?;
-            body = body.subdomain_of(ranks)?;
+            // volumes of partners fade over a spacing at the horizon
+            body = body.subdomain_of(ranks, horizon + body.spacing())?;
             cut(&mut names, &body);
             enough(spec, &parts, &body)?;
         }
@@ -115,8 +119,17 @@ impl<'a, const D: usize> Bodies<'a, D> {
             least_horizon,
             ends,
             atoms: potentials.is_some(),
+            nearest,
         })
     }
+}
+
+/// How far points may be to feel each other (length).
+fn reach<const D: usize>(spec: &Spec, parts: &[Part], body: &Body<D>, horizon: f64) -> f64 {
+    let free = { spec.interactions.contact.as_ref() }.map_or(0.0, |c| c.free);
+    let own = parts.iter().zip(body.pieces());
+    let ranges = own.map(|(part, p)| free * cell(&part.spec, &p.body));
+    ranges.fold(horizon, f64::max)
 }
 
 /// What is left of the names in this part of a body.

@@ -26,7 +26,7 @@ use crate::run::time_step::{Limits, time_step};
 use crate::run::torn::torn;
 use crate::run::transfers::make::Maker;
 use crate::run::transfers::state::Transfers;
-use crate::run::{Info, atoms, contact, gaps, indenters, precracks};
+use crate::run::{Gap, Info, atoms, contact, gaps, indenters, precracks};
 use crate::spec::{LawSpec, Spec, TimeStep};
 use crate::statics::SYMMETRIC;
 
@@ -51,10 +51,12 @@ impl<const D: usize> Made<D> {
         let (parts, body) = (&bodies.parts, &bodies.body);
         let repulsion = contact::repulsion(spec, parts, &bonds.constitutive, body)?;
         let range = |a: usize, b: usize| repulsion.as_ref().map_or(0.0, |r| r.range(a, b));
-        let reach = (0..parts.len())
-            .map(|n| range(n, n))
-            .fold(bodies.horizon, f64::max);
-        let gaps = gaps::between(body, reach, range);
+        let gap = |&([a, b], distance): &([usize; 2], f64)| Gap {
+            bodies: [a, b],
+            distance,
+            contact: range(a, b),
+        };
+        let gaps: Vec<Gap> = bodies.nearest.iter().map(gap).collect();
         let spacing = |n: usize| body.pieces()[n].body.spacing();
         warnings.extend(gaps::warnings(spec, &gaps, spacing));
         let measured = limits(spec, trust, &bodies, &mut bonds, repulsion.as_ref())?;

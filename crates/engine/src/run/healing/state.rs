@@ -6,6 +6,6 @@ use crate::expression::Expression;
 pub(in crate::run) struct Healing {
     /// Size of the stretch below which they do, an expression of t.
     pub below: Expression,
-    /// `[slots]`
-    pub may: Vec<bool>,
+    /// `[slots]`, 0: it does not.
+    pub may: Vec<u8>,
 }

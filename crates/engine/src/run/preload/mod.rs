@@ -149,7 +149,9 @@ impl<const D: usize> System<D> {
             contact.find(&self.body, &self.u, self.interaction.as_ref());
             // those that attract each other, too
             let mut pairs = 0;
-            contact.central.each_pull(&self.u, |_| pairs += 1);
+            contact
+                .central
+                .each_pull(&self.body, &self.u, |_| pairs += 1);
             if pairs > 0 {
                 return Err(RunError::Touching {
                     step: self.clock.step(),

@@ -1,11 +1,13 @@
 //! What is measured of rigid bodies.
 
 use super::state::Kind;
+use crate::body::Body;
 use crate::columns::{Dimension, Shape};
 use crate::condition::indenter::Indenter;
 use crate::error::BuildError;
 use crate::observe::ProbeColumn;
 use crate::run::system::System;
+use crate::space::Point;
 use crate::spec::RigidQuantity;
 
 /// Names of what it consists of in D dimensions: components, or energies.
@@ -39,12 +41,16 @@ fn column(of: RigidQuantity, name: String) -> ProbeColumn {
 }
 
 /// Its numbers, in the order of its parts.
-fn values<const D: usize>(of: RigidQuantity, indenter: &Indenter<D>) -> Vec<f64> {
+fn values<const D: usize>(of: RigidQuantity, indenter: &Indenter<D>, body: &Body<D>) -> Vec<f64> {
     let rigid = &indenter.rigid;
+    let part = |first: usize| -> Point {
+        let all = indenter.wrench(body);
+        std::array::from_fn(|a| all[first + a])
+    };
     let vector = match of {
-        RigidQuantity::Energy => return vec![rigid.kinetic(), indenter.dissipated()],
-        RigidQuantity::Force => indenter.force,
-        RigidQuantity::Torque => indenter.torque,
+        RigidQuantity::Energy => return vec![rigid.kinetic(), indenter.dissipated(body)],
+        RigidQuantity::Force => part(0),
+        RigidQuantity::Torque => part(3),
         RigidQuantity::Center => rigid.center,
         RigidQuantity::Velocity => rigid.velocity,
         RigidQuantity::Turn => rigid.turn(),
@@ -93,7 +99,7 @@ impl<const D: usize> System<D> {
         let found = self.applied.rigid.get(indenter);
         // conditions that were replaced since took the body away
         let value = |q: &RigidQuantity| match found {
-            Some(indenter) => values(*q, indenter),
+            Some(indenter) => values(*q, indenter, &self.body),
             None => vec![f64::NAN; parts::<D>(*q).len()],
         };
         of.iter().flat_map(value).collect()

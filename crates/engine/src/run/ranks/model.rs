@@ -1,6 +1,6 @@
 //! The part of a model that one rank has.
 
-use super::shared::{FRAGMENT, WALKS, shared};
+use super::shared::{FRAGMENT, shared};
 use crate::body::Subdomain;
 use crate::columns::{Declaration, On};
 use crate::error::{BuildError, RunError};
@@ -71,7 +71,7 @@ impl<const D: usize> RankModel<D> {
     /// Columns of points of the model of all ranks.
     pub(super) fn columns(&mut self) -> Vec<Declaration> {
         let mut all = self.model.columns();
-        all.retain(|c| c.on == On::Points && !WALKS.contains(&&*c.name));
+        all.retain(|c| c.on == On::Points);
         all
     }
 
@@ -92,9 +92,6 @@ impl<const D: usize> RankModel<D> {
 
     /// A column of the points of all ranks, by their ids, on the first rank.
     pub(super) fn column(&mut self, name: &str) -> Option<Column> {
-        if WALKS.contains(&name) {
-            return None;
-        }
         if name == FRAGMENT {
             let label = self.fragments()?.label;
             let observable = self.model.names.shelf.observable(name)?;

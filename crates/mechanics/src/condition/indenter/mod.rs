@@ -17,13 +17,16 @@ use crate::interaction::Evaluation;
 use crate::interaction::coulomb::Coefficients;
 use crate::interaction::friction::Pressed;
 use crate::space::rigid::RigidShape;
-use crate::space::{Point, cross, full};
+use crate::space::{cross, full};
 use crate::spec::{CohesionSpec, FrictionSpec, IndenterSpec};
 use crate::state::{Archive, Owner};
 use rub::{Departure, Touched};
 use std::collections::HashMap;
 pub use surface::{Form, Push};
 use surface::{Near, Surface};
+
+/// Force and torque of no points.
+const NOTHING: [Exact; 6] = [const { Exact::ZERO }; 6];
 
 #[derive(Debug, Clone)]
 pub struct Indenter<const D: usize> {
@@ -47,16 +50,15 @@ pub struct Indenter<const D: usize> {
     slack: f64,
     /// Work done on the points of this rank (energy).
     pub work: Exact,
-    /// Work of friction on both (energy), and what of it its springs hold.
-    rubbed_work: f64,
-    stored: f64,
+    /// Work of friction on both (energy), and what of it its springs hold; of the points of this rank, as what follows.
+    rubbed_work: Exact,
+    stored: Exact,
     pub reaction: Reaction,
     /// Of points on the rigid body (force), and about its centre (force · length).
-    pub force: Point,
-    pub torque: Point,
+    felt: [Exact; 6],
     /// The most that contact adds to `M⁻¹K` (1 / time²).
     stiff: f64,
-    kept: Option<(Kept, Exact, f64)>,
+    kept: Option<(Kept, Exact, Exact)>,
     /// Of an increment of statics: where it and the points were.
     from: Option<Departure<D>>,
 }
@@ -71,21 +73,22 @@ impl<const D: usize> Owner for Indenter<D> {
         pressed.sort_unstable_by_key(|(slot, _)| *slot);
         archive.list("pressed", &mut pressed);
         for (name, x) in [
-            ("work_of_friction", &mut self.rubbed_work),
-            ("stored", &mut self.stored),
             ("stiffest", &mut self.stiff),
             ("energy", &mut self.reaction.energy),
         ] {
             archive.one(name, x);
         }
+        archive.one("reaction", &mut self.reaction.force);
         for (name, x) in [
-            ("reaction", &mut self.reaction.force),
-            ("force", &mut self.force),
-            ("torque", &mut self.torque),
+            ("work", &mut self.work),
+            ("work_of_friction", &mut self.rubbed_work),
+            ("stored", &mut self.stored),
         ] {
-            archive.one(name, x);
+            archive.part(name, x);
         }
-        archive.part("work", &mut self.work);
+        for x in &mut self.felt {
+            archive.part("felt", x);
+        }
         let rigid = self.rigid.keep();
         let departure = || Departure {
             rigid,
@@ -163,11 +166,10 @@ impl<const D: usize> Indenter<D> {
             candidates: vec![],
             slack: 0.0,
             work: Exact::ZERO,
-            rubbed_work: 0.0,
-            stored: 0.0,
+            rubbed_work: Exact::ZERO,
+            stored: Exact::ZERO,
             reaction: Reaction::default(),
-            force: [0.0; 3],
-            torque: [0.0; 3],
+            felt: NOTHING,
             stiff: 0.0,
             kept: None,
             from: None,
@@ -263,11 +265,16 @@ impl<const D: usize> Indenter<D> {
     fn bear(&mut self, arm: &[f64; D], force: &[f64; D], volume: f64) {
         let turn = cross(&full(arm), &full(force));
         for a in 0..D {
-            self.force[a] -= force[a] * volume;
+            self.felt[a].take(force[a] * volume);
         }
         for a in 0..3 {
-            self.torque[a] -= turn[a] * volume;
+            self.felt[3 + a].take(turn[a] * volume);
         }
+    }
+
+    /// What the points of all ranks do to it, about its centre. All ranks ask at once.
+    pub fn wrench(&self, body: &Body<D>) -> Wrench {
+        body.sums(self.felt.clone())
     }
 
     /// The eigenvalue of `M⁻¹K` that a step must meet with this contact, of a body whose bonds alone have `bonds` (1 / time²): points at a surface
@@ -357,7 +364,11 @@ impl<const D: usize> Indenter<D> {
 impl<const D: usize> ForceField<D> for Indenter<D> {
     /// It moves to the end of the step, too.
     fn begin_step(&mut self, body: &Body<D>, v: &Field<D>, [t, dt]: [f64; 2], moved: f64) {
-        self.kept = Some((self.rigid.keep(), self.work.clone(), self.rubbed_work));
+        self.kept = Some((
+            self.rigid.keep(),
+            self.work.clone(),
+            self.rubbed_work.clone(),
+        ));
         for (s, f) in &self.touched {
             let i = *s as usize;
             let power = power(f, v, i);
@@ -393,9 +404,9 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
         self.look_around(body, u);
         self.touched.clear();
         self.rubbed.clear();
-        (self.force, self.torque, self.stiff) = ([0.0; 3], [0.0; 3], 0.0);
+        (self.felt, self.stiff) = (NOTHING, 0.0);
         let mut reaction = Reaction::default();
-        let (range, mut mobile) = (self.range(), 0.0);
+        let (range, mut mobile) = (self.range(), Exact::ZERO);
         let candidates = std::mem::take(&mut self.candidates);
         for &s in &candidates {
             let i = s as usize;
@@ -437,7 +448,7 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
             self.work.add(0.5 * dt * volume * power(&force, v, i));
             self.bear(&arm, &force, volume);
             let square: f64 = arm.iter().map(|c| c * c).sum();
-            mobile += slope * volume * self.rigid.mobility(square);
+            mobile.add(slope * volume * self.rigid.mobility(square));
             self.stiff = self.stiff.max(slope / body.density.at(i));
             self.touched.push((s, force));
             if self.friction.is_some() {
@@ -452,17 +463,26 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
             }
         }
         self.candidates = candidates;
-        self.stiff += mobile;
         self.reaction = reaction;
         if let Some(law) = &self.friction {
             let now = Coefficients::new(law, t);
             self.rub(body, [u, v], f, now, at);
         }
-        self.rigid.push(self.force, self.torque, t, dt);
+        // what goes its own way feels nothing
+        if self.rigid.is_free() {
+            let [x, y, z, about_x, about_y, about_z] = self.wrench(body);
+            self.rigid
+                .push([x, y, z], [about_x, about_y, about_z], t, dt);
+            self.stiff = body.most(self.stiff) + body.sums([mobile])[0];
+        }
     }
 
     fn depart(&mut self, u: &Field<D>, pressed: Pressed) {
-        self.kept = Some((self.rigid.keep(), self.work.clone(), self.rubbed_work));
+        self.kept = Some((
+            self.rigid.keep(),
+            self.work.clone(),
+            self.rubbed_work.clone(),
+        ));
         std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
         self.from = Some(Departure {
             rigid: self.rigid.keep(),

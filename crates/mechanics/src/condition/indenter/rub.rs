@@ -7,6 +7,7 @@ use super::surface::Near;
 use crate::body::{Body, Field};
 use crate::condition::force_field::power;
 use crate::condition::rigid::Kept;
+use crate::execute::exact::Exact;
 use crate::interaction::Evaluation;
 use crate::interaction::coulomb::{
     Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped,
@@ -72,7 +73,7 @@ impl<const D: usize> Indenter<D> {
         let mut rubbed = std::mem::take(&mut self.rubbed);
         let old = std::mem::take(&mut self.rubbed_before);
         let before: HashMap<u32, &Touched<D>> = old.iter().map(|t| (t.slot, t)).collect();
-        self.stored = 0.0;
+        self.stored = Exact::ZERO;
         for (n, touched) in rubbed.iter_mut().enumerate() {
             let i = touched.slot as usize;
             let from = at.since(&self.from);
@@ -115,7 +116,7 @@ impl<const D: usize> Indenter<D> {
             touched.depth = depth;
             let volume = body.volume.at(i);
             let square: f64 = touched.way.iter().map(|c| c * c).sum();
-            self.stored += 0.5 * stiffness * square * volume;
+            self.stored.add(0.5 * stiffness * square * volume);
             let force = touched.rub;
             for a in 0..D {
                 self.reaction.force[a] -= force[a];
@@ -142,7 +143,8 @@ impl<const D: usize> Indenter<D> {
         for touched in &self.rubbed {
             let w = self.sliding(v, touched);
             let power: f64 = (0..D).map(|a| touched.rub[a] * w[a]).sum();
-            self.rubbed_work += 0.5 * dt * power * body.volume.at(touched.slot as usize);
+            let volume = body.volume.at(touched.slot as usize);
+            self.rubbed_work.add(0.5 * dt * power * volume);
         }
     }
 
@@ -152,7 +154,8 @@ impl<const D: usize> Indenter<D> {
         for touched in self.rubbed_before.iter().chain(&self.rubbed) {
             let way = self.way_from(from, u, touched);
             let power: f64 = (0..D).map(|a| touched.rub[a] * way[a]).sum();
-            self.rubbed_work += 0.5 * power * body.volume.at(touched.slot as usize);
+            let volume = body.volume.at(touched.slot as usize);
+            self.rubbed_work.add(0.5 * power * volume);
         }
     }
 
@@ -185,8 +188,10 @@ impl<const D: usize> Indenter<D> {
         !self.rubbed.is_empty()
     }
 
-    /// What friction took (energy).
-    pub fn dissipated(&self) -> f64 {
-        self.rubbed_work - self.stored
+    /// What friction took (energy), of the points of all ranks. All ranks ask at once.
+    pub fn dissipated(&self, body: &Body<D>) -> f64 {
+        let mut taken = self.rubbed_work.clone();
+        self.stored.parts().into_iter().for_each(|x| taken.take(x));
+        body.sums([taken])[0]
     }
 }

@@ -6,9 +6,9 @@
 //! that the difference of two wraps around to the shorter way by itself. What is kept are its last 8 bits in units of
 //! about 1/64 of a cell: enough to tell two points of adjacent cells apart, and it wraps around in the same way.
 
-use crate::body::{Body, FieldView, Layout};
-
-const FULL: f64 = (1u64 << 32) as f64;
+use super::ghosts::Ghost;
+use super::rings::{FULL, cell_at, each_around, each_point, number, wind};
+use crate::body::{Body, FieldView};
 
 /// Pairs that are tested at a time.
 const LANES: usize = 8;
@@ -25,6 +25,8 @@ pub(super) struct Cells<const D: usize> {
     /// Slots, and their coordinates on the rings (with room to read whole lanes at the end), in order of cells.
     order: Vec<u32>,
     place: [Vec<u8>; D],
+    /// Of the body, when it had all of its own.
+    points: usize,
 }
 
 impl<const D: usize> Cells<D> {
@@ -59,6 +61,7 @@ impl<const D: usize> Cells<D> {
             start: vec![0; count.iter().product::<usize>() + 1],
             order: vec![0; body.points()],
             place: crate::array::from_fn(|_| vec![0; body.points() + LANES]),
+            points: body.points(),
         }
     }
 
@@ -77,27 +80,26 @@ impl<const D: usize> Cells<D> {
         &self.order[self.start[cell] as usize..self.start[cell + 1] as usize]
     }
 
-    /// Put all points into their cells at displacement `u`.
-    pub fn sort(&mut self, body: &Body<D>, u: FieldView<D>) {
+    /// Put all points into their cells at displacement `u`, and ghosts that follow the slots.
+    pub fn sort(&mut self, body: &Body<D>, ghosts: &[Ghost], u: FieldView<D>) {
+        let all = self.points + ghosts.len();
+        self.order.resize(all, 0);
+        self.place.iter_mut().for_each(|p| p.resize(all + LANES, 0));
         let inverse = self.length.map(|l| FULL / l);
         let place = |slot: usize, x: [f64; D]| -> [u32; D] {
             crate::array::from_fn(|a| wind((x[a] + u[a][slot]) * inverse[a]))
         };
         let (count, units) = (self.count, self.units());
-        let cell = |p: &[u32; D]| {
-            let mut c = 0;
-            for a in (0..D).rev() {
-                c = c * count[a] + ((p[a] as u64 * count[a] as u64) >> 32) as usize;
-            }
-            c
-        };
+        let cell = |p: &[u32; D]| number(count, cell_at(count, p));
         self.start.fill(0);
-        each_point(body, |slot, x| self.start[cell(&place(slot, x))] += 1);
+        each_of_all(body, ghosts, |slot, x| {
+            self.start[cell(&place(slot, x))] += 1
+        });
         let mut sum = 0;
         for s in &mut self.start {
             sum += std::mem::replace(s, sum);
         }
-        each_point(body, |slot, x| {
+        each_of_all(body, ghosts, |slot, x| {
             let p = place(slot, x);
             let next = &mut self.start[cell(&p)];
             self.order[*next as usize] = slot as u32;
@@ -126,7 +128,10 @@ impl<const D: usize> Cells<D> {
         for cell in 0..self.len() {
             let own = self.start[cell] as usize..self.start[cell + 1] as usize;
             if !own.is_empty() {
-                self.each_adjacent(cell, at, |other| {
+                each_around(self.count, at, |other| {
+                    if other < cell {
+                        return;
+                    }
                     let theirs = self.start[other] as usize..self.start[other + 1] as usize;
                     if theirs.is_empty() || skip(cell, other) {
                         return;
@@ -177,89 +182,19 @@ impl<const D: usize> Cells<D> {
         near
     }
 
-    /// The distinct cells around a cell, itself included, that do not come before it.
-    fn each_adjacent(&self, cell: usize, at: [usize; D], mut visit: impl FnMut(usize)) {
-        // 3^D of them, built up axis by axis
-        let mut around = [0usize; 27];
-        let (mut len, mut stride) = (1, 1);
-        for a in 0..D {
-            let n = self.count[a];
-            let up = if at[a] + 1 == n { 0 } else { at[a] + 1 };
-            let down = if at[a] == 0 { n - 1 } else { at[a] - 1 };
-            let ring = [at[a], up, down];
-            let distinct = n.min(3);
-            for k in (0..len).rev() {
-                for (r, c) in ring[..distinct].iter().enumerate().rev() {
-                    around[r * len + k] = around[k] + c * stride;
-                }
-            }
-            len *= distinct;
-            stride *= n;
-        }
-        around[..len]
-            .iter()
-            .filter(|c| **c >= cell)
-            .for_each(|c| visit(*c));
-    }
-
     pub fn bytes(&self) -> usize {
         4 * (self.start.len() + self.order.len()) + D * self.place[0].len()
     }
 }
 
-/// The fraction of `t / 2³²` above a whole number, in units of 2⁻³²: the low half of the integer.
-fn wind(t: f64) -> u32 {
-    t as i64 as u32
-}
-
-/// Slot and reference position of every point. On a grid, walked row by row: finding the coordinates of a single slot
-/// takes divisions.
-fn each_point<const D: usize>(body: &Body<D>, mut visit: impl FnMut(usize, [f64; D])) {
-    each_of(body, 0, &mut visit);
-}
-
-/// The same of a body whose slots begin at `start`.
-fn each_of<const D: usize>(body: &Body<D>, start: usize, visit: &mut impl FnMut(usize, [f64; D])) {
-    let grid = match &body.layout {
-        Layout::Cloud(x) => {
-            for &slot in &body.slots {
-                visit(
-                    start + slot as usize,
-                    crate::array::from_fn(|a| x[a][slot as usize]),
-                );
-            }
-            return;
-        }
-        Layout::Several(pieces) => {
-            for p in pieces {
-                each_of(&p.body, p.first, visit);
-            }
-            return;
-        }
-        Layout::Grid(grid) => grid,
-    };
-    let lattice = &grid.lattice;
-    let edges = lattice.kind.edges();
-    let rows: usize = grid.cells[1..].iter().product();
-    for (b, site) in lattice.kind.basis().iter().enumerate() {
-        let coordinate = |a: usize, c: usize| {
-            let quarter = 4 * (c as i32 + grid.low[a]) + site[a];
-            lattice.origin[a] + lattice.spacing * edges[a] * (quarter as f64 / 4.0)
-        };
-        for row in 0..rows {
-            let mut x = [0.0; D];
-            let mut rest = row;
-            for a in 1..D {
-                x[a] = coordinate(a, rest % grid.cells[a]);
-                rest /= grid.cells[a];
-            }
-            let first = grid.guard + b * grid.stride + row * grid.cells[0];
-            for c in 0..grid.cells[0] {
-                if grid.is_owned(first + c) {
-                    x[0] = coordinate(0, c);
-                    visit(start + first + c, x);
-                }
-            }
-        }
+/// Slot and reference position of every point, and of ghosts that follow the slots.
+fn each_of_all<const D: usize>(
+    body: &Body<D>,
+    ghosts: &[Ghost],
+    mut visit: impl FnMut(usize, [f64; D]),
+) {
+    each_point(body, &mut visit);
+    for (slot, ghost) in (body.len..).zip(ghosts) {
+        visit(slot, crate::array::from_fn(|a| ghost.position[a]));
     }
 }

@@ -58,7 +58,7 @@ fn walk<const D: usize>(body: &Body<D>, h: f64, seed: u64) {
             }
         }
         list.moved(longest(view(&before), view(&u)));
-        let built = list.update(body, view(&u), &keep);
+        let built = list.update(body, &mut Ghosts::default(), view(&u), &keep);
         let have = listed(&list);
         assert!(have.is_sorted());
         if built {
@@ -129,17 +129,20 @@ fn the_skin_is_measured_from_the_build() {
         let mut u = body.at_rest();
         let s = body.slots[7] as usize;
         u[0][s] = far;
-        assert!(list.update(&body, view(&u), &|_, _| true));
+        assert!(list.update(&body, &mut Ghosts::default(), view(&u), &|_, _| true));
         // many small steps: 0.09 is within skin/2, 0.1 is not
         for k in 1..=9 {
             u[0][s] = far + 0.01 * k as f64;
             list.moved(0.01);
-            assert!(!list.update(&body, view(&u), &|_, _| true), "{far}: {k}");
+            assert!(
+                !list.update(&body, &mut Ghosts::default(), view(&u), &|_, _| true),
+                "{far}: {k}"
+            );
         }
         u[0][s] = far + 0.101;
         list.moved(0.011);
-        assert!(list.update(&body, view(&u), &|_, _| true));
-        assert!(!list.update(&body, view(&u), &|_, _| true));
+        assert!(list.update(&body, &mut Ghosts::default(), view(&u), &|_, _| true));
+        assert!(!list.update(&body, &mut Ghosts::default(), view(&u), &|_, _| true));
     }
 }
 
@@ -160,7 +163,7 @@ fn cells_that_moved_together_are_passed_over() {
     }
     let reach = 1.8;
     let mut list = Neighbours::new(&body, 1.5, 0.3).apart(1.0);
-    list.update(&body, view(&u), &|_, _| true);
+    list.update(&body, &mut Ghosts::default(), view(&u), &|_, _| true);
     let mut expected = brute(&body, view(&u), reach);
     let all = expected.len();
     expected.retain(|&(i, j)| (u[1][i] < -1.0) != (u[1][j] < -1.0));
@@ -179,15 +182,15 @@ fn what_is_not_finite_does_no_harm() {
     );
     let mut list = Neighbours::new(&body, 1.1, 0.2);
     let mut u = body.at_rest();
-    list.update(&body, view(&u), &|_, _| true);
+    list.update(&body, &mut Ghosts::default(), view(&u), &|_, _| true);
     let whole = list.len();
     u[0][body.slots[12] as usize] = f64::INFINITY;
     u[1][body.slots[11] as usize] = 1e300;
     list.moved(f64::INFINITY);
-    assert!(list.update(&body, view(&u), &|_, _| true));
+    assert!(list.update(&body, &mut Ghosts::default(), view(&u), &|_, _| true));
     assert_eq!(list.len(), whole - 7);
     u[0][body.slots[12] as usize] = f64::NAN;
     list.moved(f64::NAN);
-    list.update(&body, view(&u), &|_, _| true);
+    list.update(&body, &mut Ghosts::default(), view(&u), &|_, _| true);
     assert_eq!(list.len(), whole - 7);
 }

@@ -1,5 +1,6 @@
 //! The horizon list of a cloud: groups are slices of eight rows, partners are gathered from records.
 
+use super::abroad::{Abroad, ways_back};
 use super::family::{Family, Moved, Reference, Slots};
 use super::store::{Layout, Rows};
 use crate::body::{Body, Exchange};
@@ -9,6 +10,8 @@ use crate::family::horizon::HorizonList;
 use crate::interaction::weight::BondWeight;
 use crate::law::material::Numbers;
 use crate::law::solid::dual_horizon::part_within;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Eight slots that are listed.
 #[derive(Clone, Copy)]
@@ -72,10 +75,14 @@ pub struct CloudFamily<const D: usize> {
     pub reference: Vec<f64>,
     /// `[lines][8]`: place of the bond that leads back; empty: nobody asks.
     back: Vec<u32>,
+    /// Bonds of other ranks among them.
+    abroad: Option<Arc<Abroad>>,
     /// 0 on free axes.
     pub period: [f64; D],
     pub inv_period: [f64; D],
     slots: usize,
+    /// Slots that have rows.
+    rows: Range<usize>,
 }
 
 impl<const D: usize> CloudFamily<D> {
@@ -91,11 +98,15 @@ impl<const D: usize> CloudFamily<D> {
         // slots without a point have one, too
         let of = |d: &f64| if *d > 0.0 { *d } else { horizon };
         let own = body.horizon.iter().map(of).collect();
-        let back = if remembers { ways_back(&list) } else { vec![] };
+        let (back, abroad) = match remembers {
+            true => ways_back(&list, body),
+            false => (vec![], None),
+        };
         CloudFamily {
             own,
             reach: body.horizon.iter().map(|d| d / horizon).collect(),
             back,
+            abroad: abroad.map(Arc::new),
             ..Self::plain(body, list, weight)
         }
     }
@@ -117,9 +128,11 @@ impl<const D: usize> CloudFamily<D> {
             alike: false,
             reference,
             back: vec![],
+            abroad: None,
             period: body.period.map(|p| p.unwrap_or(0.0)),
             inv_period: body.period.map(|p| p.map_or(0.0, f64::recip)),
             slots: body.len,
+            rows: body.own_slots(),
         }
     }
 
@@ -146,24 +159,6 @@ impl<const D: usize> CloudFamily<D> {
     fn line(&self, group: usize, k: usize) -> usize {
         self.list.start[group] + k
     }
-}
-
-/// Place of the bond that leads back, for every bond of a list.
-fn ways_back(list: &HorizonList) -> Vec<u32> {
-    let mut place = vec![0u32; list.partner.len()];
-    let mut row_of = vec![0u32; list.rows.len()];
-    for (row, &slot) in list.rows.iter().enumerate() {
-        row_of[slot as usize] = row as u32;
-    }
-    for (row, &i) in list.rows.iter().enumerate() {
-        for (line, j) in list.partners(row) {
-            let other = row_of[j] as usize;
-            let back = list.partners(other).find(|(_, k)| *k == i as usize);
-            let (back, _) = back.expect("bonds of a list go both ways");
-            place[line * TILE + row % TILE] = (back * TILE + other % TILE) as u32;
-        }
-    }
-    place
 }
 
 impl<const D: usize> Family<D> for CloudFamily<D> {
@@ -292,7 +287,7 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         Layout::records(numbers, self.slots)
     }
     fn memory(&self) -> usize {
-        self.list.partner.len()
+        self.list.partner.len() + self.abroad.as_ref().map_or(0, |a| a.room())
     }
     #[inline(always)]
     fn own(&self, group: usize, k: usize, n: usize, count: usize) -> usize {
@@ -320,10 +315,14 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         // SAFETY: a number per lane
         unsafe { L::load(all.as_ptr()) }
     }
-    fn fill_memory(&self, _: &Exchange, _: &mut [f64], _: usize) {}
+    fn fill_memory(&self, _: &Exchange, memory: &mut [f64], count: usize) {
+        if let Some(abroad) = &self.abroad {
+            abroad.fill(memory, count);
+        }
+    }
 
     fn find(&self, slot: usize) -> Option<(usize, usize)> {
-        (slot < self.slots).then(|| {
+        self.rows.contains(&slot).then(|| {
             let row = self.list.row(slot);
             (row / TILE, row % TILE)
         })

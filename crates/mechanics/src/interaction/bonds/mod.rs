@@ -1,5 +1,6 @@
 //! Bonds between the points of a body, whatever their law: groups of eight points, whose bonds are walked together.
 
+pub mod abroad;
 pub mod breaking;
 pub mod cloud;
 mod columns;

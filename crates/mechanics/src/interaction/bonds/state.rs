@@ -5,9 +5,10 @@ use super::law::LawProperties;
 use super::records::Pack;
 use super::repulsion::Pushed;
 use super::store::Store;
-use super::view::BondView;
+use super::view::{BLOCK, BondView};
 use crate::body::{Body, Column, Field, FieldView, Identity, Subdomain, field};
 use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
+use crate::execute::lane::TILE;
 use crate::execute::simd::{Kernel, Simd};
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::{BlockTally, Repulsion, Tally, Toughness};
@@ -315,12 +316,15 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             return;
         }
         let critical: &[f64] = &self.critical;
-        self.blocks.run(&Pack {
+        let slots = records.len() / 4;
+        let kernel = Pack {
             u,
-            slots: records.len() / 4,
+            slots,
             fourth: if self.law.fused { critical } else { &[] },
             records: Shared(records.as_mut_ptr()),
-        });
+        };
+        // copies have no groups
+        run_blocks(self.blocks.simd, &kernel, slots.div_ceil(BLOCK * TILE));
     }
 
     /// The room with these displacements; give it back. Of a law that panicked nobody did: it is as large as ever all the same.

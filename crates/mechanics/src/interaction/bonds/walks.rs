@@ -193,6 +193,7 @@ pub trait Walks<const D: usize> {
     /// Bits of whole bonds and critical values, as they are laid out.
     fn memory(&self) -> (&[u8], &[f64]);
     fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>);
+    fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>);
     fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>);
     fn each_directed(&self, body: &Body<D>, visit: &mut EachPair<D>);
     fn damage(&self, body: &Body<D>, out: &mut [f64]);
@@ -244,16 +245,24 @@ impl<const D: usize, F: Family<D>> Walks<D> for BondState<D, F> {
         });
     }
 
+    fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        for (group, k, l) in self.directed() {
+            let i = self.family.rows(group).slot(l);
+            let j = body.exchange.original(self.family.ends(group, k).slot(l));
+            let status = match self.is_whole(group, k, l) {
+                true => BondStatus::Whole,
+                false => BondStatus::Broken,
+            };
+            visit(i, j, self.family.bond(group, k, l).0, status);
+        }
+    }
+
     fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>) {
         self.each_broken_of(body, |_| true, visit);
     }
 
     fn each_directed(&self, body: &Body<D>, visit: &mut EachPair<D>) {
-        for (group, k, l) in self.directed() {
-            let i = self.family.rows(group).slot(l);
-            let j = body.exchange.original(self.family.ends(group, k).slot(l));
-            visit(i, j, self.family.bond(group, k, l).0);
-        }
+        self.each_partner(body, &mut |i, j, xi, _| visit(i, j, xi));
     }
 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {
@@ -312,7 +321,8 @@ impl<const D: usize, F: Family<D>> Walks<D> for BondState<D, F> {
                 mended.push((group, k, l));
             }
         }
-        if mended.is_empty() {
+        // what points know of their families goes to all that have copies
+        if !body.exchange.any(!mended.is_empty()) {
             return Some(0);
         }
         for &(group, k, l) in &mended {

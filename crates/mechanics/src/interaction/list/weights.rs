@@ -56,5 +56,9 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             field.copy_from_slice(&own);
             self.pressure.extend(pressure);
         }
+        if !self.fields.is_empty() {
+            let at = |slot: usize, n: usize| 2 * slot + n;
+            body.exchange.fill_numbers(&mut self.fields, 2, at);
+        }
     }
 }

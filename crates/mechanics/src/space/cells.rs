@@ -18,24 +18,24 @@ pub struct Cells<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Cells<'a, D> {
-    /// Cells for the first `points` slots; a period must be longer than twice the radius.
+    /// Cells for these slots; a period must be longer than twice the radius.
     pub fn new(
         position: [&'a [f64]; D],
-        points: usize,
+        slots: &[u32],
         period: [Option<f64>; D],
         radius: f64,
     ) -> Self {
         let mut low = [0.0; D];
         let mut extent = [0.0; D];
         for a in 0..D {
-            let range = position[a][..points]
-                .iter()
+            let range = { slots.iter().map(|s| position[a][*s as usize]) }
                 .fold([f64::INFINITY, f64::NEG_INFINITY], |r, x| {
-                    [r[0].min(*x), r[1].max(*x)]
+                    [r[0].min(x), r[1].max(x)]
                 });
             low[a] = range[0];
             extent[a] = period[a].unwrap_or(range[1] - range[0]);
         }
+        let points = slots.len();
         // a little more than half the radius: round-off at a cell's border loses no partner
         let mut edge = 0.5 * (1.0 + 1e-6) * radius;
         let cells = |edge: f64| -> [f64; D] { extent.map(|e: f64| (e / edge).floor().max(1.0)) };
@@ -56,9 +56,9 @@ impl<'a, const D: usize> Cells<'a, D> {
             slot: vec![0; points],
             x: crate::array::from_fn(|_| vec![0.0; points]),
         };
-        let of: Vec<u32> = (0..points)
+        let of: Vec<u32> = { slots.iter() }
             .map(|i| {
-                let c = cells.cell(i);
+                let c = cells.cell(*i as usize);
                 (0..D).rev().fold(0, |n, a| n * count[a] + c[a]) as u32
             })
             .collect();
@@ -69,12 +69,12 @@ impl<'a, const D: usize> Cells<'a, D> {
             cells.start[c] += cells.start[c - 1];
         }
         let mut next = cells.start.clone();
-        for (i, &c) in of.iter().enumerate() {
+        for (&i, &c) in slots.iter().zip(&of) {
             let n = next[c as usize] as usize;
             next[c as usize] += 1;
-            cells.slot[n] = i as u32;
+            cells.slot[n] = i;
             for a in 0..D {
-                cells.x[a][n] = position[a][i];
+                cells.x[a][n] = position[a][i as usize];
             }
         }
         cells
