@@ -277,8 +277,8 @@ fn what_ranks_cannot_share_is_told_once_and_writes_nothing() {
         "did you mean `m_ratio`?",
     );
     refused(BLOCK, &["--threads", "0"], "at least one thread must run");
-    let touching = BLOCK.replace("contact = false", "contact = true");
-    refused(&touching, &[], "ranks do not share contact");
+    let rubbing = BLOCK.replace("contact = false", "contact = { friction = 0.3 }");
+    refused(&rubbing, &[], "ranks do not share friction of contact");
     refused(
         BLOCK,
         &["--set", "body.cells=[4, 4, 4]"],

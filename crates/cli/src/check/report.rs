@@ -99,7 +99,8 @@ fn cost(found: &Findings) -> String {
     }
     if let Some(ranks) = &found.ranks {
         let of_one = |why: &String| format!("one process: {why}");
-        let shared = "share the run, with the same bits on any number of them (mpiexec -n)";
+        let shared =
+            "share the run, one for each 256 points at most, with the same bits (mpiexec -n)";
         row(
             &mut out,
             "ranks",

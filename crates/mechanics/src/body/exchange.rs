@@ -28,7 +28,7 @@
 //!   [`Tally`](crate::interaction::Tally), and the work of what acts) stays such a sum of this rank's points, and ranks add theirs when somebody asks.
 //! - *Ids and slots of originals* name the ends of bonds for whoever walks over them ([`Exchange::original`]).
 //!
-//! Lists of clouds have no copies yet: they move a partner by whole periods to where it is nearest. Lists of near atoms make theirs anew with every list
+//! Clouds have no copies of periodic images: their lists move a partner by whole periods to where it is nearest. Lists of near atoms make theirs anew with every list
 //! ([`near`](crate::family::neighbours::near)), which says what ranks need for that.
 
 use bytemuck::{Pod, bytes_of, bytes_of_mut, cast_slice, cast_slice_mut};
