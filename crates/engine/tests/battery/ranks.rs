@@ -370,7 +370,6 @@ fn every_material_of_a_cloud_has_the_same_bits_on_any_number_of_ranks() {
             _ => same::<3>(&spec, &ranks, None),
         });
     }
-    println!("{tried} {torn_ones}");
     assert!(tried > 30 && torn_ones > 25, "{tried} {torn_ones}");
 }
 
@@ -629,7 +628,7 @@ fn bonds_break_on_ranks_by_whatever_they_break_by() {
                 2 => same::<2>(&spec, &[2, 3], None),
                 _ => same::<3>(&spec, &[2, 3], None),
             };
-            println!("{name} {kind:?} {n}: {broke}");
+            assert!(broke, "{name} {kind:?} {n}: nothing broke");
         }
     }
 }
