@@ -1,6 +1,7 @@
 """Does the program find the MPI that started it, do messages between its ranks come as they were sent, and is it said where they cannot?
 
-And does a run that they share write the same bytes on any number of them, and end well where its input is wrong?
+And does a run that they share write the same bytes on any number of them, cut off and gone on with on another number, or after one of them was killed, and
+end well where its input is wrong?
 
 Usage: python verify/ranks/check.py --program target/debug/peridyne --mpi FOLDER [--mpi FOLDER]
 FOLDER has bin/mpiexec and lib/libmpi_abi.so.1: a virtual environment into which `pip install mpich` or `pip install impi-rt` was done.
@@ -10,9 +11,12 @@ import argparse
 import hashlib
 import json
 import os
+import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 RANKS = [1, 2, 3, 4]
@@ -24,7 +28,10 @@ DECK = DECKS / "ten_lines.toml"
 ASKED = {
     "ten_lines": (["body.spacing=1 mm", "run.steps=200", "output.every=60"], 110, 10_000),
     "two_bodies": (["output.every=40"], 70, 10_000),
+    "heated_plate": ([], 20, 0),
 }
+# a run that is killed: as the first one, with a state every fifth of a second
+KILLED = ["--set", "body.spacing=1 mm", "--set", "run.steps=400", "--set", "output.every=150", "--set", 'output.checkpoint={ every = "0.2 s", keep = 2 }']
 
 
 def environment(**more):
@@ -35,6 +42,15 @@ def environment(**more):
 def run(command, **more):
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, env=environment(**more), timeout=300)
     return done.returncode, done.stdout, done.stderr
+
+
+def of_run(process, out):
+    """Is it a rank of the run with these results?"""
+    try:
+        words = (process / "cmdline").read_bytes().split(b"\0")
+    except OSError:
+        return False
+    return words[0].endswith(b"peridyne") and str(out).encode() in words
 
 
 def main():
@@ -53,22 +69,59 @@ def main():
                 out = Path(folder) / f"{parts}"
                 first = ["run", DECKS / f"{deck}.toml", *keys, "--out", out]
                 cut = ["--stop-after", stop] if parts == 2 else []
-                for words in [[*first, *cut], ["resume", out]][:parts]:
-                    code, said, err = run([*launcher, program, *words, "--threads", "1", *more])
+                for part, words in enumerate([[*first, *cut], ["resume", out]][:parts]):
+                    # what was cut off goes on in one process
+                    on = [] if part else launcher
+                    code, said, err = run([*on, program, *words, "--threads", "1", *([] if part else more)])
                     if code:
                         wrong.append(f"{name}: {code}\n{said}{err}")
                         return
                 record = json.loads((out / "run.json").read_text())
-                files = {str(p.relative_to(out)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(out.rglob("*")) if p.is_file() and p.name not in ["run.json", "report.html"]}
-                ends[deck, f"{name}, {parts}"] = (record["state_hash"], record["ledger_hash"], files)
-                hold(record["broken_directed_bonds"] > broken, f"{name}: {record['broken_directed_bonds']} broken")
-                hold(record["ranks"] == (int(name.split()[-1]) if name != "alone" else 1), f"{name}: {record['ranks']} ranks")
+                ends[deck, f"{name}, {parts}"] = written(out)
+                hold(record["broken_directed_bonds"] >= broken, f"{name}: {record['broken_directed_bonds']} broken")
+                ranks = 1 if name == "alone" or parts == 2 else int(name.split()[-1])
+                hold(record["ranks"] == ranks, f"{name}: {record['ranks']} ranks")
 
     def hold(true, what):
         if not true:
             wrong.append(what)
 
+    def written(out):
+        record = json.loads((out / "run.json").read_text())
+        files = {str(p.relative_to(out)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(out.rglob("*")) if p.is_file() and p.name not in ["run.json", "report.html"]}
+        return record["state_hash"], record["ledger_hash"], files
+
+    def killed(mpi, whole):
+        """One of three ranks is killed while they run: the others end, and other numbers of ranks go on from the last state."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out"
+            words = [mpi / "bin/mpiexec", "-n", 3, program, "run", DECK, *KILLED, "--threads", 1, "--out", out]
+            launcher = subprocess.Popen([str(word) for word in words], env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            until = time.monotonic() + 120
+            while not list(out.glob("checkpoint/*.state")) and launcher.poll() is None and time.monotonic() < until:
+                time.sleep(0.01)
+            ranks = [int(p.name) for p in Path("/proc").iterdir() if p.name.isdigit() and of_run(p, out)]
+            hold(len(ranks) == 3 and launcher.poll() is None, f"{mpi}: {len(ranks)} ranks run, and the launcher: {launcher.poll()}")
+            if ranks:
+                os.kill(max(ranks), signal.SIGKILL)
+            try:
+                code = launcher.wait(60)
+            except subprocess.TimeoutExpired:
+                launcher.kill()
+                code = 0
+            hold(code != 0, f"{mpi}: a rank was killed, and the others go on")
+            for ranks in [2, 4]:
+                again = Path(folder) / f"on {ranks}"
+                shutil.copytree(out, again)
+                code, said, err = run([mpi / "bin/mpiexec", "-n", ranks, program, "resume", again, "--threads", 1])
+                hold(code == 0 and written(again) == whole, f"{mpi}, one of 3 killed, on {ranks}: {code}\n{said}{err}")
+            print(f"mpiexec of {mpi.name}: one of 3 ranks was killed, 2 and 4 went on")
+
+    with tempfile.TemporaryDirectory() as folder:
+        code, said, err = run([program, "run", DECK, *KILLED, "--out", Path(folder) / "out"])
+        whole = written(Path(folder) / "out") if code == 0 else hold(False, f"alone: {said}{err}")
     for mpi in asked.mpi:
+        killed(mpi, whole)
         for ranks in RANKS:
             code, out, err = run([mpi / "bin/mpiexec", "-n", ranks, program, "ranks", "--json"])
             try:
@@ -83,7 +136,8 @@ def main():
                 _, latency, speed = (found["speeds"][0][key] for key in ("between", "latency_s", "bytes_per_s"))
                 print(f"{ranks} ranks by {found['carrier'].split(' (')[0]}: {latency * 1e6:.2f} µs, {speed * 1e-9:.2f} GB/s")
             end(f"{mpi.name} on {ranks}", [mpi / "bin/mpiexec", "-n", ranks])
-        end(f"{mpi.name} on 3", [mpi / "bin/mpiexec", "-n", 3], deck="two_bodies")
+        for deck in list(ASKED)[1:]:
+            end(f"{mpi.name} on 3", [mpi / "bin/mpiexec", "-n", 3], deck=deck)
         # a launcher, and no MPI
         code, out, err = run([mpi / "bin/mpiexec", "-n", 2, program, "ranks"], PERIDYNE_MPI="/nowhere/libmpi_abi.so.1")
         hold(code == 2 and out == "" and " ".join(err.replace("│", " ").split()).count("no MPI with the standard ABI") == 1 and "/nowhere/" in err, f"{mpi} without a library: {code}\n{out}{err}")

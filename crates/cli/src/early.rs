@@ -48,7 +48,6 @@ pub fn asked(input: &Input, [command, name, text]: [String; 3]) -> Asked {
         text,
         set: input.set.clone(),
         files,
-        ranks: 1,
         ..Asked::default()
     }
 }

@@ -16,6 +16,7 @@ mod law;
 mod laws;
 mod new;
 mod numbers;
+mod plan;
 mod progress;
 mod ranks;
 mod report;
@@ -74,6 +75,8 @@ enum Verb {
     Reproduce(reproduce::ReproduceArguments),
     /// Which MPI is found under a launcher, whether messages between all ranks come as they were sent, and how fast.
     Ranks(ranks::RanksArguments),
+    /// How long a deck would take on many machines, what each holds, and how well they share it: measured by a few steps here.
+    Plan(plan::PlanArguments),
     /// List the laws, lattices and influence functions with their parameters.
     Laws,
     /// Explain a key, a table, a law or a field of decks.
@@ -150,6 +153,7 @@ fn main() -> ExitCode {
         Verb::Report(arguments) => report::report(&arguments),
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Ranks(arguments) => ranks::ranks(&arguments),
+        Verb::Plan(arguments) => plan::plan(&arguments),
         Verb::Laws => laws::print(),
         Verb::Doc(arguments) => doc::doc(&arguments),
         Verb::Schema(arguments) => print_schema(arguments.kind),

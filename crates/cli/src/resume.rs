@@ -10,7 +10,6 @@ use crate::ranks::{agreed, alone, shared, threads_here};
 use crate::run::{Begin, RunArguments, run_deck, with_threads};
 use crate::script;
 use peridyne_comm::Comm;
-use peridyne_io::deck::counted;
 use peridyne_io::read::source;
 use peridyne_io::write::checkpoint::{Asked, Checkpoint};
 use std::path::PathBuf;
@@ -104,7 +103,6 @@ fn resume_among(arguments: &ResumeArguments, comm: &Arc<Comm>) -> Result<(), Fai
             Begin::Anew(InitialState::of(from)?)
         }
         None => {
-            agreed(comm, goes_on(&asked, comm.ranks()))?;
             if comm.rank() == 0 {
                 going_on(&asked);
             }
@@ -114,22 +112,6 @@ fn resume_among(arguments: &ResumeArguments, comm: &Arc<Comm>) -> Result<(), Fai
     with_threads(threads, |threads| {
         run_deck(&run, &deck, (comm, threads), begin)
     })
-}
-
-/// Was the state written by as many ranks?
-fn goes_on(asked: &Asked, ranks: usize) -> Result<(), Failure> {
-    if asked.ranks == ranks as u64 {
-        return Ok(());
-    }
-    let go_on = match asked.ranks {
-        1 => "in one process".into(),
-        ranks => format!("on as many (mpiexec -n {ranks} peridyne resume)"),
-    };
-    Err(Failure::input(format!(
-        "the state is of {}, and here {} would go on with it: do so {go_on}",
-        counted(asked.ranks, "rank"),
-        counted(ranks as u64, "rank")
-    )))
 }
 
 /// Is it the deck that the run began with?

@@ -173,7 +173,6 @@ pub fn run_deck(
     plan.command = deck::command(&arguments.input);
     let records = [&plan.command, &plan.deck, &plan.deck_text].map(String::clone);
     plan.asked = asked(&arguments.input, records);
-    plan.asked.ranks = comm.ranks() as u64;
     if let Some(from) = &from {
         same_files(&from.asked.files, &plan.asked.files)?;
         // records are those of the run that began
@@ -212,7 +211,15 @@ pub fn run_deck(
         done => format!("the last {} of {whole}", steps - done),
     };
     if comm.ranks() > 1 {
-        say(&format!("ranks     {}: {}", comm.ranks(), comm.carrier()));
+        let idle = match sim.info().idle_ranks {
+            0 => String::new(),
+            idle => format!("\nidle      {idle} of them: the body has no more blocks of 256 cells"),
+        };
+        say(&format!(
+            "ranks     {}: {}{idle}",
+            comm.ranks(),
+            comm.carrier()
+        ));
     }
     say(&format!(
         "threads   {threads}\nrunning {left}, results in {}",

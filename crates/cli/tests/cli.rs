@@ -279,11 +279,6 @@ fn what_ranks_cannot_share_is_told_once_and_writes_nothing() {
     refused(BLOCK, &["--threads", "0"], "at least one thread must run");
     let rubbing = BLOCK.replace("contact = false", "contact = { friction = 0.3 }");
     refused(&rubbing, &[], "ranks do not share friction of contact");
-    refused(
-        BLOCK,
-        &["--set", "body.cells=[4, 4, 4]"],
-        "2 ranks for a body of 1 block",
-    );
     // where one rank has its points
     let nowhere = r#"initial=[{ velocity = { x = "1 mm^2/s / max(z - 4 mm, 0 mm)" } }]"#;
     refused(BLOCK, &["--set", nowhere], "is inf at");
@@ -292,7 +287,7 @@ fn what_ranks_cannot_share_is_told_once_and_writes_nothing() {
     let output = run(&script, &out, &["--on-threads", "2"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(errors(&output).contains("ranks do not share scripts of LAMMPS"));
-    // a state goes on with as many
+    // a state goes on with any number of them
     std::fs::write(&file, BLOCK).unwrap();
     let more = [
         "--set",
@@ -303,10 +298,58 @@ fn what_ranks_cannot_share_is_told_once_and_writes_nothing() {
         "2",
     ];
     good(run(&file, &out, &more));
-    let output = peridyne(&["resume", out.to_str().unwrap()]);
-    assert_eq!(output.status.code(), Some(2));
-    let said = errors(&output).replace("\n  │ ", " ");
-    assert!(said.contains("mpiexec -n 2 peridyne resume"), "{said}");
+    good(peridyne(&["resume", out.to_str().unwrap()]));
+}
+
+#[test]
+fn a_plan_is_of_what_a_step_costs_and_how_the_body_is_cut() {
+    let dir = TempDir::new().unwrap();
+    let file = dir.path().join("block.toml");
+    // whole layers of 256 cells: a part of four of them has copies of three on either side
+    let layers = BLOCK.replace("[10, 10, 10]", "[16, 16, 32]");
+    std::fs::write(&file, layers.replace("2 us", "0.2 us")).unwrap();
+    let file = file.to_str().unwrap();
+    let asked = [
+        "--nodes",
+        "1,2,8,40",
+        "--cores",
+        "8",
+        "--steps",
+        "3",
+        "--threads",
+        "1",
+    ];
+    let words = [&["plan", file, "--json"][..], &asked].concat();
+    let found: Value = serde_json::from_slice(&good(peridyne(&words)).stdout).unwrap();
+    let nodes = found["nodes"].as_array().unwrap();
+    let of = |key: &str| -> Vec<u64> { nodes.iter().map(|n| n[key].as_u64().unwrap()).collect() };
+    assert_eq!(of("points"), [8192, 4096, 1024, 256]);
+    assert_eq!(of("idle"), [0, 0, 0, 8]);
+    // rows of cells have guards on their ends, so that a layer is more than 256 cells
+    let copies = of("copies");
+    assert!(
+        copies[0] == 0 && copies[1] >= 3 * 256 && copies[1] < 4 * 256,
+        "{copies:?}"
+    );
+    assert!(copies[2] >= 6 * 256 && copies[2] < 8 * 256, "{copies:?}");
+    // displacements alone are told, once in a step, and where the fastest point went
+    assert_eq!(found["messages"], 1.0);
+    assert_eq!(found["bytes_per_copy"], 24.0);
+    let number = |n: usize, key: &str| nodes[n][key].as_f64().unwrap();
+    let step = found["seconds_per_step"].as_f64().unwrap();
+    assert!((number(0, "seconds_per_step") / (step / 8.0) - 1.0).abs() < 1e-12);
+    assert!((number(0, "efficiency") - 1.0).abs() < 1e-12);
+    assert!(number(3, "efficiency") < number(2, "efficiency"));
+    assert!(number(2, "bytes") < number(1, "bytes") && number(1, "bytes") < number(0, "bytes"));
+    for (wrong, why) in [
+        ("--nodes=0", "at least one machine"),
+        ("--cores=0", "one core"),
+        ("--bandwidth=0", "more than 0"),
+    ] {
+        let output = peridyne(&["plan", file, wrong]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(errors(&output).contains(why), "{wrong}");
+    }
 }
 
 #[test]

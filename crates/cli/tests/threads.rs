@@ -213,43 +213,38 @@ fn program(case: &Case, arguments: &[&str]) -> String {
     without_clock_of_lammps(text.lines().take_while(|line| !ours(line)))
 }
 
-/// On how many ranks a case runs that can be shared, as arguments.
-fn ranks(dir: &Path, case: &Case) -> Vec<&'static str> {
-    let out = dir.join(format!("{}-ranks", case.name));
-    let shared = |ranks: &&str| {
-        let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
-            .args(["run", case.path.to_str().unwrap(), "--stop-after", "0"])
-            .args(["--on-threads", ranks, "--out", out.to_str().unwrap()])
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&done.stderr).replace(['│', '\n'], " ");
-        let said: Vec<&str> = said.split_whitespace().collect();
-        let said = said.join(" ");
-        let refused = ["ranks do not share", "ranks for a body of"];
-        let refused = refused.iter().any(|why| said.contains(why));
-        assert_eq!(
-            done.status.code(),
-            Some(if refused { 2 } else { 0 }),
-            "{}: {said}",
-            case.name
-        );
-        !refused
-    };
-    let ranks = ["3", "2"].into_iter().find(shared);
-    ranks.map_or(vec![], |ranks| vec!["--on-threads", ranks])
+/// Begins a case on ranks where these can share it, and says whether they do.
+fn begun(case: &Case, arguments: &[&str]) -> (String, bool) {
+    let on_ranks = [arguments, &["--on-threads", "3"]].concat();
+    let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .args(&on_ranks)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&done.stderr).replace(['│', '\n'], " ");
+    let said: Vec<&str> = said.split_whitespace().collect();
+    let said = said.join(" ");
+    if !said.contains("ranks do not share") {
+        assert_eq!(done.status.code(), Some(0), "{}: {said}", case.name);
+        SHARED.fetch_add(1, Ordering::Relaxed);
+        return (String::from_utf8(done.stdout).unwrap(), true);
+    }
+    assert_eq!(done.status.code(), Some(2), "{}: {said}", case.name);
+    (program(case, arguments), false)
 }
 
 /// Cases that ran on ranks.
 static SHARED: AtomicUsize = AtomicUsize::new(0);
 
 /// Runs a case; all that it wrote.
-fn run(dir: &Path, case: &Case, threads: &str, ranks: &[&str]) -> BTreeMap<PathBuf, Vec<u8>> {
+fn run(dir: &Path, case: &Case, threads: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let out = dir.join(format!("{}-{threads}", case.name));
     let to = out.to_str().unwrap();
     let deck = case.path.to_str().unwrap();
-    let mut arguments = vec!["run", deck, "--threads", threads, "--out", to];
-    arguments.extend(ranks);
-    let said = program(case, &arguments);
+    let arguments = ["run", deck, "--threads", threads, "--out", to];
+    let said = match threads {
+        "1" => program(case, &arguments),
+        _ => begun(case, &arguments).0,
+    };
     with_output(case, files(&out), said)
 }
 
@@ -265,30 +260,36 @@ fn with_output(
     files
 }
 
-/// The same in parts: on one thread to the first stop, as if it were cut off there, from there on three to the next, and so on.
-fn run_in_parts(
-    dir: &Path,
-    case: &Case,
-    stops: &[u64],
-    ranks: &[&str],
-) -> BTreeMap<PathBuf, Vec<u8>> {
+/// The same in parts: on one thread to the first stop, as if it were cut off there, from there on three to the next, and so on. Of what ranks share each
+/// part is of another number of them.
+fn run_in_parts(dir: &Path, case: &Case, stops: &[u64]) -> BTreeMap<PathBuf, Vec<u8>> {
     let out = dir.join(format!("{}-parts", case.name));
     let to = out.to_str().unwrap();
     let deck = case.path.to_str().unwrap();
-    let mut said = String::new();
+    let (mut said, mut shared) = (String::new(), false);
     for part in 0..=stops.len() {
         let mut arguments = match part {
             0 => vec!["run", deck, "--out", to],
             _ => vec!["resume", to],
         };
         arguments.extend(["--threads", ["1", "3", "2"][part % 3]]);
-        arguments.extend(ranks);
+        if shared {
+            let ranks: [&[&str]; 3] = [&["--on-threads", "4"], &[], &["--on-threads", "2"]];
+            arguments.extend(ranks[part % 3]);
+        }
         let stop = stops.get(part).map(u64::to_string);
         if let Some(stop) = &stop {
             arguments.extend(["--stop-after", stop]);
         }
         let before = last_state(&out);
-        let printed = program(case, &arguments);
+        let printed = match part {
+            0 => {
+                let printed;
+                (printed, shared) = begun(case, &arguments);
+                printed
+            }
+            _ => program(case, &arguments),
+        };
         // where no state was written the next part begins where this one did
         if stop.is_none() || last_state(&out) != before {
             said += &printed;
@@ -328,9 +329,7 @@ fn compare(dir: &Path, case: &Case) -> String {
 /// The same with other stops, and the run's record.
 fn compare_cut(dir: &Path, case: &Case, stops: &dyn Fn(u64) -> Vec<u64>) -> (String, Value) {
     let name = &case.name;
-    let one = run(dir, case, "1", &[]);
-    let ranks = ranks(dir, case);
-    SHARED.fetch_add(ranks.len() / 2, Ordering::Relaxed);
+    let one = run(dir, case, "1");
     assert!(one.len() >= 2, "{name}");
     let report = Path::new("run.json");
     let steps = |of: &[u8]| serde_json::from_slice::<Value>(of).unwrap()["steps"].as_u64();
@@ -339,8 +338,8 @@ fn compare_cut(dir: &Path, case: &Case, stops: &dyn Fn(u64) -> Vec<u64>) -> (Str
         .map(stops)
         .unwrap_or_default();
     let many = match stops[..] {
-        [] => run(dir, case, "3", &ranks),
-        [..] => run_in_parts(dir, case, &stops, &ranks),
+        [] => run(dir, case, "3"),
+        [..] => run_in_parts(dir, case, &stops),
     };
     let names = |of: &BTreeMap<PathBuf, Vec<u8>>| of.keys().cloned().collect::<Vec<_>>();
     assert_eq!(names(&one), names(&many), "{name}: other files");

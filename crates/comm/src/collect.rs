@@ -11,6 +11,7 @@ impl Comm {
     /// As of [`Comm::exchange`].
     pub fn all(&self, own: &[u8]) -> Result<Vec<Vec<u8>>, Failure> {
         let (rank, ranks) = (self.rank(), self.ranks());
+        self.count_round();
         // those of this rank and of the ones after it, in a ring
         let mut there = vec![own.to_vec()];
         while there.len() < ranks {
@@ -22,7 +23,7 @@ impl Comm {
                 .flat_map(|bytes| (bytes.len() as u64).to_le_bytes())
                 .collect();
             let mut sizes_there = vec![0; sizes.len()];
-            self.exchange(&[(to, &sizes)], &mut [(from, &mut sizes_there)], || ())?;
+            self.trade(&[(to, &sizes)], &mut [(from, &mut sizes_there)], || ())?;
             let sizes_there = sizes_there.chunks_exact(8);
             let mut new: Vec<Vec<u8>> = sizes_there
                 .map(|size| vec![0; u64::from_le_bytes(size.try_into().unwrap()) as usize])
@@ -36,7 +37,7 @@ impl Comm {
                 .filter(|bytes| !bytes.is_empty())
                 .map(|bytes| (from, &mut bytes[..]))
                 .collect();
-            self.exchange(&send, &mut receive, || ())?;
+            self.trade(&send, &mut receive, || ())?;
             there.append(&mut new);
         }
         there.rotate_right(rank);

@@ -5,11 +5,30 @@ use crate::launcher;
 #[cfg(unix)]
 use crate::mpi;
 use crate::threads;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// This rank among the others.
 #[derive(Debug)]
 pub struct Comm {
     pub(crate) kind: Kind,
+    counted: Counted,
+}
+
+/// What this rank has sent so far.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// Messages to single ranks, and their bytes; those of what all hear are not among them.
+    pub messages: u64,
+    pub bytes: u64,
+    /// How often all heard what each had ([`Comm::all`]).
+    pub rounds: u64,
+}
+
+#[derive(Debug, Default)]
+struct Counted {
+    messages: AtomicU64,
+    bytes: AtomicU64,
+    rounds: AtomicU64,
 }
 
 #[derive(Debug)]
@@ -23,7 +42,7 @@ pub(crate) enum Kind {
 impl Comm {
     /// A process of its own.
     pub fn alone() -> Comm {
-        Comm { kind: Kind::Alone }
+        Comm::new(Kind::Alone)
     }
 
     /// One of the processes that a launcher (`mpiexec`, `srun`) started; alone where there is none, or one process, or `PERIDYNE_MPI` is `off`.
@@ -38,16 +57,41 @@ impl Comm {
             None => Ok(Comm::alone()),
             Some(launched) if launched.ranks == 1 => Ok(Comm::alone()),
             #[cfg(unix)]
-            Some(launched) => {
-                let kind = Kind::Mpi(mpi::Mpi::start(&launched)?);
-                Ok(Comm { kind })
-            }
+            Some(launched) => Ok(Comm::new(Kind::Mpi(mpi::Mpi::start(&launched)?))),
             #[cfg(not(unix))]
             Some(launched) => Err(Failure::NoMpi {
                 launched,
                 tried: vec!["MPI is looked for on Unix alone".into()],
             }),
         }
+    }
+
+    pub(crate) fn new(kind: Kind) -> Comm {
+        Comm {
+            kind,
+            counted: Counted::default(),
+        }
+    }
+
+    /// What this rank has sent so far.
+    pub fn traffic(&self) -> Traffic {
+        let Counted {
+            messages,
+            bytes,
+            rounds,
+        } = &self.counted;
+        let [messages, bytes, rounds] =
+            [messages, bytes, rounds].map(|n| n.load(Ordering::Relaxed));
+        Traffic {
+            messages,
+            bytes,
+            rounds,
+        }
+    }
+
+    /// One more round of all.
+    pub(crate) fn count_round(&self) {
+        self.counted.rounds.fetch_add(1, Ordering::Relaxed);
     }
 
     /// This one's number, from 0.
@@ -88,6 +132,22 @@ impl Comm {
     /// # Errors
     /// Another rank has ended, a message has another length, a rank does not exist, or what MPI said. What was received then means nothing.
     pub fn exchange<R>(
+        &self,
+        send: &[(usize, &[u8])],
+        receive: &mut [(usize, &mut [u8])],
+        work: impl FnOnce() -> R,
+    ) -> Result<R, Failure> {
+        for (_, bytes) in send.iter().filter(|(to, _)| *to != self.rank()) {
+            self.counted.messages.fetch_add(1, Ordering::Relaxed);
+            self.counted
+                .bytes
+                .fetch_add(bytes.len() as u64, Ordering::Relaxed);
+        }
+        self.trade(send, receive, work)
+    }
+
+    /// [`Comm::exchange`], of which nobody keeps count.
+    pub(crate) fn trade<R>(
         &self,
         send: &[(usize, &[u8])],
         receive: &mut [(usize, &mut [u8])],

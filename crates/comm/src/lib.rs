@@ -16,6 +16,6 @@ pub mod mpi;
 mod on_threads;
 mod threads;
 
-pub use comm::Comm;
+pub use comm::{Comm, Traffic};
 pub use failure::Failure;
 pub use on_threads::on_threads;

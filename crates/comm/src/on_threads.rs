@@ -9,9 +9,7 @@ use crate::threads::Thread;
 /// There are no ranks, or one of them panicked: others that wait for it have [`Failure::Ended`](crate::Failure::Ended).
 pub fn on_threads<R: Send>(ranks: usize, work: impl Fn(Comm) -> R + Sync) -> Vec<R> {
     assert!(ranks > 0, "no rank does nothing");
-    let comm = |thread| Comm {
-        kind: Kind::Thread(thread),
-    };
+    let comm = |thread| Comm::new(Kind::Thread(thread));
     std::thread::scope(|scope| {
         let work = &work;
         let threads: Vec<_> = Thread::several(ranks)

@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::space::Point;
 use crate::space::face::{NoFace, Site, Sites};
 use crate::space::lattice::{Lattice, LatticeKind};
-use crate::spec::{BodySpec, Carriers, ConditionKind, ConditionSpec, Members, Spec};
+use crate::spec::{BodySpec, Carriers, ConditionKind, Members, Spec, TransferKind};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -149,25 +149,38 @@ impl Faces {
         Ok(areas)
     }
 
-    /// Finds the areas that tractions act on, of sets of a body that ranks will share.
+    /// Finds the areas that tractions, fluxes and exchanges act on, of sets of a body that ranks will share.
     ///
     /// # Errors
     /// As of [`Faces::areas`].
     pub fn find<const D: usize>(
         &mut self,
-        conditions: &[ConditionSpec],
+        spec: &Spec,
         body: &Body<D>,
         sets: &[(String, Vec<u32>)],
     ) -> Result<(), BuildError> {
-        for (n, c) in conditions.iter().enumerate() {
-            let ConditionKind::Traction { area: None, .. } = &c.kind else {
-                continue;
-            };
-            let here = |e: BuildError| e.at(format!("conditions[{n}]"));
-            let (slots, _) = body.slots_of(&c.set, sets).map_err(here)?;
-            let areas = self.areas(body, &c.set, &slots, None).map_err(here)?;
-            self.named.retain(|(name, _)| *name != c.set);
-            self.named.push((c.set.clone(), areas.into()));
+        let conditions = spec.loading.conditions.iter().enumerate();
+        let tractions = conditions.filter_map(|(n, c)| match &c.kind {
+            ConditionKind::Traction { area: None, .. } => {
+                Some((format!("conditions[{n}]"), &c.set))
+            }
+            _ => None,
+        });
+        let spreads = spec.interactions.transfers.iter().flat_map(|t| {
+            t.conditions.iter().filter_map(|c| match &c.kind {
+                TransferKind::Flux { area: None, .. }
+                | TransferKind::Exchange { area: None, .. } => {
+                    Some((t.quantity.name().to_string(), &c.set))
+                }
+                _ => None,
+            })
+        });
+        for (path, set) in tractions.chain(spreads) {
+            let here = |e: BuildError| e.at(path.clone());
+            let (slots, _) = body.slots_of(set, sets).map_err(here)?;
+            let areas = self.areas(body, set, &slots, None).map_err(here)?;
+            self.named.retain(|(name, _)| name != set);
+            self.named.push((set.clone(), areas.into()));
         }
         Ok(())
     }

@@ -122,6 +122,8 @@ pub struct Info {
     pub loads: Vec<LoadInfo>,
     /// Bonds cut by pre-cracks, directed.
     pub cut: u64,
+    /// Ranks that have no points, as there are more of them than blocks of the body.
+    pub idle_ranks: u64,
     /// Bytes held by the model.
     pub bytes: usize,
     pub simd: &'static str,

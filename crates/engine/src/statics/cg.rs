@@ -4,7 +4,7 @@ use super::goal::Goal;
 use super::operator::LinearOperator;
 use super::solved::Solved;
 use super::support::Support;
-use super::vectors::{add, add_to_multiple, dot, norm};
+use super::vectors::{add, add_to_multiple, product};
 use crate::error::SolveError;
 
 /// Solves `A x = b` (force) on the free components; held ones keep their `x`.
@@ -19,14 +19,14 @@ pub fn solve<const D: usize>(
     goal: Goal,
 ) -> Result<Solved, SolveError> {
     let n = operator.points();
-    let preconditioner = Blocks::new(&operator.diagonal(), support)?;
+    let preconditioner = Blocks::new(operator, support)?;
     let mut r = vec![[0.0; D]; n];
     operator.apply(x, &mut r);
     for (r, b) in r.iter_mut().zip(b) {
         *r = crate::array::from_fn(|a| b[a] - r[a]);
     }
     support.mask(&mut r);
-    let start = norm(&r);
+    let start = operator.sum(product(&r, &r)).sqrt();
     if start == 0.0 {
         return Ok(Solved::default());
     }
@@ -37,23 +37,25 @@ pub fn solve<const D: usize>(
     preconditioner.apply(&r, &mut z);
     let mut p = z.clone();
     let mut q = vec![[0.0; D]; n];
-    let mut rz = dot(&r, &z);
+    let mut rz = operator.sum(product(&r, &z));
     for iteration in 1..=goal.most_iterations {
         goal.go_on()?;
         operator.apply(&p, &mut q);
         support.mask(&mut q);
-        let curvature = dot(&p, &q);
+        let curvature = operator.sum(product(&p, &q));
         if !(curvature > 0.0) {
             return Err(if curvature.is_nan() {
                 SolveError::NotFinite
             } else {
-                indefinite(&p)
+                SolveError::Indefinite {
+                    point: operator.first(Some(most_moved(&p))).unwrap_or(0),
+                }
             });
         }
         let step = rz / curvature;
         add(x, step, &p);
         add(&mut r, -step, &q);
-        let residual = norm(&r) / start;
+        let residual = operator.sum(product(&r, &r)).sqrt() / start;
         if residual <= goal.tolerance {
             return Ok(Solved {
                 iterations: iteration,
@@ -61,19 +63,21 @@ pub fn solve<const D: usize>(
             });
         }
         preconditioner.apply(&r, &mut z);
-        let next = dot(&r, &z);
+        let next = operator.sum(product(&r, &z));
         add_to_multiple(&mut p, next / rz, &z);
         rz = next;
     }
-    Err(goal.missed(goal.most_iterations, norm(&r) / start))
+    let left = operator.sum(product(&r, &r)).sqrt();
+    Err(goal.missed(goal.most_iterations, left / start))
 }
 
 /// Inverses of the diagonal's blocks on the free components.
 struct Blocks<const D: usize>(Vec<[[f64; D]; D]>);
 
 impl<const D: usize> Blocks<D> {
-    fn new(diagonal: &[[[f64; D]; D]], support: &Support<D>) -> Result<Self, SolveError> {
-        let of = |(i, (block, free)): (usize, (&[[f64; D]; D], &[bool; D]))| {
+    fn new(operator: &mut dyn LinearOperator<D>, support: &Support<D>) -> Result<Self, SolveError> {
+        let diagonal = operator.diagonal();
+        let of = |(block, free): (&[[f64; D]; D], &[bool; D])| {
             let mut block = *block;
             for a in (0..D).filter(|a| !free[*a]) {
                 for b in 0..D {
@@ -82,10 +86,14 @@ impl<const D: usize> Blocks<D> {
                 }
                 block[a][a] = 1.0;
             }
-            inverse(block).ok_or(SolveError::Indefinite { point: i })
+            inverse(block)
         };
-        let blocks = diagonal.iter().zip(&support.free).enumerate().map(of);
-        Ok(Blocks(blocks.collect::<Result<_, _>>()?))
+        let blocks = diagonal.iter().zip(&support.free).map(of);
+        let blocks: Vec<_> = blocks.collect();
+        match operator.first(blocks.iter().position(Option::is_none)) {
+            Some(point) => Err(SolveError::Indefinite { point }),
+            None => Ok(Blocks(blocks.into_iter().flatten().collect())),
+        }
     }
 
     fn apply(&self, r: &[[f64; D]], z: &mut [[f64; D]]) {
@@ -120,11 +128,9 @@ fn inverse<const D: usize>(mut a: [[f64; D]; D]) -> Option<[[f64; D]; D]> {
     Some(inverse)
 }
 
-/// Where a motion that gives energy back is largest.
-fn indefinite<const D: usize>(p: &[[f64; D]]) -> SolveError {
+/// Where a motion is largest.
+fn most_moved<const D: usize>(p: &[[f64; D]]) -> usize {
     let square = |p: &[f64; D]| p.iter().map(|c| c * c).sum::<f64>();
     let largest = (0..p.len()).max_by(|i, j| square(&p[*i]).total_cmp(&square(&p[*j])));
-    SolveError::Indefinite {
-        point: largest.unwrap_or(0),
-    }
+    largest.unwrap_or(0)
 }

@@ -31,4 +31,4 @@ pub use masses::Masses;
 pub use operator::{Assembled, LinearOperator, Shifted, Swept};
 pub use solved::Solved;
 pub use support::Support;
-pub use vectors::{Block, diagonal, dot, norm};
+pub use vectors::{Block, diagonal, dot, norm, product};

@@ -3,6 +3,7 @@
 use super::support::Support;
 use super::vectors::{Block, dot, norm};
 use crate::body::{Body, Field, view, view_mut, zeros};
+use crate::execute::exact::Exact;
 use crate::interaction::{Interaction, Sweep};
 use crate::spec::LinearBody;
 use rayon::prelude::*;
@@ -17,6 +18,14 @@ pub trait LinearOperator<const D: usize> {
     fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]);
     /// Blocks of A on the diagonal, or of an operator near to it.
     fn diagonal(&mut self) -> Vec<[[f64; D]; D]>;
+    /// A sum over the points of all ranks, of which this one has a part.
+    fn sum(&self, own: Exact) -> f64 {
+        own.value()
+    }
+    /// The first of all ranks' points at which something was found.
+    fn first(&self, found: Option<usize>) -> Option<usize> {
+        found
+    }
 }
 
 /// How far an operator is from symmetric on the free components: `|x·Ay − y·Ax|` over `|x||Ay|` for two fixed vectors in which

@@ -1,5 +1,6 @@
 //! Sums over points with a fixed order, so that solvers give the same bits for any number of threads.
 
+use crate::execute::exact::Exact;
 use rayon::prelude::*;
 
 /// What a point resists with against its own place (force / length).
@@ -26,6 +27,22 @@ pub fn dot<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
         .map(part)
         .collect();
     parts.iter().sum()
+}
+
+/// `x · y` without rounding, for solvers that ranks share.
+pub fn product<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> Exact {
+    let part = |(x, y): (&[[f64; D]], &[[f64; D]])| -> Exact {
+        let (x, y) = (x.as_flattened().iter(), y.as_flattened());
+        x.zip(y).map(|(x, y)| x * y).collect()
+    };
+    let parts: Vec<Exact> = x
+        .par_chunks(CHUNK)
+        .zip(y.par_chunks(CHUNK))
+        .map(part)
+        .collect();
+    let mut sum = Exact::ZERO;
+    parts.iter().for_each(|part| sum.merge(part));
+    sum
 }
 
 /// `y += s x`

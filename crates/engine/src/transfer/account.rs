@@ -1,6 +1,7 @@
 //! What came into a body, and what it holds.
 
-use crate::state::words;
+use crate::execute::exact::Exact;
+use crate::state::{Archive, Owner};
 
 /// Amounts since the start (energy, or amount of a species). What the bonds carry cancels, so
 /// `content − initial = supplied + exchanged + held` up to round-off of explicit steps, and to the tolerance of implicit ones.
@@ -23,19 +24,35 @@ pub struct TransferAccount {
     pub through_contact: Option<f64>,
 }
 
-words!([] TransferAccount {
-    content: f64,
-    initial: f64,
-    supplied: f64,
-    exchanged: f64,
-    held: f64,
-    made: f64,
-    through_contact: Option<f64>,
-});
-
 impl TransferAccount {
     /// What the balance misses.
     pub fn residual(&self) -> f64 {
         self.content - self.initial - self.supplied - self.exchanged - self.held - self.made
+    }
+}
+
+/// The same of the points of one rank, as sums without rounding.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Gained {
+    pub initial: Exact,
+    pub supplied: Exact,
+    pub exchanged: Exact,
+    pub held: Exact,
+    pub made: Exact,
+    pub through_contact: Exact,
+}
+
+impl Owner for Gained {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        for (name, x) in [
+            ("initial", &mut self.initial),
+            ("supplied", &mut self.supplied),
+            ("exchanged", &mut self.exchanged),
+            ("held", &mut self.held),
+            ("made", &mut self.made),
+            ("through_contact", &mut self.through_contact),
+        ] {
+            archive.part(name, x);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What is done to sets of points: values held, fluxes, sources, exchange with the surroundings.
 
-use super::account::TransferAccount;
+use super::account::Gained;
 use crate::condition::Program;
 use crate::expression::Expression;
 use crate::space::Point;
@@ -117,29 +117,23 @@ impl Condition {
         }
     }
 
-    /// Adds its powers to `into`, their slopes to `slope`, and `time` times them to the account.
-    pub fn add(
+    /// Adds its powers to `into`, and `time` times them to the account.
+    pub(super) fn add(
         &self,
         value: &[f64],
         (t, time): (f64, f64),
         into: &mut [f64],
-        slope: Option<&mut [f64]>,
-        account: &mut TransferAccount,
+        account: &mut Gained,
     ) {
-        let mut sum = 0.0;
-        let mut slope = slope;
-        self.each(value, t, |i, power, by_value| {
+        let sum = match self.kind {
+            Kind::Held(_) => return,
+            Kind::Power(..) => &mut account.supplied,
+            Kind::Convection(..) | Kind::Radiation(..) => &mut account.exchanged,
+        };
+        self.each(value, t, |i, power, _| {
             into[i] += power;
-            sum += power;
-            if let Some(slope) = &mut slope {
-                slope[i] += by_value;
-            }
+            sum.add(time * power);
         });
-        match self.kind {
-            Kind::Held(_) => {}
-            Kind::Power(..) => account.supplied += time * sum,
-            Kind::Convection(..) | Kind::Radiation(..) => account.exchanged += time * sum,
-        }
     }
 
     /// Adds the slopes alone.

@@ -1,8 +1,10 @@
 //! Implicit steps and steady values: Newton's method with conjugate gradients.
 
-use super::{Rows, Touching, Transfer};
+use super::{Places, Rows, Touching, Transfer};
+use crate::body::Body;
 use crate::error::SolveError;
-use crate::statics::{Goal, LinearOperator, Support, cg, norm};
+use crate::execute::exact::Exact;
+use crate::statics::{Goal, LinearOperator, Support, cg, product};
 
 /// Rounds of Newton's method; radiation alone needs more than one.
 const ROUNDS: usize = 50;
@@ -12,25 +14,44 @@ const ITERATIONS: usize = 100_000;
 const ROUND_OFF: f64 = 1e-15;
 
 /// `diag(own) − g`: what values take to be changed.
-struct Operator<'a> {
+struct Operator<'a, const D: usize> {
+    of: (&'a Body<D>, &'a Places),
     rows: &'a Rows,
     touching: Option<&'a Touching>,
     /// On the diagonal beside the bonds.
     own: &'a [f64],
     /// Part of the bonds.
     theta: f64,
+    /// Of all places, and of those that are here.
+    values: Vec<f64>,
     room: Vec<f64>,
 }
 
-impl LinearOperator<1> for Operator<'_> {
+impl<const D: usize> LinearOperator<1> for Operator<'_, D> {
     fn points(&self) -> usize {
         self.own.len()
     }
 
+    fn sum(&self, own: Exact) -> f64 {
+        self.of.0.sums([own])[0]
+    }
+
+    /// By id of all ranks.
+    fn first(&self, found: Option<usize>) -> Option<usize> {
+        let (body, places) = self.of;
+        let id = |place: usize| body.number(places.here()[place] as usize) as f64 - 1.0;
+        let least = body.least(found.map_or(f64::INFINITY, id));
+        least.is_finite().then_some(least as usize)
+    }
+
     fn apply(&mut self, x: &[[f64; 1]], y: &mut [[f64; 1]]) {
-        self.rows.flow(|i| x[i][0], &mut self.room);
+        let (body, places) = self.of;
+        self.values[..x.len()].copy_from_slice(x.as_flattened());
+        places.fill(body, &mut self.values);
+        let values = &self.values;
+        self.rows.flow(|i| values[i], &mut self.room);
         if let Some(touching) = self.touching {
-            touching.flow(|i| x[i][0], &mut self.room);
+            touching.flow(|i| values[i], &mut self.room);
         }
         for (i, y) in y.iter_mut().enumerate() {
             y[0] = self.own[i] * x[i][0] - self.theta * self.room[i];
@@ -49,8 +70,9 @@ impl LinearOperator<1> for Operator<'_> {
 
 impl Transfer {
     /// `C (T₁ − T₀) = Δt (θ P(T₁, t₁) + (1 − θ) P(T₀, t₀))`.
-    pub(super) fn implicit(
+    pub(super) fn implicit<const D: usize>(
         &mut self,
+        of: (&Body<D>, &Places),
         (t, dt): (f64, f64),
         theta: f64,
         tolerance: f64,
@@ -59,38 +81,46 @@ impl Transfer {
         let past: Vec<f64> = self.flow.iter().map(|p| (1.0 - theta) * p).collect();
         let old = self.value.clone();
         let inertia: Vec<f64> = self.capacity.iter().map(|c| c / dt).collect();
-        self.solve((t + dt, theta), tolerance, &inertia, |i, value| {
+        self.solve(of, (t + dt, theta), tolerance, &inertia, |i, value| {
             past[i] - inertia[i] * (value - old[i])
         })?;
         self.powers(t + dt, theta * dt);
         for i in &self.held_places {
             let i = *i as usize;
             let given = dt * (theta * self.flow[i] + past[i]);
-            self.account.held += self.capacity[i] * (self.value[i] - old[i]) - given;
+            let gained = self.capacity[i] * (self.value[i] - old[i]);
+            self.gained.held.add(gained - given);
         }
         Ok(())
     }
 
     /// Values at which nothing flows into free points at time `t`. What a body gained on the way has no time: it counts as held.
-    pub(super) fn steady(&mut self, t: f64, tolerance: f64) -> Result<(), SolveError> {
-        let before = self.content();
-        let none = vec![0.0; self.value.len()];
-        self.solve((t, 1.0), tolerance, &none, |_, _| 0.0)?;
-        self.account.held += self.content() - before;
+    pub(super) fn steady<const D: usize>(
+        &mut self,
+        of: (&Body<D>, &Places),
+        t: f64,
+        tolerance: f64,
+    ) -> Result<(), SolveError> {
+        let before = self.value.clone();
+        let none = vec![0.0; self.capacity.len()];
+        self.solve(of, (t, 1.0), tolerance, &none, |_, _| 0.0)?;
+        for (i, c) in self.capacity.iter().enumerate() {
+            self.gained.held.add(c * (self.value[i] - before[i]));
+        }
         Ok(())
     }
 
     /// `θ P(T, t) + more(T) = 0` at the free points, `inertia = −∂more/∂T`.
-    fn solve(
+    fn solve<const D: usize>(
         &mut self,
+        (body, places): (&Body<D>, &Places),
         (t, theta): (f64, f64),
         tolerance: f64,
         inertia: &[f64],
         more: impl Fn(usize, f64) -> f64,
     ) -> Result<(), SolveError> {
-        for c in &self.conditions {
-            c.place(&mut self.value, t);
-        }
+        self.place(body, places, t);
+        let norm = |x: &[[f64; 1]]| body.sums([product(x, x)])[0].sqrt();
         let support = Support {
             free: self.held.iter().map(|held| [!held]).collect(),
         };
@@ -120,10 +150,12 @@ impl Transfer {
                 return Ok(());
             }
             let mut operator = Operator {
+                of: (body, places),
                 rows: &self.rows,
                 touching: self.touching.as_ref(),
                 own: &own,
                 theta,
+                values: vec![0.0; places.count()],
                 room: vec![0.0; own.len()],
             };
             let mut change = vec![[0.0]; own.len()];
@@ -136,6 +168,7 @@ impl Transfer {
             for (value, change) in self.value.iter_mut().zip(&change) {
                 *value += change[0];
             }
+            places.fill(body, &mut self.value);
         }
         Err(SolveError::NotConverged {
             iterations: ROUNDS,

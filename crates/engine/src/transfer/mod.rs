@@ -10,18 +10,23 @@
 mod account;
 mod condition;
 mod implicit;
+mod places;
 mod rows;
 mod touching;
 
 pub use account::TransferAccount;
 pub use condition::Condition;
+pub use places::Places;
 pub use rows::{Conduction, Rows, Surface};
 pub use touching::Touching;
 
+use crate::body::Body;
 use crate::error::SolveError;
+use crate::execute::exact::Exact;
 use crate::execute::for_each_piece;
 use crate::spec::{Quantity, TransferMethod};
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
+use account::Gained;
 
 /// A scalar on the points of a body, its bonds, and what is done to it.
 #[derive(Debug, Clone)]
@@ -38,22 +43,33 @@ pub struct Transfer {
     capacity: Vec<f64>,
     held: Vec<bool>,
     held_places: Vec<u32>,
+    /// Of all [`Places`].
     value: Vec<f64>,
-    account: TransferAccount,
+    /// Since the start, by the points of this rank.
+    gained: Gained,
     /// Values and account before the last step.
-    before: (Vec<f64>, TransferAccount),
+    before: (Vec<f64>, Gained),
     flow: Vec<f64>,
 }
 
-impl Owner for Transfer {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.all("values", &mut self.value);
-        archive.one("account", &mut self.account);
-    }
-}
-
 impl Transfer {
-    /// Values and capacities stand in the order of the rows.
+    /// Passes values and account through an archive.
+    pub fn archive<const D: usize>(
+        &mut self,
+        body: &Body<D>,
+        places: &Places,
+        archive: &mut Archive<'_>,
+    ) {
+        body.archive_points(archive, "values", (&mut self.value, 1), |slot, _| {
+            places.at(slot)
+        });
+        archive.part("account", &mut self.gained);
+        if archive.loads() {
+            places.fill(body, &mut self.value);
+        }
+    }
+
+    /// Values, of all places, and capacities stand in the order of the rows.
     pub fn new(
         quantity: Quantity,
         (method, across_broken): (TransferMethod, bool),
@@ -62,7 +78,7 @@ impl Transfer {
         conditions: Vec<Condition>,
         value: Vec<f64>,
     ) -> Transfer {
-        let mut held = vec![false; value.len()];
+        let mut held = vec![false; capacity.len()];
         for i in conditions.iter().flat_map(Condition::holds) {
             held[*i as usize] = true;
         }
@@ -74,58 +90,88 @@ impl Transfer {
             rows,
             touching: None,
             conditions,
-            capacity,
             held_places: places.filter(|i| held[*i as usize]).collect(),
             held,
-            before: (value.clone(), TransferAccount::default()),
-            flow: vec![0.0; value.len()],
+            before: (value.clone(), Gained::default()),
+            flow: vec![0.0; capacity.len()],
             value,
-            account: TransferAccount::default(),
+            gained: Gained::default(),
+            capacity,
         }
     }
 
     /// Contact conducts, too.
     pub fn with_contact(&mut self, touching: Touching) {
         self.touching = Some(touching);
-        self.account.through_contact = Some(0.0);
     }
 
     pub fn values(&self) -> &[f64] {
         &self.value
     }
 
-    /// New values from outside; the account begins anew with the next [`Transfer::start`].
-    pub fn set_values(&mut self, value: &[f64]) {
-        self.value.copy_from_slice(value);
+    /// New values of points that are here, from outside; the account begins anew with the next [`Transfer::start`]. All ranks ask at once, as below.
+    pub fn set_values<const D: usize>(&mut self, body: &Body<D>, places: &Places, value: &[f64]) {
+        self.value[..value.len()].copy_from_slice(value);
+        places.fill(body, &mut self.value);
     }
 
-    pub fn account(&self) -> TransferAccount {
+    /// Of all ranks.
+    pub fn account<const D: usize>(&self, body: &Body<D>) -> TransferAccount {
+        let Gained {
+            initial,
+            supplied,
+            exchanged,
+            held,
+            made,
+            through_contact,
+        } = self.gained.clone();
+        let all = [
+            self.content(),
+            initial,
+            supplied,
+            exchanged,
+            held,
+            made,
+            through_contact,
+        ];
+        let [content, initial, supplied, exchanged, held, made, through] = body.sums(all);
         TransferAccount {
-            content: self.content(),
-            ..self.account
+            content,
+            initial,
+            supplied,
+            exchanged,
+            held,
+            made,
+            through_contact: self.touching.as_ref().map(|_| through),
         }
     }
 
-    fn content(&self) -> f64 {
+    /// Of the points that are here.
+    fn content(&self) -> Exact {
         let each = self.capacity.iter().zip(&self.value);
-        each.map(|(c, t)| c * t).sum()
+        each.map(|(c, t)| c * t).collect()
     }
 
     /// Held values at time `t`, and an account from there on.
-    pub fn start(&mut self, t: f64) {
+    pub fn start<const D: usize>(&mut self, body: &Body<D>, places: &Places, t: f64) {
+        self.place(body, places, t);
+        self.gained = Gained {
+            initial: self.content(),
+            ..Gained::default()
+        };
+    }
+
+    /// Held values are those of time `t`.
+    fn place<const D: usize>(&mut self, body: &Body<D>, places: &Places, t: f64) {
         for c in &self.conditions {
             c.place(&mut self.value, t);
         }
-        self.account = TransferAccount {
-            initial: self.content(),
-            through_contact: self.touching.as_ref().map(|_| 0.0),
-            ..TransferAccount::default()
-        };
+        places.fill(body, &mut self.value);
     }
 
     /// Slopes `−∂P/∂T` of what depends on values.
     fn slopes(&self, t: f64) -> Vec<f64> {
-        let mut slope = vec![0.0; self.value.len()];
+        let mut slope = vec![0.0; self.capacity.len()];
         for c in &self.conditions {
             c.add_slope(&self.value, t, &mut slope);
         }
@@ -134,67 +180,81 @@ impl Transfer {
 
     /// The longest explicit step that makes no new extremes, `min C_i/(Σ_j g_ij − ∂P_i/∂T_i)` over the free points, with what touches among the j: at most the limit of
     /// stability `2/λ`, since `λ ≤ 2 max Σ_j g_ij/C_i` (Gershgorin). Infinite where nothing flows.
-    pub fn stable_step(&self, t: f64) -> f64 {
+    pub fn stable_step<const D: usize>(&self, body: &Body<D>, t: f64) -> f64 {
         let mut slopes = self.slopes(t);
         if let Some(touching) = &self.touching {
             touching.add_totals(&mut slopes);
         }
         let each = self.capacity.iter().zip(self.rows.totals()).zip(&slopes);
-        each.zip(&self.held)
+        let own = each
+            .zip(&self.held)
             .filter(|(((_, g), slope), held)| !**held && **g + **slope > 0.0)
             .map(|(((c, g), slope), _)| c / (g + slope))
-            .fold(f64::INFINITY, f64::min)
+            .fold(f64::INFINITY, f64::min);
+        body.least(own)
     }
 
     /// From time `t` on for a time `dt`; in none nothing flows.
     ///
     /// # Errors
     /// Equations of implicit or steady values were not solved.
-    pub fn advance(&mut self, t: f64, dt: f64) -> Result<(), SolveError> {
+    pub fn advance<const D: usize>(
+        &mut self,
+        body: &Body<D>,
+        places: &Places,
+        t: f64,
+        dt: f64,
+    ) -> Result<(), SolveError> {
         match self.method {
             TransferMethod::Explicit { safety } => {
-                let parts = (dt / (safety * self.stable_step(t))).ceil().max(1.0);
+                let parts = (dt / (safety * self.stable_step(body, t))).ceil().max(1.0);
                 let part = dt / parts;
                 for n in 0..parts as u64 {
-                    self.explicit(t + n as f64 * part, part);
+                    self.explicit((body, places), t + n as f64 * part, part);
                 }
                 Ok(())
             }
             TransferMethod::Implicit { .. } if dt == 0.0 => Ok(()),
             TransferMethod::Implicit { theta, tolerance } => {
-                self.implicit((t, dt), theta, tolerance)
+                self.implicit((body, places), (t, dt), theta, tolerance)
             }
-            TransferMethod::Steady { tolerance } => self.steady(t + dt, tolerance),
+            TransferMethod::Steady { tolerance } => self.steady((body, places), t + dt, tolerance),
         }
     }
 
     /// Remembers where [`Transfer::retreat`] goes back to.
     pub fn keep(&mut self) {
         self.before.0.copy_from_slice(&self.value);
-        self.before.1 = self.account;
+        self.before.1.clone_from(&self.gained);
     }
 
     /// Gives points so much, by their places and values; held ones keep what they have.
-    pub fn give(&mut self, each: impl Fn(usize, f64) -> f64) {
-        for i in (0..self.value.len()).filter(|i| !self.held[*i]) {
+    pub fn give<const D: usize>(
+        &mut self,
+        (body, places): (&Body<D>, &Places),
+        each: impl Fn(usize, f64) -> f64,
+    ) {
+        for i in (0..self.capacity.len()).filter(|i| !self.held[*i]) {
             let given = each(i, self.value[i]);
             self.value[i] += given / self.capacity[i];
-            self.account.made += given;
+            self.gained.made.add(given);
         }
+        places.fill(body, &mut self.value);
     }
 
     /// Warms points by so much each, by their places; held ones keep what they have.
-    pub fn warm(&mut self, by: &[f64]) {
-        for i in (0..self.value.len()).filter(|i| !self.held[*i]) {
+    pub fn warm<const D: usize>(&mut self, (body, places): (&Body<D>, &Places), by: &[f64]) {
+        for i in (0..self.capacity.len()).filter(|i| !self.held[*i]) {
             self.value[i] += by[i];
-            self.account.made += self.capacity[i] * by[i];
+            self.gained.made.add(self.capacity[i] * by[i]);
         }
+        places.fill(body, &mut self.value);
     }
 
     /// Back to where it was kept.
     pub fn retreat(&mut self) {
         self.value.copy_from_slice(&self.before.0);
-        self.account = self.before.1;
+        self.gained.clone_from(&self.before.1);
     }
 
     /// What comes into every point at its value now.
@@ -203,18 +263,17 @@ impl Transfer {
         self.rows.flow(|i| value[i], &mut self.flow);
         if let Some(touching) = &self.touching {
             let power = touching.flow(|i| value[i], &mut self.flow);
-            self.account.through_contact =
-                { self.account.through_contact }.map(|w| w + time * power);
+            self.gained.through_contact.add(time * power);
         }
         for c in &self.conditions {
-            c.add(value, (t, time), &mut self.flow, None, &mut self.account);
+            c.add(value, (t, time), &mut self.flow, &mut self.gained);
         }
     }
 
-    fn explicit(&mut self, t: f64, dt: f64) {
+    fn explicit<const D: usize>(&mut self, (body, places): (&Body<D>, &Places), t: f64, dt: f64) {
         self.powers(t, dt);
         let (flow, capacity, held) = (&self.flow, &self.capacity, &self.held);
-        for_each_piece(&mut self.value, |first, piece| {
+        for_each_piece(&mut self.value[..capacity.len()], |first, piece| {
             for (n, value) in piece.iter_mut().enumerate() {
                 let i = first + n;
                 if !held[i] {
@@ -225,13 +284,12 @@ impl Transfer {
         let last: Vec<f64> = { self.held_places.iter() }
             .map(|i| self.value[*i as usize])
             .collect();
-        for c in &self.conditions {
-            c.place(&mut self.value, t + dt);
-        }
+        self.place(body, places, t + dt);
         // what held points gain beyond that comes from who holds them
         for (i, last) in self.held_places.iter().zip(last) {
             let i = *i as usize;
-            self.account.held += self.capacity[i] * (self.value[i] - last) - dt * self.flow[i];
+            let gained = self.capacity[i] * (self.value[i] - last);
+            self.gained.held.add(gained - dt * self.flow[i]);
         }
     }
 

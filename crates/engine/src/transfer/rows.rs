@@ -1,18 +1,19 @@
 //! Conductances of the bonds of a body.
 
+use super::places::Places;
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::for_each_piece;
 use crate::execute::memory;
 use crate::interaction::{BondStatus, Interaction};
 
-/// Of every directed bond, row by row; points stand in the order of their slots.
+/// Of every directed bond, row by row; points stand in the order of their [places](Places).
 #[derive(Debug, Clone)]
 pub struct Rows {
     /// First bond of each row, and where the last ends.
     start: Vec<usize>,
     partner: Vec<u32>,
-    /// `D k ω ν V_i V_j` of bonds, and what each has in the weighted volume of its point, `ω ν |ξ|² V_j`.
+    /// `D k ω ν V_i V_j` of bonds, the same bits at both ends, and what each has in the weighted volume of its point, `ω ν |ξ|² V_j`.
     reach: Vec<f64>,
     part: Vec<f64>,
     /// g_ij (power / temperature); 0: broken.
@@ -27,8 +28,7 @@ pub struct Conduction<'a, const D: usize> {
     pub conductivity: &'a dyn Fn(usize) -> f64,
     /// `ω ν` of a bond between two slots of a length.
     pub weight: &'a dyn Fn(usize, usize, &[f64], f64) -> f64,
-    /// Place of the point in a slot.
-    pub place: &'a [u32],
+    pub places: &'a Places,
     /// Of a body that is exact at its surface; `None`: each end has the weighted volume of the bonds that it has.
     pub surface: Option<Surface<'a, D>>,
 }
@@ -63,14 +63,10 @@ impl Rows {
             bytes,
             "a smaller body, horizon or m_ratio",
         )?;
-        let place = |slot: usize| of.place[slot] as usize;
+        let place = |slot: usize| of.places.at(slot);
         let volume = |slot: usize| body.volume().at(slot);
         let mut start = vec![0usize; points + 1];
-        interaction.each_bond(body, &mut |i, j, _, _| {
-            for slot in [i, j] {
-                start[place(slot) + 1] += 1;
-            }
-        });
+        interaction.each_partner(body, &mut |i, _, _, _| start[place(i) + 1] += 1);
         for n in 1..=points {
             start[n] += start[n - 1];
         }
@@ -83,64 +79,79 @@ impl Rows {
             total: vec![0.0; points],
             start,
         };
+        let weight = |i: usize, j: usize, xi: &[f64; D], r: f64| {
+            let weight = (of.weight)(i, j, xi, r);
+            let Some(surface) = &of.surface else {
+                return weight;
+            };
+            // one factor for both ends
+            let factor = match i < j {
+                true => (surface.factor)(i, j, xi),
+                false => (surface.factor)(j, i, &xi.map(|x| -x)),
+            };
+            weight * factor
+        };
         let mut next = rows.start.clone();
-        interaction.each_bond(body, &mut |i, j, xi, _| {
-            let xi = &xi;
+        interaction.each_partner(body, &mut |i, j, xi, _| {
             let square: f64 = xi.iter().map(|x| x * x).sum();
             let [a, b] = [(of.conductivity)(i), (of.conductivity)(j)];
             let k = match a == b {
                 true => a,
-                false => 2.0 * a * b / (a + b),
+                false => 2.0 * (a * b) / (a + b),
             };
-            let weight = (of.weight)(i, j, xi, square.sqrt());
-            let factor = of.surface.as_ref().map_or(1.0, |s| (s.factor)(i, j, xi));
-            let weight = weight * factor;
-            let reach = k * (D as f64 * weight) * volume(i) * volume(j);
-            for (a, b) in [(i, j), (j, i)] {
-                let at = next[place(a)];
-                rows.partner[at] = place(b) as u32;
-                rows.reach[at] = reach;
-                rows.part[at] = weight * square * volume(b);
-                next[place(a)] += 1;
-            }
+            let weight = weight(i, j, &xi, square.sqrt());
+            let at = next[place(i)];
+            next[place(i)] += 1;
+            rows.partner[at] = place(j) as u32;
+            rows.reach[at] = k * (D as f64 * weight) * (volume(i) * volume(j));
+            rows.part[at] = weight * square * volume(j);
         });
         if let Some(surface) = &of.surface {
+            // a full family has those, too, that were never there
+            let mut absent = vec![0.0; points];
+            interaction.each_bond(body, &mut |i, j, xi, state| {
+                if state == BondStatus::Absent {
+                    let square: f64 = xi.iter().map(|x| x * x).sum();
+                    let weight = weight(i, j, &xi, square.sqrt());
+                    absent[place(i)] += weight * square * volume(j);
+                    absent[place(j)] += weight * square * volume(i);
+                }
+            });
             for slot in body.slots() {
                 let row = place(*slot as usize);
                 let part = &mut rows.part[rows.start[row]..rows.start[row + 1]];
                 if let Some(moment) = (surface.moment)(*slot as usize) {
-                    let full = moment / part.iter().sum::<f64>();
+                    let full = moment / (part.iter().sum::<f64>() + absent[row]);
                     part.iter_mut().for_each(|p| *p *= full);
                 }
             }
         }
-        rows.conduct(body, interaction, of.place);
+        rows.conduct(body, interaction, of.places);
         Ok(rows)
     }
 
-    /// Conductances of the bonds that are whole now: the same of faces that were cut before and of those that opened since.
+    /// Conductances of the bonds that are whole now: the same of faces that were cut before and of those that opened since. All ranks ask at once.
     pub fn conduct<const D: usize>(
         &mut self,
         body: &Body<D>,
         interaction: &dyn Interaction<D>,
-        place: &[u32],
+        places: &Places,
     ) {
         let mut next = self.start.clone();
-        let mut moment = vec![0.0; self.total.len()];
+        let mut moment = vec![0.0; places.count()];
         let (conductance, part) = (&mut self.conductance, &self.part);
-        interaction.each_bond(body, &mut |i, j, _, state| {
-            for slot in [i, j] {
-                let row = place[slot] as usize;
-                let at = next[row];
-                next[row] += 1;
-                conductance[at] = match state {
-                    BondStatus::Whole => 1.0,
-                    BondStatus::Broken | BondStatus::Absent => 0.0,
-                };
-                moment[row] += conductance[at] * part[at];
-            }
+        interaction.each_partner(body, &mut |i, _, _, state| {
+            let row = places.at(i);
+            let at = next[row];
+            next[row] += 1;
+            conductance[at] = match state {
+                BondStatus::Whole => 1.0,
+                BondStatus::Broken | BondStatus::Absent => 0.0,
+            };
+            moment[row] += conductance[at] * part[at];
         });
-        for row in 0..moment.len() {
+        places.fill(body, &mut moment);
+        for row in 0..self.total.len() {
             for at in self.start[row]..self.start[row + 1] {
                 if self.conductance[at] > 0.0 {
                     let other = moment[self.partner[at] as usize];
@@ -185,9 +196,37 @@ impl Rows {
         });
     }
 
-    /// Number of the part of each point, whose bonds conduct to each other, by its lowest point.
-    pub fn parts(&self) -> Vec<u32> {
-        let mut part: Vec<u32> = (0..self.points() as u32).collect();
+    /// Is every point, over bonds that conduct, tied to one of these places? All ranks ask at once.
+    pub fn are_tied<const D: usize>(
+        &self,
+        body: &Body<D>,
+        places: &Places,
+        to: impl Iterator<Item = u32>,
+    ) -> bool {
+        let parts = self.parts(places.count());
+        let mut tied = vec![0.0; parts.len()];
+        to.for_each(|i| tied[i as usize] = 1.0);
+        loop {
+            let mut part_is = vec![false; parts.len()];
+            for (part, tied) in parts.iter().zip(&tied) {
+                part_is[*part as usize] |= *tied > 0.0;
+            }
+            let before = tied.clone();
+            for (part, tied) in parts.iter().zip(&mut tied) {
+                *tied = f64::from(part_is[*part as usize]);
+            }
+            // parts go on beyond what is here
+            places.fill(body, &mut tied);
+            if !body.exchange().any(tied != before) {
+                let free = tied[..self.points()].contains(&0.0);
+                return !body.exchange().any(free);
+            }
+        }
+    }
+
+    /// Number of the part of each place, whose bonds conduct to each other, by its lowest one.
+    fn parts(&self, places: usize) -> Vec<u32> {
+        let mut part: Vec<u32> = (0..places as u32).collect();
         let find = |part: &mut Vec<u32>, mut i: u32| {
             while part[i as usize] != i {
                 part[i as usize] = part[part[i as usize] as usize];
@@ -203,9 +242,7 @@ impl Rows {
                 }
             }
         }
-        (0..self.points() as u32)
-            .map(|i| find(&mut part, i))
-            .collect()
+        (0..places as u32).map(|i| find(&mut part, i)).collect()
     }
 
     pub fn bytes(&self) -> usize {

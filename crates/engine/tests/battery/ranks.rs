@@ -13,6 +13,7 @@ use peridyne::run::{Info, Options, Shelf, Simulation, build_in, build_with};
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
+use peridyne::state::Archive;
 use peridyne_comm::on_threads;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -72,6 +73,30 @@ struct Said {
     columns: BTreeMap<String, Vec<u64>>,
     bonds: Vec<(u32, u32)>,
     measured: Vec<u64>,
+    /// Half of the way, and at the end.
+    states: [Vec<u8>; 2],
+}
+
+impl Said {
+    /// Says where another one is not the same.
+    fn is(&self, other: &Said, name: &str) {
+        for (one, other) in self.states.iter().zip(&other.states) {
+            let off = one.iter().zip(other).position(|(a, b)| a != b);
+            assert!(one == other, "{name}: the state, from {off:?} on");
+        }
+        for (column, wanted) in &self.columns {
+            let off = { wanted.iter().zip(&other.columns[column]) }.position(|(a, b)| a != b);
+            assert_eq!(off, None, "{name}: {column}");
+        }
+        assert_eq!(self.ledger, other.ledger, "{name}");
+        let off = { self.bonds.iter().zip(&other.bonds) }.position(|(a, b)| a != b);
+        let counts = (self.bonds.len(), other.bonds.len());
+        assert!(self.bonds == other.bonds, "{name}: {off:?} {counts:?}");
+        let whole = |said: &Said| (said.broken, said.fragments, said.time, said.hash);
+        assert_eq!(whole(self), whole(other), "{name}");
+        assert_eq!(self.measured, other.measured, "{name}");
+        assert!(self == other, "{name}");
+    }
 }
 
 /// Numbers, as words.
@@ -83,10 +108,30 @@ fn words(values: &Values) -> Vec<u64> {
     each.collect()
 }
 
-/// After some steps.
-fn said(sim: &mut dyn Simulation) -> Said {
-    sim.start(true);
-    (0..STEPS).for_each(|_| sim.step().unwrap());
+fn saved(sim: &mut dyn Simulation) -> Vec<u8> {
+    let mut to = vec![];
+    let mut archive = Archive::save(&mut to);
+    archive.part("model", sim);
+    archive.done().unwrap();
+    to
+}
+
+/// After some steps, of which a state may have half.
+fn said(sim: &mut dyn Simulation, from: Option<&[u8]>) -> Said {
+    match from {
+        None => {
+            sim.start(true);
+            (0..STEPS / 2).for_each(|_| sim.step().unwrap());
+        }
+        Some(mut state) => {
+            let mut archive = Archive::load(&mut state);
+            archive.part("model", sim);
+            archive.done().unwrap();
+            assert!(state.is_empty());
+        }
+    }
+    let half = saved(sim);
+    (STEPS / 2..STEPS).for_each(|_| sim.step().unwrap());
     let ledger = sim.ledger().unwrap();
     let declared = sim.columns().into_iter().filter(|c| c.on == On::Points);
     let known: Vec<String> = declared.map(|c| c.name.to_string()).collect();
@@ -132,6 +177,7 @@ fn said(sim: &mut dyn Simulation) -> Said {
         columns,
         bonds,
         measured: sim.measure().into_iter().map(f64::to_bits).collect(),
+        states: [half, saved(sim)],
     }
 }
 
@@ -147,7 +193,12 @@ fn options(simd: Option<Simd>) -> Options {
 }
 
 /// The same of ranks.
-fn among<const D: usize>(spec: &Spec, ranks: usize, simd: Option<Simd>) -> (Info, Said) {
+fn among<const D: usize>(
+    spec: &Spec,
+    ranks: usize,
+    simd: Option<Simd>,
+    from: Option<&[u8]>,
+) -> (Info, Said) {
     let all = on_threads(ranks, |comm| {
         let comm = Arc::new(comm);
         let own = RankModel::<D>::new(spec, options(simd), &shelf(), &comm).unwrap();
@@ -156,7 +207,7 @@ fn among<const D: usize>(spec: &Spec, ranks: usize, simd: Option<Simd>) -> (Info
             return None;
         }
         let mut sim = AllRanks::new(own);
-        let said = said(&mut sim);
+        let said = said(&mut sim, from);
         Some((sim.info().clone(), said))
     });
     all.into_iter().flatten().next().unwrap()
@@ -167,32 +218,24 @@ fn same<const D: usize>(spec: &Spec, ranks: &[usize], simd: Option<Simd>) -> boo
     shared(spec).unwrap();
     let name = &spec.title;
     let mut sim = build_in::<D>(spec, options(None), &shelf()).unwrap();
-    let one = said(&mut sim);
-    for n in ranks {
-        let (info, all) = among::<D>(spec, *n, simd);
+    let one = said(&mut sim, None);
+    let mut again = build_in::<D>(spec, options(None), &shelf()).unwrap();
+    let again = said(&mut again, Some(&one.states[0]));
+    one.is(&again, &format!("{name}, gone on with"));
+    // and one rank more from what one process had half of the way
+    let on = ranks.iter().map(|n| (*n, None));
+    for (n, from) in on.chain([(ranks[0] + 1, Some(&one.states[0][..]))]) {
+        let (info, all) = among::<D>(spec, n, simd, from);
         let whole = Info {
             // copies are counted, too; what is told of gaps and torn points is of whole bodies
             bytes: info.bytes,
+            idle_ranks: info.idle_ranks,
             warnings: info.warnings.clone(),
             simd: info.simd,
             ..sim.info().clone()
         };
         assert_eq!(info, whole, "{name}, {n} ranks");
-        for (column, wanted) in &one.columns {
-            let off = { wanted.iter().zip(&all.columns[column]) }.position(|(a, b)| a != b);
-            assert_eq!(off, None, "{name}, {n} ranks: {column}");
-        }
-        assert_eq!(one.ledger, all.ledger, "{name}, {n} ranks");
-        let off = one.bonds.iter().zip(&all.bonds).position(|(a, b)| a != b);
-        let counts = (one.bonds.len(), all.bonds.len());
-        assert!(
-            one.bonds == all.bonds,
-            "{name}, {n} ranks: {off:?} {counts:?}"
-        );
-        let whole = |said: &Said| (said.broken, said.fragments, said.time, said.hash);
-        assert_eq!(whole(&one), whole(&all), "{name}, {n} ranks");
-        assert_eq!(one.measured, all.measured, "{name}, {n} ranks");
-        assert!(one == all, "{name}, {n} ranks");
+        one.is(&all, &format!("{name}, {n} ranks"));
     }
     one.broken > 0
 }
@@ -898,7 +941,7 @@ fn what_is_sent_is_what_the_law_says_of_the_copies() {
             let (before, _) = sim.halo();
             (0..STEPS).for_each(|_| sim.step().unwrap());
             let (after, copies) = sim.halo();
-            (comm.rank(), after - before, copies)
+            (comm.rank(), after.bytes - before.bytes, copies)
         });
         let [wide, reach] = [case.place.cells[0], case.place.ratio as usize];
         let near = (reach * wide + reach).next_multiple_of(8);
@@ -940,23 +983,152 @@ fn what_ranks_do_not_share_is_named() {
         }];
     };
     assert_eq!(refused(&named), of("conditions"));
-    // more ranks than blocks: all of them hear of it
-    let mut small = Case::of(
-        "pmb",
-        Place {
-            cells: [30, 20, 1],
-            ..place(LatticeKind::Square)
-        },
-    )
-    .spec();
-    small.run.schedule.time_step = TimeStep::Fixed(1e-3);
-    let ends = on_threads(4, |comm| {
-        let made = RankModel::<2>::new(&small, options(None), &shelf(), &Arc::new(comm));
-        made.err().map(|e| e.message.to_string())
-    });
-    for end in ends {
-        assert!(end.is_some_and(|e| e.contains("4 ranks for a body of 3 blocks")));
+}
+
+fn spreading(quantity: Quantity, method: TransferMethod, expansion: f64) -> TransferSpec {
+    let on = |set: &str, kind: TransferKind| TransferCondition {
+        set: set.into(),
+        kind,
+    };
+    let mut conditions = vec![
+        on("low", TransferKind::Value(e("1 + 0.2*sin(30*t)"))),
+        on(
+            "high",
+            TransferKind::Exchange {
+                law: Exchange::Convection {
+                    coefficient: e("0.7 + 0.1*x"),
+                    ambient: e("0.2 + t"),
+                },
+                area: None,
+            },
+        ),
+        on(
+            "middle",
+            TransferKind::Flux {
+                value: e("0.3"),
+                area: Some(2.0),
+            },
+        ),
+        on("all", TransferKind::Source(e("0.1*sin(x)*cos(40*t)"))),
+    ];
+    if quantity == Quantity::Heat {
+        let law = Exchange::Radiation {
+            coefficient: e("0.01"),
+            ambient: e("2"),
+        };
+        conditions.push(on(
+            "high",
+            TransferKind::Exchange {
+                law,
+                area: Some(1.5),
+            },
+        ));
     }
+    TransferSpec {
+        quantity,
+        method,
+        reference: 0.5,
+        across_broken: quantity == Quantity::Species,
+        deformation: false,
+        materials: vec![TransferMaterial {
+            conductivity: 1.3,
+            capacity: 0.7,
+            expansion,
+        }],
+        initial: vec![("all".into(), e("1 + 0.3*sin(2*x)"))],
+        conditions,
+    }
+}
+
+/// Sets of the faces across the last axis, and of what lies about the middle.
+fn faced(spec: &mut Spec, case: &Case) {
+    let last = case.d() - 1;
+    let axis = ["x", "y", "z"][last];
+    let along = case.place.kind.edges()[last] * H;
+    // points lie from the middle of the first cell on
+    let all = case.place.cells[last] as f64 * along;
+    let set = |name: &str, which: String| SetSpec {
+        name: name.into(),
+        members: Members::Where(e(&which)),
+    };
+    spec.sets = vec![
+        set("low", format!("{axis} < {}", 0.9 * along)),
+        set("high", format!("{axis} > {}", all - 1.9 * along)),
+        set(
+            "middle",
+            format!("abs({axis} - {}) < {}", 0.4 * all, 0.3 * all),
+        ),
+    ];
+}
+
+#[test]
+fn heat_and_species_spread_on_any_number_of_ranks() {
+    let methods = [
+        TransferMethod::Explicit { safety: 0.5 },
+        TransferMethod::Implicit {
+            theta: 0.5,
+            tolerance: 1e-9,
+        },
+        TransferMethod::Steady { tolerance: 1e-9 },
+    ];
+    let kinds = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic];
+    let mut n = 0;
+    for kind in kinds {
+        for (method, name) in methods.into_iter().zip(["pmb", "lps", "elastic-plastic"]) {
+            for still in [false, true] {
+                n += 1;
+                let case = Case::of(name, place(kind));
+                let mut spec = torn(&case, false);
+                faced(&mut spec, &case);
+                spec.interactions.transfers = vec![
+                    spreading(Quantity::Heat, method, if still { 0.0 } else { 0.02 }),
+                    spreading(Quantity::Species, methods[n % 3], 0.0),
+                ];
+                if n % 2 == 0 {
+                    scattered(&mut spec);
+                    for t in &mut spec.interactions.transfers {
+                        for c in &mut t.conditions {
+                            if let TransferKind::Exchange { area, .. } = &mut c.kind {
+                                *area = Some(3.0);
+                            }
+                        }
+                    }
+                }
+                if still {
+                    spec.run.schedule.stepper = Stepper::Still;
+                    spec.loading.initial = vec![];
+                }
+                spec.title = format!("{} {method:?} {still}", spec.title);
+                let broke = match kind.dimension() {
+                    1 => same::<1>(&spec, &[3], None),
+                    2 => same::<2>(&spec, &[2], None),
+                    _ => same::<3>(&spec, &[3], None),
+                };
+                assert_eq!(broke, !still, "{}", spec.title);
+            }
+        }
+    }
+}
+
+#[test]
+fn ranks_beyond_the_blocks_of_a_body_have_no_points() {
+    let place = Place {
+        cells: [30, 20, 1],
+        ..place(LatticeKind::Square)
+    };
+    let (mut small, mut tiny) = (Case::of("pmb", place), Case::of("lps", place));
+    tiny.place.cells = [9, 8, 1];
+    for case in [&mut small, &mut tiny] {
+        for periodic in [false, true] {
+            let mut spec = torn(case, periodic);
+            spec.interactions.contact = Some(CONTACT);
+            assert!(same::<2>(&spec, &[4, 3], None));
+            scattered(&mut spec);
+            assert!(same::<2>(&spec, &[4], None));
+        }
+    }
+    let idle = among::<2>(&torn(&small, false), 4, None, None).0.idle_ranks;
+    assert_eq!(idle, 1);
 }
 
 #[test]
@@ -969,8 +1141,58 @@ fn a_part_of_a_body_is_neither_joined_nor_a_cloud() {
     };
     let whole = Body::<1>::on_lattice(lattice, &sites, 3, [false], H).unwrap();
     on_threads(2, |comm| {
-        let part = whole.subdomain_of(&Arc::new(comm), 1.0).unwrap();
+        let part = whole.subdomain_of(&Arc::new(comm), 1.0);
         assert_eq!(part.to_cloud().unwrap_err().path, "ranks");
         assert!(std::panic::catch_unwind(|| Body::several(vec![part, whole.clone()])).is_err());
     });
+}
+
+/// Eight points are walked together. Others beside them, of a body far away, change no bit of theirs.
+#[test]
+fn what_the_others_of_a_tile_do_does_not_show() {
+    let kinds = [LatticeKind::Square, LatticeKind::Cubic, LatticeKind::Chain];
+    let mut tried = 0;
+    for (n, material) in materials().into_iter().enumerate() {
+        let lives = |kind: &&LatticeKind| (material.lives)(kind.dimension(), Plane::Stress);
+        let kinds: Vec<_> = kinds.iter().filter(lives).collect();
+        let Some(kind) = kinds.get(n % 2 % kinds.len().max(1)) else {
+            continue;
+        };
+        let mut place = place(**kind);
+        place.cells = match kind.dimension() {
+            1 => [300, 1, 1],
+            2 => [21, 17, 1],
+            _ => [9, 8, 7],
+        };
+        let case = Case { place, material };
+        let ends = [0, 1].map(|others| {
+            let mut spec = torn(&case, false);
+            let BodySpec::Sites { quarters, .. } = &mut spec.body else {
+                panic!("a body of sites");
+            };
+            let corner: Vec<[i32; 3]> = { quarters.iter() }
+                .filter(|q| others > 0 && q.iter().all(|q| *q < 4 * 5))
+                .map(|q| [q[0] - 4 * 27, q[1], q[2]])
+                .collect();
+            let points = quarters.len();
+            quarters.extend(corner);
+            spec.interactions.contact = None;
+            let run = |sim: &mut dyn Simulation| (said(sim, None), points);
+            match case.d() {
+                1 => run(&mut build_in::<1>(&spec, options(None), &shelf()).unwrap()),
+                2 => run(&mut build_in::<2>(&spec, options(None), &shelf()).unwrap()),
+                _ => run(&mut build_in::<3>(&spec, options(None), &shelf()).unwrap()),
+            }
+        });
+        let [(alone, points), (beside, _)] = ends;
+        let moved = ["displacement", "velocity", "force_density", "damage"];
+        for column in ["places"].into_iter().chain(moved) {
+            let (alone, beside) = (&alone.columns[column], &beside.columns[column]);
+            assert!(beside.len() > alone.len() && alone.len() % points == 0);
+            let off = alone.iter().zip(beside).position(|(a, b)| a != b);
+            assert_eq!(off, None, "{}: {column}", case.name());
+        }
+        tried += 1;
+    }
+    assert!(tried > 35, "{tried}");
 }

@@ -15,7 +15,7 @@ use super::atomic::{WriteError, create_directory, write_file};
 use super::folder::{CHECKPOINT, WAITING};
 
 /// What files begin with; the number is that of the format.
-const MAGIC: &[u8; 24] = b"peridyne checkpoint 004\n";
+const MAGIC: &[u8; 24] = b"peridyne checkpoint 005\n";
 /// Bytes of a block.
 const BLOCK: usize = 1 << 20;
 /// What names of states begin and end with.
@@ -56,8 +56,6 @@ pub struct Asked {
     /// Steps done, and of how many.
     pub step: u64,
     pub steps: u64,
-    /// Processes that shared it.
-    pub ranks: u64,
 }
 
 impl Owner for Asked {
@@ -83,7 +81,6 @@ impl Owner for Asked {
         });
         archive.one("step", &mut self.step);
         archive.one("steps", &mut self.steps);
-        archive.one("ranks", &mut self.ranks);
     }
 }
 

@@ -13,7 +13,6 @@ mod several;
 use super::exchange::{Copies, Exchange};
 use super::subdomain::Subdomain;
 use super::{Body, Grid, Identity, Layout, Values};
-use crate::error::BuildError;
 use crate::execute::lane::TILE;
 use blocks::{CELLS, by_ranks};
 use peridyne_comm::Comm;
@@ -87,13 +86,53 @@ impl Share {
 
 impl<const D: usize> Body<D> {
     /// The part of this body that a rank has. A cloud has copies of all within `reach` (length), a lattice those that its stencil reaches. All ranks ask at
-    /// once, with the same body.
-    ///
-    /// # Errors
-    /// There are fewer blocks of 256 cells with points (of 256 points of a cloud) than there are ranks.
-    pub fn subdomain_of(&self, comm: &Arc<Comm>, reach: f64) -> Result<Body<D>, BuildError> {
-        let blocks = by_ranks(&self.points_of_blocks(), comm.ranks())?;
-        Ok(self.part(&blocks, comm, reach))
+    /// once, with the same body. Where there are fewer blocks of 256 cells with points (of 256 points of a cloud) than ranks the last ranks have no points.
+    pub fn subdomain_of(&self, comm: &Arc<Comm>, reach: f64) -> Body<D> {
+        let blocks = by_ranks(&self.points_of_blocks(), comm.ranks());
+        self.part(&blocks, comm, reach)
+    }
+
+    /// How so many ranks would share this body: the most points that one has; the most copies of others' points, of the first rank, the one in the middle and
+    /// the last; and ranks that have points.
+    pub fn shares(&self, ranks: usize, reach: f64) -> [usize; 3] {
+        let points = self.points_of_blocks();
+        let blocks = by_ranks(&points, ranks);
+        let of = |blocks: &Range<usize>| points[blocks.clone()].iter().sum::<usize>();
+        let working = blocks.iter().take_while(|blocks| of(blocks) > 0).count();
+        let seen = [0, working / 2, working - 1].map(|rank| self.copies_of(&blocks[rank], reach));
+        let most = blocks.iter().map(of).max();
+        [
+            most.unwrap_or(0),
+            seen.into_iter().max().unwrap_or(0),
+            working,
+        ]
+    }
+
+    /// Copies of others' points that the rank of these blocks has.
+    fn copies_of(&self, blocks: &Range<usize>, reach: f64) -> usize {
+        match &self.layout {
+            Layout::Grid(grid) => {
+                let share = &Share::of_blocks(grid, std::slice::from_ref(blocks))[0];
+                let part = share.grid(grid);
+                let bits = |of: &[u8]| of.iter().map(|b| b.count_ones() as usize).sum::<usize>();
+                bits(&part.present) - bits(&part.owned)
+            }
+            Layout::Cloud(x) => cloud::near(self, x, &self.slots_of_blocks(blocks), reach).len(),
+            Layout::Several(pieces) => {
+                let mut passed = 0;
+                let each = pieces.iter().map(|piece| {
+                    let count = piece.body.points_of_blocks().len();
+                    let own = |x: usize| x.clamp(passed, passed + count) - passed;
+                    let own = own(blocks.start)..own(blocks.end);
+                    passed += count;
+                    match own.is_empty() {
+                        true => 0,
+                        false => piece.body.copies_of(&own, reach),
+                    }
+                });
+                each.sum()
+            }
+        }
     }
 
     /// The part with its rank's blocks, of those of all ranks.
@@ -213,13 +252,13 @@ mod tests {
             .zip(&whole.slots)
             .for_each(|(id, slot)| ids[*slot as usize] = id);
         whole.exchange.fill(&mut ids);
-        let can = |ranks: &usize| super::by_ranks(&whole.points_of_blocks(), *ranks).is_ok();
-        let most = (1..).take_while(can).count();
+        let points = whole.points_of_blocks();
+        let most = points.iter().filter(|n| **n > 0).count();
         let name = format!("{kind:?} {periodic:?}");
         assert!(most >= 3, "{name} {most}");
-        for ranks in [1, 2, 3, most] {
+        for ranks in [1, 2, 3, most, most + 2] {
             let seen = on_threads(ranks, |comm| {
-                let part = whole.subdomain_of(&Arc::new(comm), 0.0).unwrap();
+                let part = whole.subdomain_of(&Arc::new(comm), 0.0);
                 let of = part.subdomain().unwrap();
                 assert_eq!(of.points(), sites.len());
                 let mut here = vec![u32::MAX; part.len];
@@ -264,6 +303,12 @@ mod tests {
                     let name = *first.entry(id).or_insert(own.unwrap_or(slot));
                     assert_eq!(part.exchange.original(slot), name);
                 }
+                let copies =
+                    whole.copies_of(&super::by_ranks(&points, ranks)[of.comm().rank()], 0.0);
+                let present =
+                    (grid.guard..grid.slots() - grid.guard).filter(|s| grid.is_present(*s));
+                assert_eq!(copies, present.count() - part.slots.len());
+                assert!(whole.shares(ranks, 0.0)[0] >= part.slots.len());
                 // all of whom anybody here may be bonded to
                 for slot in &part.slots {
                     let (cell, b) = grid.cell(*slot as usize);
@@ -293,10 +338,6 @@ mod tests {
             seen.sort_unstable();
             assert!(seen.into_iter().eq(0..sites.len() as u32), "{name}");
         }
-        let refused = on_threads(most + 1, |comm| {
-            whole.subdomain_of(&Arc::new(comm), 0.0).is_err()
-        });
-        assert!(refused.iter().all(|r| *r));
         assert!(matches!(whole.density, Values::PerSlot(_)));
     }
 

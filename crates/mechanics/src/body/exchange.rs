@@ -35,7 +35,6 @@ use bytemuck::{Pod, bytes_of, bytes_of_mut, cast_slice, cast_slice_mut};
 use peridyne_comm::Comm;
 use std::collections::BTreeMap;
 use std::ops::{DerefMut, Range};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Copies that lie side by side, whose originals do, too: the first slots, and how many there are.
@@ -212,12 +211,6 @@ impl Exchange {
         all.concat().contains(&1)
     }
 
-    /// Bytes that this rank has sent to others.
-    pub fn sent(&self) -> u64 {
-        let others = self.others.as_ref();
-        others.map_or(0, |o| o.sent.load(Ordering::Relaxed))
-    }
-
     /// Copies of points that other ranks have.
     pub fn received_slots(&self) -> usize {
         let others = self.others.as_ref();
@@ -342,7 +335,6 @@ struct Others {
     named: Vec<u8>,
     /// What is sent, and what comes.
     room: Mutex<[Vec<u8>; 2]>,
-    sent: AtomicU64,
 }
 
 impl Others {
@@ -384,7 +376,6 @@ impl Others {
             receive: vec![],
             names,
             room: Mutex::default(),
-            sent: AtomicU64::new(0),
             comm: comm.clone(),
         }
     }
@@ -428,7 +419,6 @@ impl Others {
         }
         let done = self.comm.exchange(&send, &mut receive, || ());
         done.unwrap_or_else(|failure| self.comm.end(failure));
-        self.sent.fetch_add(out.len() as u64, Ordering::Relaxed);
         let mut rest = &into[..];
         for message in &self.receive {
             let (of, others) = rest.split_at(message.slots * bytes);

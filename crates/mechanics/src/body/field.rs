@@ -38,7 +38,14 @@ impl Column {
     }
 }
 
-/// As long as the state says, on its line of a page.
+impl Column {
+    /// As many zeros, on its line of a page.
+    pub fn renew(&mut self, len: usize) {
+        *self = Column::new(len, 0.0, self.line);
+    }
+}
+
+/// As long as the state says.
 impl Owner for Column {
     fn archive(&mut self, archive: &mut Archive<'_>) {
         let mut values = match archive.loads() {
@@ -47,7 +54,7 @@ impl Owner for Column {
         };
         archive.list("values", &mut values);
         if archive.loads() {
-            *self = Column::new(values.len(), 0.0, self.line);
+            self.renew(values.len());
             self.copy_from_slice(&values);
         }
     }

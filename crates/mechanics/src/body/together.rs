@@ -1,8 +1,9 @@
 //! What a body says as a whole, whoever has its parts: all ranks ask at once, and hear the same bits on any number of them.
 
-use super::{Body, Layout};
+use super::{Body, Field, Layout};
 use crate::execute::exact::Exact;
 use crate::space::Point;
+use crate::state::{Archive, Whose, Word};
 use bytemuck::{Pod, cast_slice, pod_read_unaligned};
 use std::borrow::Cow;
 
@@ -18,6 +19,87 @@ impl<const D: usize> Body<D> {
     /// Their sum over the points of all ranks.
     pub fn sum(&self, of_each: impl Iterator<Item = f64>) -> f64 {
         self.sums([of_each.collect()])[0]
+    }
+
+    /// Whose points are here.
+    pub(crate) fn whose(&self) -> Whose<'_> {
+        Whose {
+            ids: self.subdomain().map(|of| of.ids()),
+            points: self.all_points(),
+        }
+    }
+
+    /// Passes `each` words of every point through an archive, of those that lie `at(slot, n)`, or none where there are none; copies are not filled.
+    pub fn archive_points<T: Word>(
+        &self,
+        archive: &mut Archive<'_>,
+        name: &str,
+        (values, each): (&mut [T], usize),
+        at: impl Fn(usize, usize) -> usize,
+    ) {
+        let slots = || self.slots.iter().map(|s| *s as usize);
+        let places = || slots().flat_map(|slot| (0..each).map(move |n| (slot, n)));
+        let mut own: Vec<T> = match values.is_empty() {
+            true => vec![],
+            false => places().map(|(slot, n)| values[at(slot, n)]).collect(),
+        };
+        archive.points(name, self.whose(), each, &mut own);
+        if archive.loads() {
+            for (x, (slot, n)) in own.into_iter().zip(places()) {
+                values[at(slot, n)] = x;
+            }
+        }
+    }
+
+    /// The same of vectors.
+    pub fn archive_field(&self, archive: &mut Archive<'_>, name: &str, field: &mut Field<D>) {
+        for column in field {
+            self.archive_points(archive, name, (column, 1), |slot, _| slot);
+        }
+    }
+
+    /// Passes what a list has of these slots through an archive.
+    pub(crate) fn archive_list<T: Word>(
+        &self,
+        archive: &mut Archive<'_>,
+        name: &str,
+        slots: &[u32],
+        values: &mut [T],
+    ) {
+        let ids = self.ids_of_all();
+        let of = |k: usize| ids[slots[k] as usize];
+        let mut order: Vec<usize> = (0..slots.len()).collect();
+        order.sort_by_key(|k| of(*k));
+        let mut entries: Vec<(u32, T)> = order.iter().map(|k| (of(*k), values[*k])).collect();
+        archive.entries(name, self.whose(), &mut entries);
+        if archive.loads() {
+            let found = entries.iter().map(|(id, _)| *id);
+            if !found.eq(order.iter().map(|k| of(*k))) {
+                return archive.refuse(name);
+            }
+            for (k, (_, x)) in order.into_iter().zip(entries) {
+                values[k] = x;
+            }
+        }
+    }
+
+    /// Passes a list of slots and what they have through an archive, as long as the state says; in order of slots where it was read.
+    pub(crate) fn archive_some<T: Word>(
+        &self,
+        archive: &mut Archive<'_>,
+        name: &str,
+        list: &mut Vec<(u32, T)>,
+    ) {
+        let ids = self.ids_of_all();
+        let named = list.iter().map(|(slot, x)| (ids[*slot as usize], *x));
+        let mut entries: Vec<(u32, T)> = named.collect();
+        let whose = self.whose();
+        archive.entries(name, whose, &mut entries);
+        if archive.loads() {
+            let lie = |(id, x)| Some((self.slots[whose.place(id)?], x));
+            *list = entries.into_iter().filter_map(lie).collect();
+            list.sort_by_key(|(slot, _)| *slot);
+        }
     }
 
     /// As many numbers of each rank, in their order.

@@ -6,7 +6,7 @@ use super::indenter::Indenter;
 use super::load::Load;
 use crate::body::{Body, Field, zeros};
 use crate::interaction::Evaluation;
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 
 /// In the order in which they act.
 #[derive(Debug, Clone, Default)]
@@ -18,15 +18,14 @@ pub struct AppliedForces<const D: usize> {
     pub driven: Vec<Driven<D>>,
 }
 
-impl<const D: usize> Owner for AppliedForces<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.parts("rigid_bodies", &mut self.rigid);
-        archive.parts("loads", &mut self.loads);
-        archive.parts("driven", &mut self.driven);
-    }
-}
-
 impl<const D: usize> AppliedForces<D> {
+    /// Passes what they remember through an archive.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        archive.each("rigid_bodies", &mut self.rigid, |x, a| x.archive(body, a));
+        archive.each("loads", &mut self.loads, |x, a| x.archive(body, a));
+        archive.each("driven", &mut self.driven, |x, a| x.archive(body, a));
+    }
+
     pub fn new(rigid: Vec<Indenter<D>>, mut loads: Vec<Load<D>>) -> Self {
         loads.sort_by_key(Load::rank);
         AppliedForces {

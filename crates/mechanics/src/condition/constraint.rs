@@ -6,7 +6,7 @@ use super::prescribed::Prescribed;
 use crate::body::{Body, Field};
 use crate::execute::exact::Exact;
 use crate::space::Point;
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -26,14 +26,13 @@ pub struct Constraint<const D: usize> {
     pub work: Exact,
 }
 
-impl<const D: usize> Owner for Constraint<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.all("last", &mut self.last);
+impl<const D: usize> Constraint<D> {
+    /// Passes what it remembers through an archive.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        body.archive_list(archive, "last", &self.slots, &mut self.last);
         archive.part("work", &mut self.work);
     }
-}
 
-impl<const D: usize> Constraint<D> {
     pub fn new(kind: Kind, program: Program<D>, slots: Vec<u32>, points: Vec<Point>) -> Self {
         let last = vec![[[0.0; 3]; D]; slots.len()];
         Constraint {

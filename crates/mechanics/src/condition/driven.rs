@@ -6,8 +6,9 @@ use super::force_field::ForceField;
 use super::indenter::{Form, Indenter, Push};
 use super::load::{Load, LoadKind};
 use super::reaction::Reaction;
+use crate::body::Body;
 use crate::space::Point;
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 
 /// The values of a driven condition at one instant. Lists are in order of the condition's points.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,11 +42,19 @@ pub enum Driven<const D: usize> {
     Load(Load<D>),
 }
 
-impl<const D: usize> Owner for Driven<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
+impl<const D: usize> Driven<D> {
+    /// Passes what it remembers through an archive.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
         match self {
-            Driven::Indenter(i) => archive.part("indenter", i),
-            Driven::Load(l) => archive.part("load", l),
+            Driven::Indenter(i) => archive.within("indenter", |archive| {
+                i.archive(body, archive);
+                archive.one("energy", &mut i.reaction.energy);
+                archive.one("reaction", &mut i.reaction.force);
+            }),
+            Driven::Load(l) => archive.within("load", |archive| {
+                l.archive(body, archive);
+                archive.one("before", &mut l.before);
+            }),
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::execute::exact::Exact;
 use crate::interaction::Evaluation;
 use crate::interaction::friction::Pressed;
 use crate::space::Point;
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 use std::sync::Arc;
 
 #[derive(Debug, Clone)]
@@ -134,18 +134,16 @@ impl<const D: usize> Named<D> {
     }
 }
 
-impl<const D: usize> Owner for Load<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.all("force", &mut self.last);
+impl<const D: usize> Load<D> {
+    /// Passes what it remembers through an archive.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        body.archive_list(archive, "force", &self.slots, &mut self.last);
         archive.all("memory", &mut self.named.memory);
         // loads are asked for before the next increment begins
         archive.all("memory_before", &mut self.named.began);
-        archive.one("before", &mut self.before);
         archive.part("work", &mut self.work);
     }
-}
 
-impl<const D: usize> Load<D> {
     /// The slots that it acts on.
     pub fn slots(&self) -> &[u32] {
         &self.slots

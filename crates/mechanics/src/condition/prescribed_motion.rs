@@ -6,7 +6,7 @@ use super::prescribed::Prescribed;
 use super::still::Still;
 use crate::body::{Body, Field};
 use crate::execute::exact::Exact;
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 
 /// In the order in which they tell it.
 #[derive(Debug, Clone, Default)]
@@ -16,13 +16,14 @@ pub struct PrescribedMotion<const D: usize> {
     pub carried: Carried,
 }
 
-impl<const D: usize> Owner for PrescribedMotion<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.parts("constraints", &mut self.constraints);
-    }
-}
-
 impl<const D: usize> PrescribedMotion<D> {
+    /// Passes what it remembers through an archive.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        archive.each("constraints", &mut self.constraints, |c, a| {
+            c.archive(body, a);
+        });
+    }
+
     /// Everybody, in turn.
     pub fn all(&self) -> impl Iterator<Item = &dyn Prescribed<D>> {
         let constraints = self.constraints.iter().map(|c| c as &dyn Prescribed<D>);

@@ -4,7 +4,7 @@ use crate::body::Body;
 use crate::expression::Expression;
 use crate::interaction::history;
 use crate::spec::ToughnessFactor;
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 use std::borrow::Cow;
 
 /// Critical values of points.
@@ -17,12 +17,6 @@ pub struct ToughnessField {
     factors: Vec<(Vec<u32>, ToughnessFactor)>,
     /// `[slots]`: critical values of `e`, or critical works.
     values: Vec<f64>,
-}
-
-impl Owner for ToughnessField {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.all("values", &mut self.values);
-    }
 }
 
 /// What bonds break by.
@@ -68,6 +62,11 @@ impl ToughnessField {
             base,
             factors,
         }
+    }
+
+    /// Passes critical values through an archive.
+    pub fn archive<const D: usize>(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        body.archive_points(archive, "values", (&mut self.values, 1), |slot, _| slot);
     }
 
     /// Do values differ from time to time?

@@ -1,9 +1,12 @@
 //! The stream of a state: named arrays, one after the other.
 
+use super::shared::Ranks;
 use super::{Owner, Word};
+use peridyne_comm::Comm;
 use std::fmt;
 use std::io::{self, Read, Write};
 use std::ops::DerefMut;
+use std::sync::Arc;
 
 /// Bytes that are turned into numbers at a time: no length that a file states asks for more room than it has numbers.
 const PIECE: usize = 1 << 16;
@@ -27,6 +30,10 @@ pub enum StateError {
     Invalid { name: String },
     /// What is there and what is not does not fit the model.
     Choice { name: String, found: bool },
+    /// Ranks have other numbers where all have the same.
+    Apart { name: String },
+    /// Another rank says what is wrong.
+    Elsewhere(String),
 }
 
 impl fmt::Display for StateError {
@@ -56,6 +63,11 @@ impl fmt::Display for StateError {
                 true => write!(to, "the state has `{name}`, this model does not"),
                 false => write!(to, "the state has no `{name}`, this model does"),
             },
+            StateError::Apart { name } => write!(
+                to,
+                "`{name}` of the state is not the same on all ranks: a fault of this program"
+            ),
+            StateError::Elsewhere(what) => write!(to, "{what}"),
         }
     }
 }
@@ -65,15 +77,24 @@ impl std::error::Error for StateError {}
 enum Way<'a> {
     Save(&'a mut dyn Write),
     Load(&'a mut dyn Read),
+    /// Of ranks that the first writes for, and reads for.
+    SaveThere,
+    LoadThere,
 }
 
 /// A state that is written down, or read back: every call passes an array of the model through it. After the first error nothing
 /// more is done; [`Archive::done`] tells it.
+///
+/// Ranks that share a model pass theirs through archives [of all](Archive::among) at once. What is written is what one rank would write that had all: what
+/// all have alike once, [points](Archive::points), [rows of them](Archive::rows) and [entries](Archive::entries) by their ids, and [sums](Archive::sum)
+/// added up. So any number of ranks reads it.
 pub struct Archive<'a> {
     way: Way<'a>,
     /// The parts that the next array is in, each with a dot behind it.
-    path: String,
-    error: Option<StateError>,
+    pub(super) path: String,
+    pub(super) error: Option<StateError>,
+    /// Who shares the model, while all do what is done here.
+    pub(super) ranks: Option<Ranks>,
 }
 
 impl<'a> Archive<'a> {
@@ -90,17 +111,45 @@ impl<'a> Archive<'a> {
             way,
             path: String::new(),
             error: None,
+            ranks: None,
         }
+    }
+
+    /// What `work` passes through is of all ranks, which all do the same; this is the first of them.
+    pub fn among(&mut self, comm: &Arc<Comm>, work: impl FnOnce(&mut Self)) {
+        self.ranks = Some(Ranks::new(comm));
+        work(self);
+        self.agree();
+        self.same_on_all();
+        self.ranks = None;
+    }
+
+    /// Passes a state through that the first rank writes, or reads: `work` is what it does [among](Archive::among) all, within parts of this `path`.
+    /// Is all well on all ranks?
+    pub fn there(comm: &Arc<Comm>, load: bool, path: &str, work: impl FnOnce(&mut Self)) -> bool {
+        let mut archive = Archive::new(match load {
+            true => Way::LoadThere,
+            false => Way::SaveThere,
+        });
+        archive.path = path.into();
+        archive.among(comm, work);
+        archive.error.is_none()
+    }
+
+    /// The parts that the next array is in, each with a dot behind it.
+    pub fn path(&self) -> &str {
+        &self.path
     }
 
     /// Are numbers read, well or not?
     pub fn is_load(&self) -> bool {
-        matches!(self.way, Way::Load(_))
+        matches!(self.way, Way::Load(_) | Way::LoadThere)
     }
 
-    /// Are numbers read, and all of them well so far? Whoever derives something from them looks again then.
-    pub fn loads(&self) -> bool {
-        matches!(self.way, Way::Load(_)) && self.error.is_none()
+    /// Are numbers read, and all of them well so far, on all ranks? Whoever derives something from them looks again then.
+    pub fn loads(&mut self) -> bool {
+        self.agree();
+        self.is_load() && self.error.is_none()
     }
 
     /// # Errors
@@ -131,6 +180,9 @@ impl<'a> Archive<'a> {
     /// An array as long as the model says.
     pub fn all<T: Word>(&mut self, name: &str, x: &mut [T]) {
         self.try_to(|archive| {
+            if !archive.is_load() {
+                archive.alike(name, x);
+            }
             match archive.header(name, x.len(), T::BYTES)? {
                 None => return archive.put(x),
                 Some(length) if length == x.len() as u64 => {}
@@ -154,6 +206,9 @@ impl<'a> Archive<'a> {
     /// An array as long as the state says.
     pub fn list<T: Word>(&mut self, name: &str, x: &mut Vec<T>) {
         self.try_to(|archive| {
+            if !archive.is_load() {
+                archive.alike(name, x);
+            }
             let Some(length) = archive.header(name, x.len(), T::BYTES)? else {
                 return archive.put(x);
             };
@@ -207,10 +262,15 @@ impl<'a> Archive<'a> {
 
     /// Owners, as many as the model has.
     pub fn parts<T: Owner>(&mut self, name: &str, owners: &mut [T]) {
-        let mut count = owners.len() as u64;
+        self.each(name, owners, |owner, archive| owner.archive(archive));
+    }
+
+    /// As many things as the model has.
+    pub fn each<T>(&mut self, name: &str, all: &mut [T], mut pass: impl FnMut(&mut T, &mut Self)) {
+        let mut count = all.len() as u64;
         self.same(name, &mut count);
-        for owner in owners {
-            self.part(name, owner);
+        for one in all {
+            self.within(name, |archive| pass(one, archive));
         }
     }
 
@@ -268,11 +328,17 @@ impl<'a> Archive<'a> {
 
     /// What was read names what is not there.
     pub fn refuse(&mut self, name: &str) {
-        let name = format!("{}{name}", self.path);
-        self.error.get_or_insert(StateError::Invalid { name });
+        let error = self.invalid(name);
+        self.error.get_or_insert(error);
     }
 
-    fn size(&self, name: &str, expected: String, found: String) -> StateError {
+    pub(super) fn invalid(&self, name: &str) -> StateError {
+        StateError::Invalid {
+            name: format!("{}{name}", self.path),
+        }
+    }
+
+    pub(super) fn size(&self, name: &str, expected: String, found: String) -> StateError {
         StateError::Size {
             name: format!("{}{name}", self.path),
             expected,
@@ -280,7 +346,8 @@ impl<'a> Archive<'a> {
         }
     }
 
-    fn try_to(&mut self, work: impl FnOnce(&mut Self) -> Result<(), StateError>) {
+    pub(super) fn try_to(&mut self, work: impl FnOnce(&mut Self) -> Result<(), StateError>) {
+        self.agree();
         if self.error.is_none()
             && let Err(error) = work(self)
         {
@@ -289,7 +356,7 @@ impl<'a> Archive<'a> {
     }
 
     /// Name, bytes of an element, and number of elements: written, or compared with what stands there, whose number is answered.
-    fn header(
+    pub(super) fn header(
         &mut self,
         name: &str,
         length: usize,
@@ -306,11 +373,12 @@ impl<'a> Archive<'a> {
                 to.write_all(&head).map_err(StateError::Stream)?;
                 Ok(None)
             }
-            Way::Load(from) => {
+            Way::SaveThere => Ok(None),
+            Way::Load(_) | Way::LoadThere => {
                 let mut long = [0];
-                from.read_exact(&mut long).map_err(StateError::Stream)?;
+                self.read(&mut long)?;
                 let mut head = vec![0; usize::from(long[0]) + 12];
-                from.read_exact(&mut head).map_err(StateError::Stream)?;
+                self.read(&mut head)?;
                 let (found, rest) = head.split_at(usize::from(long[0]));
                 if found != name.as_bytes() {
                     return Err(StateError::Other {
@@ -331,7 +399,19 @@ impl<'a> Archive<'a> {
         }
     }
 
-    fn put<T: Word>(&mut self, x: &[T]) -> Result<(), StateError> {
+    /// Reads as many bytes; those of the first rank, on all.
+    fn read(&mut self, bytes: &mut [u8]) -> Result<(), StateError> {
+        let own = match &mut self.way {
+            Way::Load(from) => from.read_exact(bytes).map_err(StateError::Stream),
+            Way::Save(_) | Way::SaveThere | Way::LoadThere => Ok(()),
+        };
+        match &self.ranks {
+            None => own,
+            Some(ranks) => ranks.hear(own, bytes),
+        }
+    }
+
+    pub(super) fn put<T: Word>(&mut self, x: &[T]) -> Result<(), StateError> {
         let Way::Save(to) = &mut self.way else {
             return Ok(());
         };
@@ -346,17 +426,18 @@ impl<'a> Archive<'a> {
         Ok(())
     }
 
-    fn take<T: Word>(&mut self, length: usize, to: &mut dyn FnMut(T)) -> Result<(), StateError> {
-        let Way::Load(from) = &mut self.way else {
-            return Ok(());
-        };
+    pub(super) fn take<T: Word>(
+        &mut self,
+        length: usize,
+        to: &mut dyn FnMut(T),
+    ) -> Result<(), StateError> {
         let each = (PIECE / T::BYTES.max(1)).max(1);
         let mut room = vec![0; each.min(length) * T::BYTES];
         let mut left = length;
         while left > 0 {
             let now = each.min(left);
             let bytes = &mut room[..now * T::BYTES];
-            from.read_exact(bytes).map_err(StateError::Stream)?;
+            self.read(bytes)?;
             bytes.chunks(T::BYTES).for_each(|x| to(T::take(x)));
             left -= now;
         }

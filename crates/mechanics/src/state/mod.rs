@@ -6,24 +6,15 @@
 //! is followed by what follows from it: an owner looks again at whatever it derives.
 
 mod archive;
+mod shared;
 mod words;
 
-use crate::execute::exact::Exact;
 pub use archive::{Archive, StateError};
+pub use shared::{Bonds, Whose};
 pub use words::{Word, words};
 
 /// Has numbers that cannot be found again.
 pub trait Owner {
     /// Passes them through an archive, always in the same order; after reading, what follows from them is found anew.
     fn archive(&mut self, archive: &mut Archive<'_>);
-}
-
-impl Owner for Exact {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        let mut parts = self.parts();
-        archive.list("parts", &mut parts);
-        if archive.loads() {
-            *self = parts.into_iter().collect();
-        }
-    }
 }

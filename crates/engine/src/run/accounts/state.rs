@@ -32,7 +32,7 @@ pub(in crate::run) struct Accounts {
 
 impl Owner for Accounts {
     fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.one("broken", &mut self.swept.broken);
+        archive.count("broken", &mut self.swept.broken);
         archive.part("lost", &mut self.swept.lost);
         archive.part("made", &mut self.swept.made);
         archive.part("dissipated", &mut self.swept.dissipated);

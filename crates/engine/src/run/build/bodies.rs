@@ -102,11 +102,9 @@ impl<'a, const D: usize> Bodies<'a, D> {
         if let Some(ranks) = ranks {
             // all ranks know all points until here, and find the same mistakes
             warnings.extend(meant::all(spec, &body, &names.sets)?);
-            names
-                .faces
-                .find(&spec.loading.conditions, &body, &names.sets)?;
+            names.faces.find(spec, &body, &names.sets)?;
             // volumes of partners fade over a spacing at the horizon
-            body = body.subdomain_of(ranks, horizon + body.spacing())?;
+            body = body.subdomain_of(ranks, horizon + body.spacing());
             cut(&mut names, &body);
             enough(spec, &parts, &body)?;
         }

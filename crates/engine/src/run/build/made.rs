@@ -268,6 +268,7 @@ fn info<const D: usize>(
         transfers: vec![],
         loads: vec![],
         cut: bonds.cut,
+        idle_ranks: body.count(u64::from(body.points() == 0)),
         bytes: 0,
         simd: simd.name(),
         warnings: Warnings::default(),

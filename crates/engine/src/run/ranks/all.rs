@@ -36,7 +36,8 @@ enum Ask<'a> {
     Read(&'a str, usize),
     Write(&'a str, usize, usize, &'a [f64]),
     Save,
-    Load,
+    /// Within parts of this path.
+    Load(&'a str),
     /// Nobody asks any more.
     Leave,
 }
@@ -59,7 +60,7 @@ impl<'a> Ask<'a> {
             Ask::Read(name, component) => format!("read {name} {component}"),
             Ask::Write(name, component, first, _) => format!("write {name} {component} {first}"),
             Ask::Save => "save".into(),
-            Ask::Load => "load".into(),
+            Ask::Load(path) => format!("load {path}"),
             Ask::Leave => "leave".into(),
         };
         let mut bytes = line.into_bytes();
@@ -104,7 +105,7 @@ impl<'a> Ask<'a> {
                 Ask::Write(name, component?, first?, values)
             }
             "save" => Ask::Save,
-            "load" => Ask::Load,
+            "load" => Ask::Load(of),
             "leave" => Ask::Leave,
             _ => return None,
         })
@@ -145,8 +146,12 @@ impl<const D: usize> RankModel<D> {
                 Ask::Write(name, component, first, values) => {
                     self.write(name, component, first, values);
                 }
-                Ask::Save => drop(self.saved()),
-                Ask::Load => drop(self.load(vec![])),
+                Ask::Save => drop(Archive::there(&comm, false, "", |archive| {
+                    self.model.archive(archive);
+                })),
+                Ask::Load(path) => drop(Archive::there(&comm, true, path, |archive| {
+                    self.model.archive(archive);
+                })),
                 Ask::Leave => return,
             }
         }
@@ -184,50 +189,15 @@ fn not_shared(what: &str) -> ! {
     panic!("ranks do not share {what} yet")
 }
 
-impl<const D: usize> RankModel<D> {
-    /// The states of all ranks, in their order, on the first.
-    fn saved(&mut self) -> Option<Vec<Vec<u8>>> {
-        let mut own = vec![];
-        let mut archive = Archive::save(&mut own);
-        self.model.archive(&mut archive);
-        archive.done().expect("memory takes what is written");
-        let comm = self.subdomain().comm();
-        comm.first(own).unwrap_or_else(|failure| comm.end(failure))
-    }
-
-    /// Takes the states of all ranks, which the first has. Did all find one of their model?
-    fn load(&mut self, all: Vec<Vec<u8>>) -> bool {
-        let comm = self.subdomain().comm();
-        let own = comm
-            .of_first(all)
-            .unwrap_or_else(|failure| comm.end(failure));
-        let mut bytes = &own[..];
-        let mut archive = Archive::load(&mut bytes);
-        self.model.archive(&mut archive);
-        let wrong = archive.done().is_err() || !bytes.is_empty();
-        !self.model.system.body.exchange().any(wrong)
-    }
-}
-
 impl<const D: usize> Owner for AllRanks<D> {
-    /// Goes on from what as many ranks wrote.
+    /// As one model that has all points, which may go on from it, too.
     fn archive(&mut self, archive: &mut Archive<'_>) {
-        let mut ranks = self.own.subdomain().comm().ranks() as u64;
-        archive.same("ranks", &mut ranks);
-        if archive.is_load() {
-            let mut all = vec![];
-            archive.lists("state", &mut all);
-            if archive.loads() {
-                self.ask(&Ask::Load);
-                if all.len() as u64 != ranks || !self.own.load(all) {
-                    archive.refuse("state");
-                }
-            }
-            return;
-        }
-        self.ask(&Ask::Save);
-        let all = self.own.saved();
-        archive.lists("state", &mut all.expect("this rank gathers"));
+        self.ask(&match archive.is_load() {
+            true => Ask::Load(archive.path()),
+            false => Ask::Save,
+        });
+        let comm = self.own.subdomain().comm().clone();
+        archive.among(&comm, |archive| self.own.model.archive(archive));
     }
 }
 

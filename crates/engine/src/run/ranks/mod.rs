@@ -5,8 +5,10 @@
 
 mod all;
 mod model;
+mod plan;
 mod shared;
 
 pub use all::{AllRanks, build};
 pub use model::RankModel;
+pub use plan::{Shares, StepCost, plan};
 pub use shared::shared;

@@ -9,9 +9,9 @@ use crate::observe::{Column, Snapshot, StateHash, Values};
 use crate::run::build::made_among;
 use crate::run::gathered::{Everyone, Gathered};
 use crate::run::state_hash::hashed;
-use crate::run::{Model, Options, Shelf, Simulation};
+use crate::run::{Info, Model, Options, Shelf, Simulation};
 use crate::spec::Spec;
-use peridyne_comm::Comm;
+use peridyne_comm::{Comm, Traffic};
 use std::sync::Arc;
 
 /// The part of a model that one rank has. What is asked of all ranks at once is told there.
@@ -170,9 +170,14 @@ impl<const D: usize> RankModel<D> {
         done
     }
 
-    /// Bytes that this rank has sent for copies of its points, and copies that it has of others'.
-    pub fn halo(&self) -> (u64, usize) {
-        let exchange = self.model.system.body.exchange();
-        (exchange.sent(), exchange.received_slots())
+    /// What this rank has sent so far, and copies that it has of others' points.
+    pub fn halo(&self) -> (Traffic, usize) {
+        let sent = self.subdomain().comm().traffic();
+        (sent, self.model.system.body.exchange().received_slots())
+    }
+
+    /// What is known of the model of all ranks.
+    pub fn info(&self) -> &Info {
+        self.model.info()
     }
 }

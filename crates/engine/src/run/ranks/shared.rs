@@ -59,17 +59,13 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         ),
         (
             "interactions",
-            "friction of contact, interfaces, potentials beside bonds and constants of pairs",
-            { spec.interactions.contact.as_ref() }.is_some_and(|c| c.friction.is_some())
+            "friction of contact, heat through contact, interfaces, potentials beside bonds and constants of pairs",
+            { spec.interactions.contact.as_ref() }
+                .is_some_and(|c| c.friction.is_some() || c.conductance.is_some())
                 || !spec.interactions.interfaces.is_empty()
                 || !spec.interactions.potentials.is_empty()
                 || !spec.interactions.pairs.is_empty()
                 || spec.interactions.bonded.is_some(),
-        ),
-        (
-            "interactions.transfers",
-            "heat and other quantities",
-            !spec.interactions.transfers.is_empty(),
         ),
         (
             "conditions",
@@ -83,8 +79,11 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         ),
         (
             "run.schedule.stepper",
-            "steppers other than velocity Verlet",
-            run.schedule.stepper != Stepper::default(),
+            "implicit steps and statics",
+            match run.schedule.stepper {
+                Stepper::Verlet | Stepper::Still => false,
+                Stepper::Newmark(_) | Stepper::Statics(_) => true,
+            },
         ),
         (
             "probes",

@@ -8,24 +8,26 @@ impl<const D: usize> Owner for System<D> {
     fn archive(&mut self, archive: &mut Archive<'_>) {
         archive.part("clock", &mut self.clock);
         archive.one("parts", &mut self.info.parts);
-        archive.columns("displacement", &mut self.u);
-        archive.columns("velocity", &mut self.v);
-        archive.columns("force_density", &mut self.f);
+        let body = &self.body;
+        body.archive_field(archive, "displacement", &mut self.u);
+        body.archive_field(archive, "velocity", &mut self.v);
+        body.archive_field(archive, "force_density", &mut self.f);
         archive.given("inertia", &mut self.inertia, |inertia, archive| {
-            archive.columns("push", &mut inertia.push);
+            body.archive_field(archive, "push", &mut inertia.push);
             for taken in &mut inertia.taken {
-                archive.columns("taken", taken);
+                body.archive_field(archive, "taken", taken);
             }
         });
-        let body = &self.body;
         archive.within("bonds", |archive| self.interaction.archive(body, archive));
-        archive.given("toughness", &mut self.toughness, |t, a| t.archive(a));
+        archive.given("toughness", &mut self.toughness, |t, a| {
+            t.archive(body, a);
+        });
         archive.given("contact", &mut self.contact, |c, a| c.archive(a));
-        self.applied.archive(archive);
-        self.prescribed.archive(archive);
+        self.applied.archive(body, archive);
+        self.prescribed.archive(body, archive);
         archive.part("accounts", &mut self.accounts);
         archive.one("cut", &mut self.info.cut);
-        archive.part("transfers", &mut self.transfers);
+        archive.within("transfers", |archive| self.transfers.archive(body, archive));
         if archive.loads() {
             self.restored();
         }
@@ -37,6 +39,7 @@ impl<const D: usize> System<D> {
     fn restored(&mut self) {
         self.info.time_step = self.clock.dt_of_motion();
         self.stressed = None;
+        self.refresh_images();
         self.look_again();
         if let Some(contact) = &mut self.contact {
             contact.find(&self.body, &self.u, self.interaction.as_ref());

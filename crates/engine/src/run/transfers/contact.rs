@@ -47,7 +47,7 @@ impl<const D: usize> Maker<'_, D> {
         };
         let mut faces = vec![0.0; system.body.points()];
         for &s in system.body.slots() {
-            faces[system.transfers.place[s as usize] as usize] = system.body.face_at(s as usize);
+            faces[system.transfers.places.at(s as usize)] = system.body.face_at(s as usize);
         }
         heat.with_contact(Touching::new(h, faces));
         if !is_cubic(&spec.body) {
@@ -55,7 +55,7 @@ impl<const D: usize> Maker<'_, D> {
         }
         system.conduct_contact();
         let told = system.info.transfers.iter_mut().zip(&system.transfers.all);
-        told.for_each(|(info, t)| info.stable_step = t.stable_step(0.0));
+        told.for_each(|(info, t)| info.stable_step = t.stable_step(&system.body, 0.0));
         Ok(())
     }
 }
@@ -80,10 +80,10 @@ impl<const D: usize> System<D> {
         }
         let body = &self.body;
         contact.find(body, &self.u, self.interaction.as_ref());
-        let place = &self.transfers.place;
+        let places = &self.transfers.places;
         contact.central.each_near(&self.u, |ends, weight| {
             let bodies = ends.map(|s| body.piece_of(s) as u32);
-            touching.add(ends.map(|s| place[s]), bodies, weight);
+            touching.add(ends.map(|s| places.at(s) as u32), bodies, weight);
         });
         touching.share();
     }

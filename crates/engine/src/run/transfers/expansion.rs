@@ -76,7 +76,7 @@ impl<const D: usize> System<D> {
         self.transfers.past.clone_from(&self.transfers.strain);
         let Transfers {
             all,
-            place,
+            places,
             grown,
             strain,
             ..
@@ -84,7 +84,7 @@ impl<const D: usize> System<D> {
         let body = &self.body;
         body.set_points(strain, |i| {
             let of = |(n, reference, strains): &(usize, f64, Vec<f64>)| {
-                strains[body.material_of(i)] * (all[*n].values()[place[i] as usize] - reference)
+                strains[body.material_of(i)] * (all[*n].values()[places.at(i)] - reference)
             };
             grown.iter().map(of).sum()
         });
@@ -143,15 +143,18 @@ impl<const D: usize> System<D> {
             return;
         };
         let Transfers {
-            all, place, heated, ..
+            all,
+            places,
+            heated,
+            ..
         } = &mut self.transfers;
         let Some((n, strains)) = heated else { return };
         let mut more = vec![0.0; self.body.points()];
         for &s in self.body.slots() {
             let i = s as usize;
             let strain = strains[self.body.material_of(i)];
-            more[place[i] as usize] = strain * (now[i] - before[i]);
+            more[places.at(i)] = strain * (now[i] - before[i]);
         }
-        all[*n].give(|i, value| value * more[i]);
+        all[*n].give((&self.body, places), |i, value| value * more[i]);
     }
 }

@@ -7,6 +7,7 @@ use crate::family::stencil::Stencil;
 use crate::message;
 use crate::quantity::Dimension;
 use crate::run::LoadInfo;
+use crate::run::agreed::agreed;
 use crate::run::clock::Clock;
 use crate::run::names::Names;
 use crate::run::surface::Factors;
@@ -16,7 +17,7 @@ use crate::spec::{
     BodySpec, Exchange, Horizon, Quantity, Spec, SurfaceFactors, TimeStep, TransferCondition,
     TransferKind, TransferMethod, TransferSpec,
 };
-use crate::transfer::{Condition, Conduction, Rows, Surface, Transfer};
+use crate::transfer::{Condition, Conduction, Places, Rows, Surface, Transfer};
 
 /// Makes what spreads, of a system at rest.
 pub(in crate::run) struct Maker<'a, const D: usize> {
@@ -37,15 +38,13 @@ impl<const D: usize> Maker<'_, D> {
         if transfers.is_empty() {
             return self.make_contact(spec);
         }
-        let mut slots = self.system.body.slots().to_vec();
-        slots.sort_unstable();
-        let mut place = vec![0; self.system.body.len()];
-        for (n, s) in slots.iter().enumerate() {
-            place[*s as usize] = n as u32;
-        }
-        self.system.transfers.place = place;
+        self.system.transfers.places = Places::new(&self.system.body);
         for t in transfers {
-            let made = self.transfer(spec, t, &slots)?;
+            let made = self.transfer(spec, t);
+            let made = agreed(&self.system.body, made)?;
+            if let TransferMethod::Steady { .. } = t.method {
+                steady(&made, &self.system.body, &self.system.transfers.places)?;
+            }
             let info = self.told(spec, t, &made);
             self.system.transfers.all.push(made);
             self.system.info.transfers.push(info);
@@ -108,14 +107,11 @@ impl<const D: usize> Maker<'_, D> {
         Ok(())
     }
 
-    fn transfer(
-        &mut self,
-        spec: &Spec,
-        t: &TransferSpec,
-        slots: &[u32],
-    ) -> Result<Transfer, BuildError> {
+    fn transfer(&mut self, spec: &Spec, t: &TransferSpec) -> Result<Transfer, BuildError> {
         let name = t.quantity.name();
         let (body, interaction) = (&self.system.body, self.system.interaction.as_ref());
+        let places = &self.system.transfers.places;
+        let slots = places.here();
         let of = |slot: usize| &t.materials[body.material_of(slot)];
         let weight = |slot: usize, xi: &[f64], r: f64| {
             let model = self.system.constitutive.at(slot).0;
@@ -146,7 +142,7 @@ impl<const D: usize> Maker<'_, D> {
             &Conduction {
                 conductivity: &|slot| of(slot).conductivity,
                 weight: &|i, j, xi, r| 0.5 * (weight(i, xi, r) + weight(j, xi, r)),
-                place: &self.system.transfers.place,
+                places,
                 surface: (!exact.is_empty()).then_some(Surface {
                     factor: &factor,
                     moment: &moment,
@@ -162,14 +158,14 @@ impl<const D: usize> Maker<'_, D> {
                 Quantity::Species => volume,
             }
         });
-        let mut value = vec![t.reference; slots.len()];
+        let mut value = vec![t.reference; places.count()];
         for (set, e) in &t.initial {
             let (places, points) = self.places(set, name)?;
             for (i, x) in places.iter().zip(&points) {
                 value[*i as usize] = e.eval(x, 0.0);
             }
         }
-        if let Some(n) = value.iter().position(|v| !v.is_finite()) {
+        if let Some(n) = value[..slots.len()].iter().position(|v| !v.is_finite()) {
             return Err(BuildError::invalid(
                 name,
                 format!(
@@ -195,9 +191,6 @@ impl<const D: usize> Maker<'_, D> {
             value,
         );
         self.system.info.loads.extend(loads);
-        if let TransferMethod::Steady { .. } = t.method {
-            steady(&made)?;
-        }
         Ok(made)
     }
 
@@ -206,7 +199,8 @@ impl<const D: usize> Maker<'_, D> {
         let system = &*self.system;
         let found = system.body.slots_of(set, &self.names.sets);
         let (slots, points) = found.map_err(|e| e.at(path))?;
-        let place = slots.iter().map(|s| system.transfers.place[*s as usize]);
+        let places = &system.transfers.places;
+        let place = slots.iter().map(|s| places.at(*s as usize) as u32);
         Ok((place.collect(), points))
     }
 
@@ -239,6 +233,10 @@ impl<const D: usize> Maker<'_, D> {
                 area(a)?,
             ),
         };
+        let has_area = matches!(
+            c.kind,
+            TransferKind::Flux { .. } | TransferKind::Exchange { .. }
+        );
         let volumes = || slots.iter().map(|s| system.body.volume().at(*s as usize));
         let power = match &c.kind {
             TransferKind::Flux { value, .. } => Some((value, sizes.clone())),
@@ -248,11 +246,13 @@ impl<const D: usize> Maker<'_, D> {
         let told = (!what.is_empty()).then(|| LoadInfo {
             what,
             set: c.set.clone(),
-            area: (!sizes.is_empty()).then(|| sizes.iter().sum()),
+            area: (has_area).then(|| system.body.sum(sizes.iter().copied())),
             force: None,
             power: power.as_ref().map(|(value, sizes)| {
                 let each = points.iter().zip(sizes);
-                each.map(|(x, size)| size * value.eval(x, 0.0)).sum()
+                system
+                    .body
+                    .sum(each.map(|(x, size)| size * value.eval(x, 0.0)))
             }),
             varies: power.is_some_and(|(value, _)| value.depends_on_time()),
         });
@@ -301,6 +301,7 @@ impl<const D: usize> Maker<'_, D> {
             let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
                 (l.min(x), h.max(x))
             });
+            let (low, high) = (system.body.least(low), system.body.most(high));
             high - low + system.body.spacing()
         };
         let longest = (0..D).map(extent).fold(0.0, f64::max);
@@ -308,24 +309,23 @@ impl<const D: usize> Maker<'_, D> {
         TransferInfo {
             quantity: t.quantity,
             method: t.method,
-            stable_step: made.stable_step(0.0),
+            stable_step: made.stable_step(&system.body, 0.0),
             spread: longest * longest / least,
             diffusivity,
         }
     }
 }
 
-/// Is every part held, or in exchange with something?
-fn steady(made: &Transfer) -> Result<(), BuildError> {
-    let parts = made.rows.parts();
-    let mut tied = vec![false; parts.len()];
+/// Is every part held, or in exchange with something? All ranks ask at once.
+fn steady<const D: usize>(
+    made: &Transfer,
+    body: &Body<D>,
+    places: &Places,
+) -> Result<(), BuildError> {
     let held = made.conditions.iter().flat_map(Condition::holds);
     let exchanged = made.conditions.iter().flat_map(Condition::exchanges);
-    for i in held.chain(exchanged) {
-        tied[parts[*i as usize] as usize] = true;
-    }
     let name = made.quantity.name();
-    match parts.iter().all(|p| tied[*p as usize]) {
+    match made.rows.are_tied(body, places, held.chain(exchanged).copied()) {
         true => Ok(()),
         false => Err(BuildError::ill_posed(
             name,

@@ -13,6 +13,7 @@ use crate::columns::{Declaration, Dimension, Shape};
 use crate::error::RunError;
 use crate::spec::Quantity;
 use crate::transfer::{Transfer, TransferAccount};
+use state::Transfers;
 
 /// What its column is.
 fn declaration(quantity: Quantity) -> Declaration {
@@ -37,9 +38,8 @@ impl<const D: usize> System<D> {
     pub(super) fn start_transfers(&mut self) {
         let t = self.clock.time();
         self.break_transfers();
-        for transfer in &mut self.transfers.all {
-            transfer.start(t);
-        }
+        let Transfers { all, places, .. } = &mut self.transfers;
+        { all.iter_mut() }.for_each(|transfer| transfer.start(&self.body, places, t));
         self.expand();
         self.warm();
     }
@@ -50,9 +50,10 @@ impl<const D: usize> System<D> {
         if self.transfers.all.is_empty() {
             return;
         }
-        let place = &self.transfers.place;
-        for t in self.transfers.all.iter_mut().filter(|t| !t.across_broken) {
-            t.rows.conduct(&self.body, self.interaction.as_ref(), place);
+        let Transfers { all, places, .. } = &mut self.transfers;
+        for t in all.iter_mut().filter(|t| !t.across_broken) {
+            t.rows
+                .conduct(&self.body, self.interaction.as_ref(), places);
         }
     }
 
@@ -73,12 +74,14 @@ impl<const D: usize> System<D> {
     ) -> Result<(), RunError> {
         self.transfers.all.iter_mut().for_each(Transfer::keep);
         self.heat_by_deformation(pressed);
-        if self.transfers.seen != self.accounts.swept.broken {
+        let broke = self.transfers.seen != self.accounts.swept.broken;
+        if !self.transfers.all.is_empty() && self.body.exchange().any(broke) {
             self.break_transfers();
         }
         self.conduct_contact();
         for n in 0..self.transfers.all.len() {
-            if let Err(error) = self.transfers.all[n].advance(t, dt) {
+            let Transfers { all, places, .. } = &mut self.transfers;
+            if let Err(error) = all[n].advance(&self.body, places, t, dt) {
                 self.transfers.all.iter_mut().for_each(Transfer::retreat);
                 return Err(RunError::Transfer {
                     step: self.clock.step() + 1,
@@ -113,14 +116,14 @@ impl<const D: usize> System<D> {
             .all
             .iter()
             .find(|t| t.quantity.column() == name)?;
-        let place = &self.transfers.place;
-        Some(self.body.by_id(|i| found.values()[place[i] as usize]))
+        let places = &self.transfers.places;
+        Some(self.body.by_id(|i| found.values()[places.at(i)]))
     }
 
     /// Sets a column by point id; false: there is no such, or the number of values is another.
     pub(super) fn set_transferred(&mut self, name: &str, values: &[f64]) -> bool {
-        let mut each = self.transfers.all.iter_mut();
-        let Some(found) = each.find(|t| t.quantity.column() == name) else {
+        let Transfers { all, places, .. } = &mut self.transfers;
+        let Some(found) = all.iter_mut().find(|t| t.quantity.column() == name) else {
             return false;
         };
         if values.len() != self.body.points() {
@@ -128,9 +131,9 @@ impl<const D: usize> System<D> {
         }
         let mut placed = vec![0.0; values.len()];
         for (value, s) in values.iter().zip(self.body.slots()) {
-            placed[self.transfers.place[*s as usize] as usize] = *value;
+            placed[places.at(*s as usize)] = *value;
         }
-        found.set_values(&placed);
+        found.set_values(&self.body, places, &placed);
         // bonds have other lengths now, laws other temperatures
         self.expand();
         self.warm();
@@ -139,6 +142,6 @@ impl<const D: usize> System<D> {
 
     pub(super) fn transfer_accounts(&self) -> Vec<(Quantity, TransferAccount)> {
         let each = self.transfers.all.iter();
-        each.map(|t| (t.quantity, t.account())).collect()
+        each.map(|t| (t.quantity, t.account(&self.body))).collect()
     }
 }

@@ -1,8 +1,9 @@
 //! What a model keeps of what spreads.
 
+use crate::body::Body;
 use crate::spec::{Quantity, TransferMethod};
-use crate::state::{Archive, Owner};
-use crate::transfer::Transfer;
+use crate::state::Archive;
+use crate::transfer::{Places, Transfer};
 
 /// What is told of a quantity that spreads.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,8 +22,7 @@ pub struct TransferInfo {
 #[derive(Debug, Clone, Default)]
 pub(in crate::run) struct Transfers {
     pub all: Vec<Transfer>,
-    /// Place of the point in a slot, in the order of slots.
-    pub(super) place: Vec<u32>,
+    pub(super) places: Places,
     /// Directed bonds broken when bonds were looked at last.
     pub(super) seen: u64,
     /// What expands: place of the transfer, its reference, and strain per value of each material.
@@ -38,15 +38,33 @@ pub(in crate::run) struct Transfers {
     pub(super) heated: Option<(usize, Vec<f64>)>,
 }
 
-impl Owner for Transfers {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.parts("each", &mut self.all);
-        archive.list("strain", &mut self.strain);
-        archive.list("strain_before", &mut self.past);
+impl Transfers {
+    /// Passes what spreads through an archive.
+    pub fn archive<const D: usize>(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        let places = &self.places;
+        archive.each("each", &mut self.all, |t, a| t.archive(body, places, a));
+        let mut grows = !self.past.is_empty();
+        if !self.grown.is_empty() {
+            archive.one("grows", &mut grows);
+        }
+        self.past.resize(if grows { body.len() } else { 0 }, 0.0);
+        for (name, strain) in [
+            ("strain", &mut self.strain),
+            ("strain_before", &mut self.past),
+        ] {
+            body.archive_points(archive, name, (strain, 1), |slot, _| slot);
+        }
         archive.one("price", &mut self.price);
         archive.given("warmth", &mut self.warmth, |warmth, archive| {
-            archive.all("above", &mut warmth.above);
+            body.archive_points(archive, "above", (&mut warmth.above, 1), |slot, _| slot);
         });
+        if archive.loads() {
+            for strain in [&mut self.strain, &mut self.past] {
+                if !strain.is_empty() {
+                    body.exchange().fill(strain);
+                }
+            }
+        }
     }
 }
 

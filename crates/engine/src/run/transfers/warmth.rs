@@ -4,7 +4,7 @@
 //! heats once, and with nothing conducted the step is the adiabatic one of the law alone. Of first order in the step where heat is conducted.
 
 use super::make::Maker;
-use super::state::Warmth;
+use super::state::{Transfers, Warmth};
 use crate::constitutive::Softens;
 use crate::error::BuildError;
 use crate::message;
@@ -52,7 +52,7 @@ impl<const D: usize> System<D> {
         for &s in self.body.slots() {
             let i = s as usize;
             let reference = warmth.reference[self.body.material_of(i)];
-            warmth.above[i] = values[self.transfers.place[i] as usize] - reference;
+            warmth.above[i] = values[self.transfers.places.at(i)] - reference;
         }
         self.interaction.warm(&self.body, &warmth.above);
     }
@@ -62,14 +62,16 @@ impl<const D: usize> System<D> {
         let Some(warmth) = &self.transfers.warmth else {
             return;
         };
+        let heat = warmth.heat;
         let mut now = warmth.above.clone();
         self.interaction.read_warmth(&self.body, &mut now);
         let mut by = vec![0.0; self.body.points()];
         for &s in self.body.slots() {
             let i = s as usize;
-            by[self.transfers.place[i] as usize] = now[i] - warmth.above[i];
+            by[self.transfers.places.at(i)] = now[i] - warmth.above[i];
         }
-        self.transfers.all[warmth.heat].warm(&by);
+        let Transfers { all, places, .. } = &mut self.transfers;
+        all[heat].warm((&self.body, places), &by);
         self.warm();
     }
 }

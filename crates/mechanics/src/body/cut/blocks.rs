@@ -2,7 +2,6 @@
 
 use crate::body::grid::BLOCK;
 use crate::body::{Body, Layout};
-use crate::error::BuildError;
 use crate::execute::lane::TILE;
 use std::ops::Range;
 
@@ -34,22 +33,17 @@ impl<const D: usize> Body<D> {
     }
 }
 
-/// Blocks of all ranks, in their order, with as many points each as whole blocks allow.
-pub(super) fn by_ranks(points: &[usize], ranks: usize) -> Result<Vec<Range<usize>>, BuildError> {
-    let filled = points.iter().filter(|n| **n > 0).count();
-    if filled < ranks {
-        let blocks = if filled == 1 { "block" } else { "blocks" };
-        let message = format!("{ranks} ranks for a body of {filled} {blocks} of {CELLS} cells");
-        let help = format!("a rank has one block at least: take {filled} ranks or fewer");
-        return Err(BuildError::too_many("ranks", message).help(help));
-    }
+/// Blocks of all ranks, in their order, with as many points each as whole blocks allow. Ranks beyond the number of blocks have none.
+pub(super) fn by_ranks(points: &[usize], ranks: usize) -> Vec<Range<usize>> {
+    let mut left = points.iter().filter(|n| **n > 0).count();
+    let working = left.min(ranks);
     let all: usize = points.iter().sum();
-    let (mut blocks, mut begin, mut passed, mut left) = (vec![], 0, 0, filled);
-    for rank in 0..ranks {
+    let (mut blocks, mut begin, mut passed) = (vec![], 0, 0);
+    for rank in 0..working {
         let (mut end, mut here) = (begin, 0);
         // those after it have one each
-        let after = ranks - rank - 1;
-        while here == 0 || left > after && passed < all * (rank + 1) / ranks {
+        let after = working - rank - 1;
+        while here == 0 || left > after && passed < all * (rank + 1) / working {
             passed += points[end];
             here += points[end];
             left -= usize::from(points[end] > 0);
@@ -59,5 +53,6 @@ pub(super) fn by_ranks(points: &[usize], ranks: usize) -> Result<Vec<Range<usize
         blocks.push(begin..end);
         begin = end;
     }
-    Ok(blocks)
+    blocks.resize(ranks, points.len()..points.len());
+    blocks
 }

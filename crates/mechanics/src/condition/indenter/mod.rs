@@ -19,7 +19,7 @@ use crate::interaction::friction::Pressed;
 use crate::space::rigid::RigidShape;
 use crate::space::{cross, full};
 use crate::spec::{CohesionSpec, FrictionSpec, IndenterSpec};
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 use rub::{Departure, Touched};
 use std::collections::HashMap;
 pub use surface::{Form, Push};
@@ -63,22 +63,24 @@ pub struct Indenter<const D: usize> {
     from: Option<Departure<D>>,
 }
 
-impl<const D: usize> Owner for Indenter<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
+impl<const D: usize> Indenter<D> {
+    /// Passes what it remembers through an archive.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
         archive.part("rigid", &mut self.rigid);
-        archive.list("touched", &mut self.touched);
-        archive.list("rubbed", &mut self.rubbed);
-        archive.list("rubbed_before", &mut self.rubbed_before);
-        let mut pressed: Vec<(u32, f64)> = self.pressed.iter().map(|(s, d)| (*s, *d)).collect();
-        pressed.sort_unstable_by_key(|(slot, _)| *slot);
-        archive.list("pressed", &mut pressed);
-        for (name, x) in [
-            ("stiffest", &mut self.stiff),
-            ("energy", &mut self.reaction.energy),
+        body.archive_some(archive, "touched", &mut self.touched);
+        for (name, all) in [
+            ("rubbed", &mut self.rubbed),
+            ("rubbed_before", &mut self.rubbed_before),
         ] {
-            archive.one(name, x);
+            let nowhere = |t: &Touched<D>| (t.slot, Touched { slot: 0, ..*t });
+            let mut list: Vec<_> = all.iter().map(nowhere).collect();
+            body.archive_some(archive, name, &mut list);
+            let there = |(slot, t)| Touched { slot, ..t };
+            *all = list.into_iter().map(there).collect();
         }
-        archive.one("reaction", &mut self.reaction.force);
+        let mut pressed: Vec<(u32, f64)> = self.pressed.iter().map(|(s, d)| (*s, *d)).collect();
+        body.archive_some(archive, "pressed", &mut pressed);
+        archive.most("stiffest", &mut self.stiff);
         for (name, x) in [
             ("work", &mut self.work),
             ("work_of_friction", &mut self.rubbed_work),
@@ -110,9 +112,7 @@ impl<const D: usize> Owner for Indenter<D> {
             self.look_again();
         }
     }
-}
 
-impl<const D: usize> Indenter<D> {
     pub fn new(spec: &IndenterSpec) -> Self {
         let surface = match (&spec.shape, &spec.cohesion) {
             // in the order of operations of LAMMPS, to the last bit

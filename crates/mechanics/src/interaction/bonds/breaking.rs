@@ -335,9 +335,15 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             family.kin(group, bits, l, &mut |kin| of = law.stiffness(material, kin));
             now[slot] = self.integrity_at(slot) * of;
         }
-        let stiffened = |(whole, now): (&f64, &f64)| if *whole > 0.0 { now / whole } else { 1.0 };
-        self.stiffened = whole.iter().zip(&now).map(stiffened).fold(1.0, f64::max);
         self.stiffness = [whole, now];
+        self.find_stiffened();
+    }
+
+    /// How much stiffer the stiffest torn point is than it was.
+    pub fn find_stiffened(&mut self) {
+        let [whole, now] = &self.stiffness;
+        let stiffened = |(whole, now): (&f64, &f64)| if *whole > 0.0 { now / whole } else { 1.0 };
+        self.stiffened = whole.iter().zip(now).map(stiffened).fold(1.0, f64::max);
     }
 
     /// What [`BondState::look_stiffness`] compares with.

@@ -1,14 +1,14 @@
 //! The columns of a law: declared by it, read and written by name.
 
 use super::family::Family;
-use super::state::{Before, BondState, all_whole};
+use super::state::{Before, BondState};
 use super::store::Store;
 use super::walks::Walks;
 use crate::body::{Body, Column};
 use crate::columns::{Declaration, Dimension, On, Shape};
 use crate::interaction::history;
 use crate::law::material::Columns;
-use crate::state::Archive;
+use crate::state::{Archive, Bonds};
 
 /// Columns of criteria.
 const LIFE: &str = "remaining_life";
@@ -258,49 +258,173 @@ impl<const D: usize, F: Family<D>> AnyBonds<D> for BondState<D, F> {
     }
 
     fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
-        archive.all("whole", &mut self.alive);
-        archive.all("past", &mut self.past.data);
-        archive.all("points", &mut self.point.data);
-        archive.all("memory", &mut self.memory);
-        archive.all("critical", &mut self.critical);
-        archive.all("damage", &mut self.damage);
-        archive.all("work", &mut self.work);
-        archive.all("life", &mut self.life);
-        archive.all("integrity", &mut self.integrity);
-        strains(archive, body.len, &mut self.expansion);
+        let rows = self.rows_by_id(body);
+        let bonds = archive.bonds("bonds", body.whose(), self.counts_of(&rows));
+        self.archive_bits(archive, body, (&rows, &bonds));
+        let remembered = self.law.memory;
+        let of_bonds = [
+            ("memory", &mut self.memory, remembered),
+            ("work", &mut self.work, 1),
+            ("life", &mut self.life, 1),
+        ];
+        for (name, values, each) in of_bonds {
+            let (family, counted) = (&self.family, &self.counted);
+            let places = || places_of(family, counted, &rows, each);
+            let mut own: Vec<f64> = match values.is_empty() {
+                true => vec![],
+                false => places().map(|at| values[at]).collect(),
+            };
+            archive.rows(name, body.whose(), (&bonds, each), &mut own);
+            if archive.loads() {
+                places().zip(own).for_each(|(at, x)| values[at] = x);
+            }
+        }
+        for (name, store) in [("past", &mut self.past), ("points", &mut self.point)] {
+            let layout = store.layout;
+            let numbers = (&mut store.data[..], layout.numbers);
+            body.archive_points(archive, name, numbers, |slot, n| layout.at(n, slot));
+        }
+        let [whole, now] = &mut self.stiffness;
+        for (name, column) in [
+            ("critical", &mut self.critical[..]),
+            ("damage", &mut self.damage),
+            ("integrity", &mut self.integrity),
+            ("stiffness", whole),
+            ("stiffness_now", now),
+        ] {
+            body.archive_points(archive, name, (column, 1), |slot, _| slot);
+        }
+        strains(archive, body, &mut self.expansion);
         let records = self.room.records.len();
         let before = || Before::zeros(body.len, records);
         archive.option("before", &mut self.before, before, |before, archive| {
-            archive.columns("displacement", &mut before.u);
-            archive.all("records", &mut before.records);
-            strains(archive, body.len, &mut before.expansion);
+            body.archive_field(archive, "displacement", &mut before.u);
+            let records = (&mut before.records[..], 4);
+            body.archive_points(archive, "records", records, |slot, n| 4 * slot + n);
+            strains(archive, body, &mut before.expansion);
         });
-        if self.work.is_empty() && self.before.take().is_some() {
-            archive.refuse("before");
-        }
         archive.one("step", &mut self.step);
-        archive.one("degraded", &mut self.degraded);
-        for each in &mut self.stiffness {
-            archive.list("stiffness", each);
-        }
-        archive.one("stiffened", &mut self.stiffened);
         if archive.loads() {
-            // kernels follow every bit
-            let there = match self.counted.is_empty() {
-                true => &all_whole(&self.family).0,
-                false => &self.counted,
-            };
-            self.alive.iter_mut().zip(there).for_each(|(a, t)| *a &= t);
-            self.look_forms(body);
+            self.restored(body);
         }
     }
 }
 
-/// A strain for each of so many slots, or none: kernels read them without looking.
-fn strains(archive: &mut Archive<'_>, slots: usize, strain: &mut Column) {
-    archive.part("expansion", strain);
-    if !strain.is_empty() && strain.len() != slots {
-        *strain = Column::default();
-        archive.refuse("expansion");
+/// Of each point by id, its group and place in it; `None`: it has no bonds.
+type RowsById = [Option<(usize, usize)>];
+
+/// Where `each` numbers of every bond of some points are remembered.
+fn places_of<const D: usize, F: Family<D>>(
+    family: &F,
+    counted: &[u8],
+    rows: &RowsById,
+    each: usize,
+) -> impl Iterator<Item = usize> {
+    let rows = rows.iter().flatten().copied();
+    rows.flat_map(move |(group, l)| {
+        let bonds = 0..family.bonds(group);
+        let bonds = bonds.filter(move |k| counts(family, counted, (group, *k, l)));
+        bonds.flat_map(move |k| (0..each).map(move |n| family.own(group, k, n, each) + l))
+    })
+}
+
+/// Does damage count a bond?
+pub(super) fn counts<const D: usize, F: Family<D>>(
+    family: &F,
+    counted: &[u8],
+    (group, k, l): (usize, usize, usize),
+) -> bool {
+    match counted.get(family.byte(group, k)) {
+        Some(bits) => bits >> l & 1 == 1,
+        None => family.is_bond(group, k, l),
     }
+}
+
+impl<const D: usize, F: Family<D>> BondState<D, F> {
+    fn rows_by_id(&self, body: &Body<D>) -> Vec<Option<(usize, usize)>> {
+        let mut at = vec![None; body.len];
+        for (group, l, slot) in self.family.points() {
+            at[slot] = Some((group, l));
+        }
+        body.by_id(|slot| at[slot])
+    }
+
+    fn bonds_of_row(&self, (group, l): (usize, usize)) -> impl Iterator<Item = usize> {
+        let bonds = 0..self.family.bonds(group);
+        bonds.filter(move |k| self.is_counted(group, *k, l))
+    }
+
+    fn counts_of(&self, rows: &RowsById) -> Vec<u32> {
+        let count = |row| self.bonds_of_row(row).count() as u32;
+        rows.iter().map(|row| row.map_or(0, count)).collect()
+    }
+
+    /// Bits of whole bonds.
+    fn archive_bits(
+        &mut self,
+        archive: &mut Archive<'_>,
+        body: &Body<D>,
+        (rows, bonds): (&RowsById, &Bonds),
+    ) {
+        let mut bytes = vec![];
+        for (group, l) in rows.iter().flatten().copied() {
+            let begin = bytes.len();
+            for (n, k) in self.bonds_of_row((group, l)).enumerate() {
+                if n % 8 == 0 {
+                    bytes.push(0);
+                }
+                bytes[begin + n / 8] |= u8::from(self.is_whole(group, k, l)) << (n % 8);
+            }
+        }
+        archive.bits("whole", body.whose(), bonds, &mut bytes);
+        if !archive.loads() {
+            return;
+        }
+        let mut next = 0;
+        for (group, l) in rows.iter().flatten().copied() {
+            let bonds: Vec<usize> = self.bonds_of_row((group, l)).collect();
+            for (n, k) in bonds.iter().enumerate() {
+                let bit = bytes[next + n / 8] >> (n % 8) & 1;
+                let byte = &mut self.alive[self.family.byte(group, *k)];
+                *byte = *byte & !(1 << l) | bit << l;
+            }
+            next += bonds.len().div_ceil(8);
+        }
+    }
+
+    /// What follows from a state that was read.
+    fn restored(&mut self, body: &Body<D>) {
+        let exchange = &body.exchange;
+        self.fill_memory(body);
+        for store in [&mut self.past, &mut self.point] {
+            store.fill(exchange);
+        }
+        for column in [&mut self.critical, &mut self.damage, &mut self.expansion] {
+            if !column.is_empty() {
+                exchange.fill(column);
+            }
+        }
+        if let Some(before) = &mut self.before {
+            exchange.fill_field(&mut before.u);
+            if !before.records.is_empty() {
+                exchange.fill_numbers(&mut before.records, 4, |slot, n| 4 * slot + n);
+            }
+            if !before.expansion.is_empty() {
+                exchange.fill(&mut before.expansion);
+            }
+        }
+        self.look_integrity(body);
+        self.find_stiffened();
+        self.look_forms(body);
+    }
+}
+
+/// A strain for each point, or none.
+fn strains<const D: usize>(archive: &mut Archive<'_>, body: &Body<D>, strain: &mut Column) {
+    let mut there = body.exchange.any(!strain.is_empty());
+    archive.one("strained", &mut there);
+    if archive.loads() && there == strain.is_empty() {
+        strain.renew(if there { body.len } else { 0 });
+    }
+    body.archive_points(archive, "expansion", (strain, 1), |slot, _| slot);
 }

@@ -1,6 +1,7 @@
 //! Bond by bond: who is bonded with whom, what is broken, and how much of every point's family.
 
 use super::breaking::fibre_limit;
+use super::columns::counts;
 use super::family::{Family, Slots};
 use super::state::{BondState, WholeBond, all_whole};
 use crate::body::{Body, FieldView};
@@ -32,10 +33,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     }
 
     pub(super) fn is_counted(&self, group: usize, k: usize, l: usize) -> bool {
-        match self.counted.get(self.family.byte(group, k)) {
-            Some(bits) => bits >> l & 1 == 1,
-            None => self.family.is_bond(group, k, l),
-        }
+        counts(&self.family, &self.counted, (group, k, l))
     }
 
     /// The whole bonds of a point.

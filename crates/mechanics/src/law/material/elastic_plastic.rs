@@ -332,14 +332,17 @@ impl<N: Number> Return<N> {
             };
         }
         let (inverse, mut gamma) = (self.limit.recip(), zero);
+        // 1 until it is found: what other lanes are still after changes no last digit of this one
+        let mut sought = flows;
         for _ in 0..STEPS {
             let [stress, slope] = self.stress(gamma);
             let off = stress.recip() - (one - self.hardening * gamma) * inverse;
             let step = off.div(self.hardening.fma(inverse, slope));
-            let next = zero.choose(flows, gamma - step, zero);
+            let next = zero.choose(sought, gamma - step, gamma);
             let change = (next - gamma).most(gamma - next);
             gamma = next;
-            if !(N::constant(1e-15) * gamma - change).any_below(0.0) {
+            sought = (N::constant(1e-15) * gamma - change).choose(zero, sought, zero);
+            if !(zero - sought).any_below(0.0) {
                 break;
             }
         }

@@ -45,7 +45,8 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
     let ends = at(asked, x + apart).across - at(asked, x - apart).across;
     let mut slope = ends.div(two * apart);
     let (mut low, mut high) = (N::constant(-1.0), N::constant(THICK));
-    let mut last = false;
+    // 2 until it is close, 1 in the last step: what other lanes are still after changes no last digit of this one
+    let mut sought = two;
     for _ in 0..STEPS {
         low = f.choose(zero, x, low);
         high = zero.choose(f, x, high);
@@ -55,6 +56,7 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
         let inside = guess.choose(low, middle, high.choose(guess, middle, guess));
         // where nothing is borne it stays, with its slopes
         let next = zero.choose(f * f, inside, zero.choose(slope, guess, x));
+        let next = zero.choose(sought, next, x);
         let step = next - x;
         let square = step * step;
         let size = next.fma(next, strain);
@@ -64,10 +66,11 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
         let steep = short.choose(square, secant, slope);
         slope = zero.choose(steep, steep, slope);
         (x, f) = (next, then);
-        if last {
+        let far = (N::constant(CLOSE * CLOSE) * size - square).choose(zero, two, one);
+        sought = sought.below(1.5, zero, far);
+        if !(zero - sought).any_below(0.0) {
             break;
         }
-        last = !(N::constant(CLOSE * CLOSE) * size - square).any_below(0.0);
     }
     at(asked, x)
 }

@@ -164,6 +164,8 @@ impl HypoelasticPlastic {
         x = zero.choose(beyond, x, one);
         high = zero.choose(beyond, high, one);
         let mut low = N::constant(LEAST) * high;
+        // 1 until it is found: what other lanes are still after changes no last digit of this one
+        let mut sought = flows;
         for _ in 0..STEPS {
             let [y, slope] = kind.yields(hard, memory[STRAIN], x, soft);
             let over = flows * (along - stiff * x - y);
@@ -173,10 +175,11 @@ impl HypoelasticPlastic {
             // where Newton leaves what is known, halve that on a scale of logarithms
             let half = (low * high).sqrt();
             let next = newton.choose(low, half, high.choose(newton, half, newton));
-            let next = zero.choose(flows, next, x);
+            let next = zero.choose(sought, next, x);
             let step = (next - x).most(x - next);
             x = next;
-            if !(N::constant(1e-14) * x - step).any_below(0.0) {
+            sought = (N::constant(1e-14) * x - step).choose(zero, sought, zero);
+            if !(zero - sought).any_below(0.0) {
                 break;
             }
         }

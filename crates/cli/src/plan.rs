@@ -1,0 +1,197 @@
+//! `peridyne plan`: how long a deck takes on many machines, what each holds, and how well they share it, before anybody queues for them.
+
+use crate::Input;
+use crate::deck::{read, simd};
+use crate::failure::{Failure, say};
+use crate::numbers::{duration, memory};
+use crate::run::{shared_by_ranks, with_threads};
+use peridyne::run::Options;
+use peridyne::run::ranks::{Shares, StepCost, plan as planned};
+use peridyne_io::deck::counted;
+use serde_json::json;
+use std::fmt::Write;
+
+#[derive(clap::Args)]
+pub struct PlanArguments {
+    #[command(flatten)]
+    pub input: Input,
+    /// Numbers of machines, each with one rank.
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_values_t = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024])]
+    pub nodes: Vec<usize>,
+    /// Cores of a machine, each as fast as those here; as many as ran here if not given.
+    #[arg(long)]
+    pub cores: Option<usize>,
+    /// Time of a message between two machines (microseconds).
+    #[arg(long, default_value_t = 3.0)]
+    pub latency: f64,
+    /// Bytes that go from one machine to another (GB/s).
+    #[arg(long, default_value_t = 25.0)]
+    pub bandwidth: f64,
+    /// Steps that are done here to see what one costs.
+    #[arg(long, default_value_t = 20)]
+    pub steps: usize,
+    /// Threads here; all cores if not given.
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A network between machines.
+#[derive(Clone, Copy)]
+struct Network {
+    /// Seconds.
+    latency: f64,
+    /// Bytes per second.
+    bandwidth: f64,
+}
+
+/// Seconds of a step of ranks that share a body so, whose points take so long each: work of the one that has most, then what it tells its neighbours,
+/// then what all hear of all, in `⌈log₂ N⌉` exchanges of two messages. Nothing is done meanwhile.
+fn step(shares: &Shares, per_point: f64, cost: &StepCost, network: Network) -> f64 {
+    let work = per_point * shares.points as f64;
+    let told = cost.messages * shares.neighbours() as f64 * network.latency
+        + cost.bytes_per_copy * shares.copies as f64 / network.bandwidth;
+    let deep = (shares.ranks as f64).log2().ceil();
+    work + told + cost.rounds * 2.0 * deep * network.latency
+}
+
+/// Of a step.
+fn brief(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.1} µs", 1e6 * s),
+        s if s < 1.0 => format!("{:.2} ms", 1e3 * s),
+        s => duration(s),
+    }
+}
+
+pub fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
+    let wrong = [
+        (
+            arguments.nodes.contains(&0) || arguments.nodes.is_empty(),
+            "--nodes: at least one machine runs it",
+        ),
+        (
+            arguments.cores == Some(0),
+            "--cores: a machine has one core at least",
+        ),
+        (
+            !(arguments.latency >= 0.0),
+            "--latency: expected microseconds, 0 or more",
+        ),
+        (
+            !(arguments.bandwidth > 0.0),
+            "--bandwidth: expected GB/s, more than 0",
+        ),
+        (
+            arguments.steps == 0,
+            "--steps: one step at least shows what it costs",
+        ),
+    ];
+    if let Some((_, why)) = wrong.into_iter().find(|(wrong, _)| *wrong) {
+        return Err(Failure::input(why));
+    }
+    let deck = read(&arguments.input)?;
+    let explained = |e| Failure::Input(deck.explain(&e).into());
+    shared_by_ranks(&deck).map_err(explained)?;
+    let options = Options {
+        simd: simd(&arguments.input)?,
+        ..Options::default()
+    };
+    with_threads(arguments.threads.or(deck.threads), |threads| {
+        let made = planned(&deck.spec, options, arguments.steps, &arguments.nodes);
+        let (info, cost, shares) = made.map_err(explained)?;
+        let cores = arguments.cores.unwrap_or(threads);
+        let network = Network {
+            latency: 1e-6 * arguments.latency,
+            bandwidth: 1e9 * arguments.bandwidth,
+        };
+        let points = info.points as f64;
+        let per_point = cost.seconds * threads as f64 / (points * cores as f64);
+        let one = per_point * points;
+        let steps = deck.steps(info.time_step);
+        let per_slot = info.bytes as f64 / points;
+        let rows: Vec<_> = { shares.iter() }
+            .map(|s| {
+                let seconds = step(s, per_point, &cost, network);
+                let held = per_slot * (s.points + s.copies) as f64;
+                (*s, seconds, one / (s.ranks as f64 * seconds), held)
+            })
+            .collect();
+        // two ranks of one thread each, whose messages are copies in memory
+        let two = Shares {
+            ranks: 2,
+            working: 2,
+            points: info.points.div_ceil(2) as usize,
+            copies: 0,
+        };
+        let nothing = Network {
+            latency: 0.0,
+            bandwidth: f64::INFINITY,
+        };
+        let foreseen = step(&two, cost.seconds * threads as f64 / points, &cost, nothing);
+        if arguments.json {
+            let rows: Vec<_> = { rows.iter() }
+                .map(|(s, seconds, efficiency, held)| {
+                    json!({
+                        "nodes": s.ranks, "idle": s.ranks - s.working, "points": s.points, "copies": s.copies, "neighbours": s.neighbours(), "bytes": held,
+                        "seconds_per_step": seconds, "efficiency": efficiency, "seconds": seconds * steps as f64,
+                    })
+                })
+                .collect();
+            let text = json!({
+                "points": info.points, "directed_bonds": info.directed_bonds, "steps": steps, "threads": threads, "cores": cores,
+                "seconds_per_step": cost.seconds, "messages": cost.messages, "bytes_per_copy": cost.bytes_per_copy, "rounds": cost.rounds,
+                "two_ranks": { "seconds_per_step": cost.seconds_of_two, "foreseen": foreseen },
+                "nodes": rows,
+            });
+            say(&format!("{text:#}"));
+            return Ok(());
+        }
+        let per_bond = 1e9 * cost.seconds / info.directed_bonds as f64;
+        let mut text = format!(
+            "step      {} here on {}, {per_bond:.2} ns per bond; two ranks of one thread {}, foreseen {}\n",
+            brief(cost.seconds),
+            counted(threads as u64, "thread"),
+            brief(cost.seconds_of_two),
+            brief(foreseen),
+        );
+        let _ = writeln!(
+            text,
+            "tells     each neighbour {:.1} messages, {:.0} bytes per copy; all hear of all {:.1} times",
+            cost.messages, cost.bytes_per_copy, cost.rounds
+        );
+        let _ = writeln!(
+            text,
+            "machines  of {}, {} µs and {} GB/s between them\n",
+            counted(cores as u64, "core"),
+            arguments.latency,
+            arguments.bandwidth
+        );
+        let _ = writeln!(
+            text,
+            "{:>6} {:>12} {:>10} {:>10} {:>10} {:>11} {:>10}",
+            "nodes", "points", "copies", "memory", "step", "efficiency", "run"
+        );
+        for (s, seconds, efficiency, held) in &rows {
+            let idle = match s.ranks - s.working {
+                0 => String::new(),
+                idle => format!("  {idle} idle"),
+            };
+            let _ = writeln!(
+                text,
+                "{:>6} {:>12} {:>10} {:>10} {:>10} {:>10.1}% {:>10}{idle}",
+                s.ranks,
+                s.points,
+                s.copies,
+                memory(*held),
+                brief(*seconds),
+                100.0 * efficiency,
+                duration(seconds * steps as f64),
+            );
+        }
+        say(text.trim_end());
+        Ok(())
+    })
+}

@@ -1,0 +1,126 @@
+//! What a step costs, and how it is shared: measured where there is one machine, to foresee many.
+
+use super::model::RankModel;
+use crate::error::BuildError;
+use crate::run::build::made_among;
+use crate::run::ranks::shared;
+use crate::run::{Info, Options, Shelf, Simulation};
+use crate::spec::Spec;
+use peridyne_comm::on_threads;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What a step costs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepCost {
+    /// Of one process on the threads that are there (time of the clock).
+    pub seconds: f64,
+    /// Of two ranks on one thread each.
+    pub seconds_of_two: f64,
+    /// What a rank tells a neighbour: messages, and bytes for each of its points that the neighbour has a copy of.
+    pub messages: f64,
+    pub bytes_per_copy: f64,
+    /// How often all ranks hear what each says.
+    pub rounds: f64,
+}
+
+/// How so many ranks share a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shares {
+    pub ranks: usize,
+    /// Ranks that have points.
+    pub working: usize,
+    /// The most points that one has, and the most copies of others' that one of those that were looked at has: the first, the middle and the last.
+    pub points: usize,
+    pub copies: usize,
+}
+
+impl Shares {
+    /// To how many others a rank tells what its points have: those whose points lie within reach on either side of a slab.
+    pub fn neighbours(&self) -> usize {
+        let beside = (self.copies / 2).div_ceil(self.points.max(1)).max(1);
+        (2 * beside).min(self.working - 1)
+    }
+}
+
+/// What a step of a spec costs, by so many steps of one process and of two ranks, and how these numbers of ranks share its body.
+///
+/// # Errors
+/// What ranks do not share yet; as of [`build`](crate::run::build); steps end with an error.
+pub fn plan(
+    spec: &Spec,
+    options: Options,
+    steps: usize,
+    ranks: &[usize],
+) -> Result<(Info, StepCost, Vec<Shares>), BuildError> {
+    shared(spec)?;
+    match spec.space.dimension {
+        1 => planned::<1>(spec, options, steps, ranks),
+        2 => planned::<2>(spec, options, steps, ranks),
+        _ => planned::<3>(spec, options, steps, ranks),
+    }
+}
+
+fn went_wrong(error: &impl ToString) -> BuildError {
+    BuildError::ill_posed("run", error.to_string())
+        .help("a plan does the first steps of the run: mend them first, `peridyne run` says more")
+}
+
+fn planned<const D: usize>(
+    spec: &Spec,
+    options: Options,
+    steps: usize,
+    ranks: &[usize],
+) -> Result<(Info, StepCost, Vec<Shares>), BuildError> {
+    let mut model = made_among::<D>(spec, options, &Shelf::standard(), None)?;
+    model.start(true);
+    let begun = Instant::now();
+    for _ in 0..steps {
+        model.step().map_err(|e| went_wrong(&e))?;
+    }
+    let seconds = begun.elapsed().as_secs_f64() / steps as f64;
+    let (body, info) = (&model.system.body, model.info().clone());
+    let reach = info.horizon + body.spacing();
+    let shares = ranks.iter().map(|n| {
+        let [points, copies, working] = body.shares(*n, reach);
+        Shares {
+            ranks: *n,
+            working,
+            points,
+            copies,
+        }
+    });
+    let shares = shares.collect();
+    drop(model);
+    let ends = on_threads(2, |comm| {
+        // each rank a machine of its own
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let pool = pool.map_err(|e| went_wrong(&e))?;
+        pool.install(|| {
+            let comm = Arc::new(comm);
+            let mut own = RankModel::<D>::new(spec, options, &Shelf::standard(), &comm)?;
+            own.start();
+            let (before, copies) = own.halo();
+            let begun = Instant::now();
+            for _ in 0..steps {
+                own.step().map_err(|e| went_wrong(&e))?;
+            }
+            let seconds = begun.elapsed().as_secs_f64();
+            Ok((seconds, before, own.halo().0, copies))
+        })
+    });
+    let ends = ends.into_iter().collect::<Result<Vec<_>, BuildError>>()?;
+    let (_, before, after, _) = ends[0];
+    // what one sends is for the other's copies
+    let copies = ends[1].3;
+    let per_step = |of: [u64; 2]| (of[1] - of[0]) as f64 / steps as f64;
+    let slowest = ends.iter().map(|end| end.0).fold(0.0, f64::max);
+    let cost = StepCost {
+        seconds,
+        seconds_of_two: slowest / steps as f64,
+        messages: per_step([before.messages, after.messages]),
+        bytes_per_copy: per_step([before.bytes, after.bytes]) / copies.max(1) as f64,
+        rounds: per_step([before.rounds, after.rounds]),
+    };
+    Ok((info, cost, shares))
+}

@@ -1,0 +1,421 @@
+//! What of a state is of points, of their bonds, or a sum over them: written in the order of ids, whoever has which, and read by whoever has them now.
+
+use super::archive::{Archive, StateError};
+use super::{Owner, Word};
+use crate::execute::exact::Exact;
+use bytemuck::{cast_slice, pod_read_unaligned};
+use peridyne_comm::Comm;
+use std::sync::Arc;
+use twox_hash::XxHash3_64;
+
+/// Ranks that do the same with their archives.
+pub(super) struct Ranks {
+    comm: Arc<Comm>,
+    /// Of all that must be the same on them.
+    digest: u64,
+    /// All know of an error.
+    over: bool,
+}
+
+impl Ranks {
+    pub fn new(comm: &Arc<Comm>) -> Ranks {
+        Ranks {
+            comm: comm.clone(),
+            digest: 0,
+            over: false,
+        }
+    }
+
+    fn is_first(&self) -> bool {
+        self.comm.rank() == 0
+    }
+
+    fn all(&self, own: &[u8]) -> Vec<Vec<u8>> {
+        let all = self.comm.all(own);
+        all.unwrap_or_else(|failure| self.comm.end(failure))
+    }
+
+    /// The bytes that the first rank has read, on all.
+    pub fn hear(&self, own: Result<(), StateError>, bytes: &mut [u8]) -> Result<(), StateError> {
+        let said = match (&own, self.is_first()) {
+            (Ok(()), true) => [&[1], &*bytes].concat(),
+            (Err(_), true) => vec![0],
+            (_, false) => vec![],
+        };
+        let heard = self.all(&said);
+        match &heard[0][..] {
+            [1, heard @ ..] => bytes.copy_from_slice(heard),
+            _ => own.and(Err(StateError::Elsewhere(String::new())))?,
+        }
+        Ok(())
+    }
+}
+
+/// Whose numbers an owner has.
+#[derive(Debug, Clone, Copy)]
+pub struct Whose<'a> {
+    /// Ids of the points that are here, in their order; `None`: all are.
+    pub ids: Option<&'a [u32]>,
+    /// Points of all ranks.
+    pub points: usize,
+}
+
+impl Whose<'_> {
+    /// Points that are here.
+    fn here(&self) -> usize {
+        self.ids.map_or(self.points, <[u32]>::len)
+    }
+
+    fn id(&self, n: usize) -> u32 {
+        self.ids.map_or(n as u32, |ids| ids[n])
+    }
+
+    /// The place here of one by its id.
+    pub(crate) fn place(&self, id: u32) -> Option<usize> {
+        match self.ids {
+            None => Some(id as usize).filter(|id| *id < self.points),
+            Some(ids) => ids.binary_search(&id).ok(),
+        }
+    }
+}
+
+/// How many bonds each point here has, and where rows of them begin in a state, as numbers and as bits.
+#[derive(Debug, Clone)]
+pub struct Bonds {
+    counts: Vec<u32>,
+    begin: Vec<[usize; 2]>,
+    /// In the whole state.
+    all: [usize; 2],
+}
+
+/// Numbers of a row, and bytes of its bits.
+fn both(count: u32) -> [usize; 2] {
+    [count as usize, count.div_ceil(8) as usize]
+}
+
+/// What of a list of words that is written once goes where: where each row here begins among all, and its length.
+struct Rows<'a> {
+    whose: Whose<'a>,
+    begin: &'a dyn Fn(usize) -> usize,
+    length: &'a dyn Fn(usize) -> usize,
+    all: usize,
+}
+
+impl Archive<'_> {
+    /// One error is all's.
+    pub(super) fn agree(&mut self) {
+        let Some(ranks) = &mut self.ranks else {
+            return;
+        };
+        if ranks.over {
+            return;
+        }
+        let own = self.error.as_ref().map(ToString::to_string);
+        let told = ranks.all(own.unwrap_or_default().as_bytes());
+        let told = told.into_iter().find(|text| !text.is_empty());
+        if let Some(text) = told {
+            ranks.over = true;
+            let text = String::from_utf8_lossy(&text).into_owned();
+            self.error.get_or_insert(StateError::Elsewhere(text));
+        }
+    }
+
+    /// These are the same on all ranks, or [`Archive::same_on_all`] says that they are not.
+    pub(super) fn alike<T: Word>(&mut self, name: &str, x: &[T]) {
+        let Some(ranks) = &mut self.ranks else {
+            return;
+        };
+        let mut bytes = name.as_bytes().to_vec();
+        bytes.extend(bytes_of(x));
+        ranks.digest = XxHash3_64::oneshot_with_seed(ranks.digest, &bytes);
+        if cfg!(debug_assertions) {
+            self.same_on_all();
+        }
+    }
+
+    pub(super) fn same_on_all(&mut self) {
+        let Some(ranks) = self.ranks.as_ref().filter(|ranks| !ranks.over) else {
+            return;
+        };
+        let all = ranks.all(&ranks.digest.to_le_bytes());
+        if all.iter().any(|other| *other != all[0]) {
+            let name = self.path.clone();
+            self.error.get_or_insert(StateError::Apart { name });
+        }
+    }
+
+    /// `each` words of every point that is here, or none of any.
+    pub fn points<T: Word>(&mut self, name: &str, whose: Whose<'_>, each: usize, x: &mut Vec<T>) {
+        let each = if self.any(!x.is_empty()) { each } else { 0 };
+        self.part_of(
+            name,
+            &Rows {
+                whose,
+                begin: &|n| each * whose.id(n) as usize,
+                length: &|_| each,
+                all: each * whose.points,
+            },
+            x,
+        );
+    }
+
+    /// How many bonds each point here has; the state says the same.
+    pub fn bonds(&mut self, name: &str, whose: Whose<'_>, counts: Vec<u32>) -> Bonds {
+        let (mut id, mut found, mut begin, mut next) = (0, vec![], vec![], [0; 2]);
+        let rows = Rows {
+            whose,
+            begin: &|n| whose.id(n) as usize,
+            length: &|_| 1,
+            all: whose.points,
+        };
+        // every count, of others' points too
+        self.part_with(name, &rows, &counts, &mut |count: u32| {
+            if found.len() < whose.here() && whose.id(found.len()) == id {
+                found.push(count);
+                begin.push(next);
+            }
+            id += 1;
+            next = std::array::from_fn(|k| next[k] + both(count)[k]);
+        });
+        if self.is_load() && found != counts {
+            self.refuse(name);
+        }
+        Bonds {
+            counts,
+            begin,
+            all: next,
+        }
+    }
+
+    /// Is it so on any rank?
+    fn any(&self, here: bool) -> bool {
+        match &self.ranks {
+            None => here,
+            Some(ranks) => ranks.all(&[u8::from(here)]).concat().contains(&1),
+        }
+    }
+
+    /// `each` words of every bond of the points that are here, in their order, or none of any.
+    pub fn rows<T: Word>(
+        &mut self,
+        name: &str,
+        whose: Whose<'_>,
+        (bonds, each): (&Bonds, usize),
+        x: &mut Vec<T>,
+    ) {
+        let each = if self.any(!x.is_empty()) { each } else { 0 };
+        self.of_bonds(name, whose, (bonds, [each, 0]), x);
+    }
+
+    /// A bit of every bond, those of a point in whole bytes.
+    pub fn bits(&mut self, name: &str, whose: Whose<'_>, bonds: &Bonds, x: &mut Vec<u8>) {
+        self.of_bonds(name, whose, (bonds, [0, 1]), x);
+    }
+
+    /// So many words for each number of a row, and for each byte of its bits.
+    fn of_bonds<T: Word>(
+        &mut self,
+        name: &str,
+        whose: Whose<'_>,
+        (bonds, each): (&Bonds, [usize; 2]),
+        x: &mut Vec<T>,
+    ) {
+        let of = |[numbers, bytes]: [usize; 2]| each[0] * numbers + each[1] * bytes;
+        let rows = Rows {
+            whose,
+            begin: &|n| of(bonds.begin[n]),
+            length: &|n| of(both(bonds.counts[n])),
+            all: of(bonds.all),
+        };
+        self.part_of(name, &rows, x);
+    }
+
+    fn part_of<T: Word>(&mut self, name: &str, rows: &Rows<'_>, x: &mut Vec<T>) {
+        let (mut n, mut at) = (0, 0);
+        let mut own = vec![];
+        self.part_with(name, rows, x, &mut |word| {
+            while n < rows.whose.here() && at >= (rows.begin)(n) + (rows.length)(n) {
+                n += 1;
+            }
+            if n < rows.whose.here() && at >= (rows.begin)(n) {
+                own.push(word);
+            }
+            at += 1;
+        });
+        if self.loads() {
+            *x = own;
+        }
+    }
+
+    /// Rows of all ranks, one after the other by id: written, or each word heard.
+    fn part_with<T: Word>(
+        &mut self,
+        name: &str,
+        rows: &Rows<'_>,
+        x: &[T],
+        hear: &mut dyn FnMut(T),
+    ) {
+        self.try_to(|archive| {
+            if archive.is_load() {
+                let length = archive.header(name, rows.all, T::BYTES)?.unwrap_or(0);
+                if length != rows.all as u64 {
+                    return Err(archive.size(name, rows.all.to_string(), length.to_string()));
+                }
+                return archive.take(rows.all, hear);
+            }
+            let Some(ranks) = &archive.ranks else {
+                archive.header(name, x.len(), T::BYTES)?;
+                return archive.put(x);
+            };
+            let here = rows.whose.here();
+            let ids: Vec<u32> = (0..here).map(|n| rows.whose.id(n)).collect();
+            let lengths: Vec<u32> = (0..here).map(|n| (rows.length)(n) as u32).collect();
+            let Some(merged) = ranks.merged(&ids, &lengths, (T::BYTES, bytes_of(x))) else {
+                return Ok(());
+            };
+            let whole = words::<T>(&merged);
+            archive.header(name, whole.len(), T::BYTES)?;
+            archive.put(&whole)
+        });
+    }
+
+    /// What some points have, by their ids: each may have any number of them. They come back in the order of ids.
+    pub fn entries<T: Word>(&mut self, name: &str, whose: Whose<'_>, x: &mut Vec<(u32, T)>) {
+        x.sort_by_key(|(id, _)| *id);
+        self.try_to(|archive| {
+            let each = <(u32, T)>::BYTES;
+            if archive.is_load() {
+                let length = archive.header(name, 0, each)?.unwrap_or(0);
+                let mut known = true;
+                x.clear();
+                archive.take(length as usize, &mut |entry: (u32, T)| {
+                    known &= (entry.0 as usize) < whose.points;
+                    if whose.place(entry.0).is_some() {
+                        x.push(entry);
+                    }
+                })?;
+                return match known {
+                    true => Ok(()),
+                    false => Err(archive.invalid(name)),
+                };
+            }
+            let Some(ranks) = &archive.ranks else {
+                archive.header(name, x.len(), each)?;
+                return archive.put(x);
+            };
+            let ids: Vec<u32> = x.iter().map(|(id, _)| *id).collect();
+            let ones = vec![1; x.len()];
+            let Some(merged) = ranks.merged(&ids, &ones, (each, bytes_of(x))) else {
+                return Ok(());
+            };
+            let whole = words::<(u32, T)>(&merged);
+            archive.header(name, whole.len(), each)?;
+            archive.put(&whole)
+        });
+    }
+
+    /// A sum of which every rank has its part; one of those that go on has all of it.
+    pub fn sum(&mut self, name: &str, x: &mut Exact) {
+        let mut parts = vec![];
+        if !self.is_load() {
+            match &self.ranks {
+                None => parts = x.parts(),
+                Some(ranks) => {
+                    let mut whole = [x.clone()];
+                    Exact::of_all(&mut whole, &ranks.comm);
+                    parts = whole[0].parts();
+                }
+            }
+        }
+        self.list(name, &mut parts);
+        if self.loads() {
+            *x = match &self.ranks {
+                Some(ranks) if !ranks.is_first() => Exact::ZERO,
+                Some(_) | None => parts.into_iter().collect(),
+            };
+        }
+    }
+
+    /// A count of which every rank has its part.
+    pub fn count(&mut self, name: &str, x: &mut u64) {
+        let mut whole = *x;
+        if let (Some(ranks), false) = (&self.ranks, self.is_load()) {
+            let all = ranks.all(&x.to_le_bytes());
+            whole = all.iter().map(|x| u64::take(x)).sum();
+        }
+        self.one(name, &mut whole);
+        if self.loads() {
+            *x = match &self.ranks {
+                Some(ranks) if !ranks.is_first() => 0,
+                Some(_) | None => whole,
+            };
+        }
+    }
+
+    /// The most of any rank.
+    pub fn most(&mut self, name: &str, x: &mut f64) {
+        if let (Some(ranks), false) = (&self.ranks, self.is_load()) {
+            let all = ranks.all(&x.to_le_bytes());
+            *x = all.iter().map(|x| f64::take(x)).fold(*x, f64::max);
+        }
+        self.one(name, x);
+    }
+}
+
+impl Owner for Exact {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.sum("parts", self);
+    }
+}
+
+impl Ranks {
+    /// Rows of so many words each, of all ranks, one after the other by id, on the first.
+    fn merged(
+        &self,
+        ids: &[u32],
+        lengths: &[u32],
+        (each, own): (usize, Vec<u8>),
+    ) -> Option<Vec<u8>> {
+        let mut said = (ids.len() as u64).to_le_bytes().to_vec();
+        said.extend_from_slice(cast_slice(ids));
+        said.extend_from_slice(cast_slice(lengths));
+        said.extend(own);
+        let all = self.comm.first(said);
+        let all = all.unwrap_or_else(|failure| self.comm.end(failure))?;
+        let mut rows = vec![];
+        for (rank, said) in all.iter().enumerate() {
+            let count = u64::take(said) as usize;
+            let numbers = |n: usize| {
+                let bytes = said[8 + 4 * n * count..][..4 * count].chunks_exact(4);
+                bytes.map(pod_read_unaligned::<u32>)
+            };
+            let mut begin = 8 + 8 * count;
+            for (id, length) in numbers(0).zip(numbers(1)) {
+                let end = begin + each * length as usize;
+                // nothing of any: no rank has it
+                let end = end.min(said.len());
+                rows.push((id, rank, begin..end));
+                begin = end;
+            }
+        }
+        // of one rank in their order
+        rows.sort_by_key(|(id, _, _)| *id);
+        let mut whole = Vec::with_capacity(rows.iter().map(|(_, _, row)| row.len()).sum());
+        for (_, rank, row) in rows {
+            whole.extend_from_slice(&all[rank][row]);
+        }
+        Some(whole)
+    }
+}
+
+fn bytes_of<T: Word>(x: &[T]) -> Vec<u8> {
+    let mut bytes = vec![0; x.len() * T::BYTES];
+    for (x, to) in x.iter().zip(bytes.chunks_mut(T::BYTES.max(1))) {
+        x.put(to);
+    }
+    bytes
+}
+
+fn words<T: Word>(bytes: &[u8]) -> Vec<T> {
+    bytes.chunks(T::BYTES).map(T::take).collect()
+}
