@@ -28,7 +28,7 @@ DECK = DECKS / "ten_lines.toml"
 ASKED = {
     "ten_lines": (["body.spacing=1 mm", "run.steps=200", "output.every=60"], 110, 10_000),
     "two_bodies": (["output.every=40"], 70, 10_000),
-    "heated_plate": ([], 20, 0),
+    "fast_and_hot": ([], 50, 1_000),
 }
 # a run that is killed: as the first one, with a state every fifth of a second
 KILLED = ["--set", "body.spacing=1 mm", "--set", "run.steps=400", "--set", "output.every=150", "--set", 'output.checkpoint={ every = "0.2 s", keep = 2 }']
@@ -44,13 +44,13 @@ def run(command, **more):
     return done.returncode, done.stdout, done.stderr
 
 
-def of_run(process, out):
+def of_run(process, program, out):
     """Is it a rank of the run with these results?"""
     try:
         words = (process / "cmdline").read_bytes().split(b"\0")
     except OSError:
         return False
-    return words[0].endswith(b"peridyne") and str(out).encode() in words
+    return words[0] == str(program).encode() and str(out).encode() in words
 
 
 def main():
@@ -100,7 +100,7 @@ def main():
             until = time.monotonic() + 120
             while not list(out.glob("checkpoint/*.state")) and launcher.poll() is None and time.monotonic() < until:
                 time.sleep(0.01)
-            ranks = [int(p.name) for p in Path("/proc").iterdir() if p.name.isdigit() and of_run(p, out)]
+            ranks = [int(p.name) for p in Path("/proc").iterdir() if p.name.isdigit() and of_run(p, program, out)]
             hold(len(ranks) == 3 and launcher.poll() is None, f"{mpi}: {len(ranks)} ranks run, and the launcher: {launcher.poll()}")
             if ranks:
                 os.kill(max(ranks), signal.SIGKILL)

@@ -332,9 +332,10 @@ fn a_plan_is_of_what_a_step_costs_and_how_the_body_is_cut() {
         "{copies:?}"
     );
     assert!(copies[2] >= 6 * 256 && copies[2] < 8 * 256, "{copies:?}");
-    // displacements alone are told, once in a step, and where the fastest point went
-    assert_eq!(found["messages"], 1.0);
-    assert_eq!(found["bytes_per_copy"], 24.0);
+    // displacements and velocities are told once in a step, and how far the fastest point went
+    assert_eq!(found["messages"], 2.0);
+    assert_eq!(found["bytes_per_copy"], 48.0);
+    assert_eq!(found["rounds"], 1.0);
     let number = |n: usize, key: &str| nodes[n][key].as_f64().unwrap();
     let step = found["seconds_per_step"].as_f64().unwrap();
     assert!((number(0, "seconds_per_step") / (step / 8.0) - 1.0).abs() < 1e-12);

@@ -249,8 +249,21 @@ fn same_of(case: &Case, periodic: bool, ranks: &[usize], simd: Option<Simd>) -> 
     }
 }
 
+/// Materials on lattices on even turns, on clouds and in lists on odd ones; the ignored test below has each on both.
 #[test]
 fn every_material_has_the_same_bits_on_any_number_of_ranks() {
+    on_lattices(|n| n % 4 < 2);
+    on_clouds(|n| n % 4 >= 2);
+}
+
+#[test]
+#[ignore = "minutes: half of it is in the test above"]
+fn every_material_everywhere_has_the_same_bits_on_any_number_of_ranks() {
+    on_lattices(|_| true);
+    on_clouds(|_| true);
+}
+
+fn on_lattices(tries: impl Fn(usize) -> bool) {
     let kinds = [
         LatticeKind::Chain,
         LatticeKind::Square,
@@ -259,7 +272,9 @@ fn every_material_has_the_same_bits_on_any_number_of_ranks() {
     ];
     let mut torn = 0;
     let mut tried = 0;
-    for (n, material) in materials().into_iter().enumerate() {
+    let all = materials().into_iter().enumerate().filter(|m| tries(m.0));
+    let many = all.clone().count();
+    for (n, material) in all {
         // each on a lattice of its own dimension, in turn
         let lives = |kind: &&LatticeKind| (material.lives)(kind.dimension(), Plane::Stress);
         let kinds: Vec<_> = kinds.iter().filter(lives).collect();
@@ -271,9 +286,12 @@ fn every_material_has_the_same_bits_on_any_number_of_ranks() {
             material,
         };
         tried += 1;
-        torn += u32::from(same_of(&case, n % 2 == 0, &[2 + n % 2], None));
+        torn += usize::from(same_of(&case, n % 2 == 0, &[2 + n % 2], None));
     }
-    assert!(tried > 35 && torn > 30, "{tried} {torn}");
+    assert!(
+        tried > many * 9 / 10 && torn > many * 3 / 4,
+        "{tried} {torn}"
+    );
 }
 
 #[test]
@@ -372,10 +390,11 @@ fn scattered(spec: &mut Spec) {
     );
 }
 
-#[test]
-fn every_material_of_a_cloud_has_the_same_bits_on_any_number_of_ranks() {
+fn on_clouds(tries: impl Fn(usize) -> bool) {
     let (mut torn_ones, mut tried) = (0, 0);
-    for (n, material) in materials().into_iter().enumerate() {
+    let all = materials().into_iter().enumerate().filter(|m| tries(m.0));
+    let many = all.clone().count();
+    for (n, material) in all {
         let kinds = [LatticeKind::Square, LatticeKind::Cubic, LatticeKind::Chain];
         let lives = |kind: &&LatticeKind| (material.lives)(kind.dimension(), Plane::Stress);
         let kinds: Vec<_> = kinds.iter().filter(lives).collect();
@@ -390,7 +409,14 @@ fn every_material_of_a_cloud_has_the_same_bits_on_any_number_of_ranks() {
         match n % 3 {
             // a lattice whose bonds are listed
             0 => spec.bonds.family = FamilyChoice::List,
-            _ => scattered(&mut spec),
+            1 => scattered(&mut spec),
+            _ => {
+                scattered(&mut spec);
+                let Horizon::Length(longest) = spec.bonds.horizon else {
+                    panic!("a length");
+                };
+                spec.bonds.own_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
+            }
         }
         // not every law is one of clouds, or bears being torn so fast
         let mut sim = match build_with(&spec, options(None), &shelf()) {
@@ -407,13 +433,17 @@ fn every_material_of_a_cloud_has_the_same_bits_on_any_number_of_ranks() {
         }
         let ranks = [2 + n % 2];
         tried += 1;
-        torn_ones += u32::from(match case.d() {
+        torn_ones += usize::from(match case.d() {
             1 => same::<1>(&spec, &ranks, None),
             2 => same::<2>(&spec, &ranks, None),
             _ => same::<3>(&spec, &ranks, None),
         });
     }
-    assert!(tried > 30 && torn_ones > 25, "{tried} {torn_ones}");
+    let least = (many * 3 / 4, many * 5 / 8);
+    assert!(
+        tried > least.0 && torn_ones > least.1,
+        "{tried} {torn_ones}"
+    );
 }
 
 /// All that acts on a body of which ranks have parts, at the step that follows from it.

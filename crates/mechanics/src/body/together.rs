@@ -37,18 +37,10 @@ impl<const D: usize> Body<D> {
         (values, each): (&mut [T], usize),
         at: impl Fn(usize, usize) -> usize,
     ) {
-        let slots = || self.slots.iter().map(|s| *s as usize);
-        let places = || slots().flat_map(|slot| (0..each).map(move |n| (slot, n)));
-        let mut own: Vec<T> = match values.is_empty() {
-            true => vec![],
-            false => places().map(|(slot, n)| values[at(slot, n)]).collect(),
-        };
-        archive.points(name, self.whose(), each, &mut own);
-        if archive.loads() {
-            for (x, (slot, n)) in own.into_iter().zip(places()) {
-                values[at(slot, n)] = x;
-            }
-        }
+        let slots = self.slots.iter().map(|s| *s as usize);
+        let at = &at;
+        let places = slots.flat_map(|slot| (0..each).map(move |n| at(slot, n)));
+        archive.points(name, self.whose(), each, (values, places));
     }
 
     /// The same of vectors.

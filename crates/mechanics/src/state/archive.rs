@@ -412,18 +412,28 @@ impl<'a> Archive<'a> {
     }
 
     pub(super) fn put<T: Word>(&mut self, x: &[T]) -> Result<(), StateError> {
+        self.put_each(&mut x.iter().copied())
+    }
+
+    /// In pieces: no column is there twice.
+    pub(super) fn put_each<T: Word>(
+        &mut self,
+        words: &mut dyn Iterator<Item = T>,
+    ) -> Result<(), StateError> {
         let Way::Save(to) = &mut self.way else {
             return Ok(());
         };
-        let mut room = vec![0; PIECE.max(T::BYTES).min(x.len() * T::BYTES)];
-        for piece in x.chunks((PIECE / T::BYTES.max(1)).max(1)) {
-            for (x, to) in piece.iter().zip(room.chunks_mut(T::BYTES)) {
-                x.put(to);
+        let mut room = vec![];
+        for word in words {
+            let at = room.len();
+            room.resize(at + T::BYTES, 0);
+            word.put(&mut room[at..]);
+            if room.len() >= PIECE {
+                to.write_all(&room).map_err(StateError::Stream)?;
+                room.clear();
             }
-            to.write_all(&room[..piece.len() * T::BYTES])
-                .map_err(StateError::Stream)?;
         }
-        Ok(())
+        to.write_all(&room).map_err(StateError::Stream)
     }
 
     pub(super) fn take<T: Word>(

@@ -2,8 +2,8 @@
 //! from other such numbers.
 //!
 //! Whoever owns such numbers passes them through an [`Archive`], which writes them down or reads them back in place: one text for
-//! both, so that what is saved is what is loaded. Numbers keep their kind and their layout (bits of bonds stay bits). What was read
-//! is followed by what follows from it: an owner looks again at whatever it derives.
+//! both, so that what is saved is what is loaded. Numbers keep their kind (bits of bonds stay bits), those of points and bonds are in the order of ids:
+//! how they lie in memory, and on which rank, does not show. What was read is followed by what follows from it: an owner looks again at whatever it derives.
 
 mod archive;
 mod shared;

@@ -126,7 +126,7 @@ impl Archive<'_> {
             return;
         };
         let mut bytes = name.as_bytes().to_vec();
-        bytes.extend(bytes_of(x));
+        bytes.extend(bytes_of(&mut x.iter().copied()));
         ranks.digest = XxHash3_64::oneshot_with_seed(ranks.digest, &bytes);
         if cfg!(debug_assertions) {
             self.same_on_all();
@@ -134,9 +134,7 @@ impl Archive<'_> {
     }
 
     pub(super) fn same_on_all(&mut self) {
-        let Some(ranks) = self.ranks.as_ref().filter(|ranks| !ranks.over) else {
-            return;
-        };
+        let Some(ranks) = self.shared() else { return };
         let all = ranks.all(&ranks.digest.to_le_bytes());
         if all.iter().any(|other| *other != all[0]) {
             let name = self.path.clone();
@@ -144,19 +142,26 @@ impl Archive<'_> {
         }
     }
 
-    /// `each` words of every point that is here, or none of any.
-    pub fn points<T: Word>(&mut self, name: &str, whose: Whose<'_>, each: usize, x: &mut Vec<T>) {
-        let each = if self.any(!x.is_empty()) { each } else { 0 };
-        self.part_of(
-            name,
-            &Rows {
-                whose,
-                begin: &|n| each * whose.id(n) as usize,
-                length: &|_| each,
-                all: each * whose.points,
-            },
-            x,
-        );
+    /// `each` words of every point that is here, or none of any: those at these places among the values, in the order of ids.
+    pub fn points<T: Word>(
+        &mut self,
+        name: &str,
+        whose: Whose<'_>,
+        each: usize,
+        words: (&mut [T], impl Iterator<Item = usize>),
+    ) {
+        let each = if self.any(!words.0.is_empty()) {
+            each
+        } else {
+            0
+        };
+        let rows = Rows {
+            whose,
+            begin: &|n| each * whose.id(n) as usize,
+            length: &|_| each,
+            all: each * whose.points,
+        };
+        self.part_of(name, &rows, words);
     }
 
     /// How many bonds each point here has; the state says the same.
@@ -168,16 +173,19 @@ impl Archive<'_> {
             length: &|_| 1,
             all: whose.points,
         };
-        // every count, of others' points too
-        self.part_with(name, &rows, &counts, &mut |count: u32| {
+        let mut pass = |count: u32| {
             if found.len() < whose.here() && whose.id(found.len()) == id {
                 found.push(count);
                 begin.push(next);
             }
             id += 1;
             next = std::array::from_fn(|k| next[k] + both(count)[k]);
-        });
-        if self.is_load() && found != counts {
+        };
+        // every count, of others' points too
+        self.part_with(name, &rows, &mut counts.iter().copied(), &mut pass);
+        if !self.is_load() {
+            counts.iter().for_each(|count| pass(*count));
+        } else if found != counts {
             self.refuse(name);
         }
         Bonds {
@@ -187,29 +195,39 @@ impl Archive<'_> {
         }
     }
 
+    /// Those who share the model, as long as all is well.
+    fn shared(&self) -> Option<&Ranks> {
+        self.ranks.as_ref().filter(|ranks| !ranks.over)
+    }
+
     /// Is it so on any rank?
     fn any(&self, here: bool) -> bool {
-        match &self.ranks {
+        match self.shared() {
             None => here,
             Some(ranks) => ranks.all(&[u8::from(here)]).concat().contains(&1),
         }
     }
 
-    /// `each` words of every bond of the points that are here, in their order, or none of any.
+    /// `each` words of every bond of the points that are here, in their order, or none of any: those at these places among the values.
     pub fn rows<T: Word>(
         &mut self,
         name: &str,
         whose: Whose<'_>,
         (bonds, each): (&Bonds, usize),
-        x: &mut Vec<T>,
+        words: (&mut [T], impl Iterator<Item = usize>),
     ) {
-        let each = if self.any(!x.is_empty()) { each } else { 0 };
-        self.of_bonds(name, whose, (bonds, [each, 0]), x);
+        let each = if self.any(!words.0.is_empty()) {
+            each
+        } else {
+            0
+        };
+        self.of_bonds(name, whose, (bonds, [each, 0]), words);
     }
 
     /// A bit of every bond, those of a point in whole bytes.
-    pub fn bits(&mut self, name: &str, whose: Whose<'_>, bonds: &Bonds, x: &mut Vec<u8>) {
-        self.of_bonds(name, whose, (bonds, [0, 1]), x);
+    pub fn bits(&mut self, name: &str, whose: Whose<'_>, bonds: &Bonds, bytes: &mut [u8]) {
+        let places = 0..bytes.len();
+        self.of_bonds(name, whose, (bonds, [0, 1]), (bytes, places));
     }
 
     /// So many words for each number of a row, and for each byte of its bits.
@@ -218,33 +236,43 @@ impl Archive<'_> {
         name: &str,
         whose: Whose<'_>,
         (bonds, each): (&Bonds, [usize; 2]),
-        x: &mut Vec<T>,
+        words: (&mut [T], impl Iterator<Item = usize>),
     ) {
         let of = |[numbers, bytes]: [usize; 2]| each[0] * numbers + each[1] * bytes;
         let rows = Rows {
             whose,
-            begin: &|n| of(bonds.begin[n]),
+            begin: &|n| bonds.begin.get(n).map_or(0, |begin| of(*begin)),
             length: &|n| of(both(bonds.counts[n])),
             all: of(bonds.all),
         };
-        self.part_of(name, &rows, x);
+        self.part_of(name, &rows, words);
     }
 
-    fn part_of<T: Word>(&mut self, name: &str, rows: &Rows<'_>, x: &mut Vec<T>) {
+    fn part_of<T: Word>(
+        &mut self,
+        name: &str,
+        rows: &Rows<'_>,
+        (values, places): (&mut [T], impl Iterator<Item = usize>),
+    ) {
+        // what has no words has no places
+        let mut places = places.filter(|_| rows.all > 0);
+        if !self.is_load() {
+            let mut words = places.map(|place| values[place]);
+            return self.part_with(name, rows, &mut words, &mut |_| {});
+        }
         let (mut n, mut at) = (0, 0);
-        let mut own = vec![];
-        self.part_with(name, rows, x, &mut |word| {
+        self.part_with(name, rows, &mut std::iter::empty(), &mut |word| {
             while n < rows.whose.here() && at >= (rows.begin)(n) + (rows.length)(n) {
                 n += 1;
             }
-            if n < rows.whose.here() && at >= (rows.begin)(n) {
-                own.push(word);
+            if n < rows.whose.here()
+                && at >= (rows.begin)(n)
+                && let Some(place) = places.next()
+            {
+                values[place] = word;
             }
             at += 1;
         });
-        if self.loads() {
-            *x = own;
-        }
     }
 
     /// Rows of all ranks, one after the other by id: written, or each word heard.
@@ -252,7 +280,7 @@ impl Archive<'_> {
         &mut self,
         name: &str,
         rows: &Rows<'_>,
-        x: &[T],
+        words: &mut dyn Iterator<Item = T>,
         hear: &mut dyn FnMut(T),
     ) {
         self.try_to(|archive| {
@@ -264,19 +292,22 @@ impl Archive<'_> {
                 return archive.take(rows.all, hear);
             }
             let Some(ranks) = &archive.ranks else {
-                archive.header(name, x.len(), T::BYTES)?;
-                return archive.put(x);
+                archive.header(name, rows.all, T::BYTES)?;
+                return archive.put_each(words);
             };
             let here = rows.whose.here();
             let ids: Vec<u32> = (0..here).map(|n| rows.whose.id(n)).collect();
             let lengths: Vec<u32> = (0..here).map(|n| (rows.length)(n) as u32).collect();
-            let Some(merged) = ranks.merged(&ids, &lengths, (T::BYTES, bytes_of(x))) else {
-                return Ok(());
-            };
-            let whole = words::<T>(&merged);
-            archive.header(name, whole.len(), T::BYTES)?;
-            archive.put(&whole)
+            let merged = ranks.merged(&ids, &lengths, (T::BYTES, bytes_of(words)));
+            archive.put_merged::<T>(name, merged)
         });
+    }
+
+    /// Words of all ranks, which the first one has.
+    fn put_merged<T: Word>(&mut self, name: &str, all: Option<Vec<u8>>) -> Result<(), StateError> {
+        let Some(all) = all else { return Ok(()) };
+        self.header(name, all.len() / T::BYTES, T::BYTES)?;
+        self.put_each(&mut all.chunks(T::BYTES).map(T::take))
     }
 
     /// What some points have, by their ids: each may have any number of them. They come back in the order of ids.
@@ -305,12 +336,8 @@ impl Archive<'_> {
             };
             let ids: Vec<u32> = x.iter().map(|(id, _)| *id).collect();
             let ones = vec![1; x.len()];
-            let Some(merged) = ranks.merged(&ids, &ones, (each, bytes_of(x))) else {
-                return Ok(());
-            };
-            let whole = words::<(u32, T)>(&merged);
-            archive.header(name, whole.len(), each)?;
-            archive.put(&whole)
+            let merged = ranks.merged(&ids, &ones, (each, bytes_of(&mut x.iter().copied())));
+            archive.put_merged::<(u32, T)>(name, merged)
         });
     }
 
@@ -318,7 +345,7 @@ impl Archive<'_> {
     pub fn sum(&mut self, name: &str, x: &mut Exact) {
         let mut parts = vec![];
         if !self.is_load() {
-            match &self.ranks {
+            match self.shared() {
                 None => parts = x.parts(),
                 Some(ranks) => {
                     let mut whole = [x.clone()];
@@ -339,7 +366,7 @@ impl Archive<'_> {
     /// A count of which every rank has its part.
     pub fn count(&mut self, name: &str, x: &mut u64) {
         let mut whole = *x;
-        if let (Some(ranks), false) = (&self.ranks, self.is_load()) {
+        if let (Some(ranks), false) = (self.shared(), self.is_load()) {
             let all = ranks.all(&x.to_le_bytes());
             whole = all.iter().map(|x| u64::take(x)).sum();
         }
@@ -354,7 +381,7 @@ impl Archive<'_> {
 
     /// The most of any rank.
     pub fn most(&mut self, name: &str, x: &mut f64) {
-        if let (Some(ranks), false) = (&self.ranks, self.is_load()) {
+        if let (Some(ranks), false) = (self.shared(), self.is_load()) {
             let all = ranks.all(&x.to_le_bytes());
             *x = all.iter().map(|x| f64::take(x)).fold(*x, f64::max);
         }
@@ -408,14 +435,12 @@ impl Ranks {
     }
 }
 
-fn bytes_of<T: Word>(x: &[T]) -> Vec<u8> {
-    let mut bytes = vec![0; x.len() * T::BYTES];
-    for (x, to) in x.iter().zip(bytes.chunks_mut(T::BYTES.max(1))) {
-        x.put(to);
+fn bytes_of<T: Word>(words: &mut dyn Iterator<Item = T>) -> Vec<u8> {
+    let mut bytes = vec![];
+    for word in words {
+        let end = bytes.len();
+        bytes.resize(end + T::BYTES, 0);
+        word.put(&mut bytes[end..]);
     }
     bytes
-}
-
-fn words<T: Word>(bytes: &[u8]) -> Vec<T> {
-    bytes.chunks(T::BYTES).map(T::take).collect()
 }

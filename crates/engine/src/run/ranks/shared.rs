@@ -45,9 +45,8 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         ),
         (
             "bonds",
-            "horizons of points, factors of bonds and surfaces",
-            bonded.own_horizon.is_some()
-                || { pieces.iter() }.any(|p| p.own_horizon.is_some() || p.surface.is_some())
+            "factors of bonds and surfaces",
+            { pieces.iter() }.any(|p| p.surface.is_some())
                 || bonded.surface.is_some()
                 || !bonded.factors.is_empty()
                 || bonded.smooth.is_some(),

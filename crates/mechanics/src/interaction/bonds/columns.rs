@@ -268,16 +268,8 @@ impl<const D: usize, F: Family<D>> AnyBonds<D> for BondState<D, F> {
             ("life", &mut self.life, 1),
         ];
         for (name, values, each) in of_bonds {
-            let (family, counted) = (&self.family, &self.counted);
-            let places = || places_of(family, counted, &rows, each);
-            let mut own: Vec<f64> = match values.is_empty() {
-                true => vec![],
-                false => places().map(|at| values[at]).collect(),
-            };
-            archive.rows(name, body.whose(), (&bonds, each), &mut own);
-            if archive.loads() {
-                places().zip(own).for_each(|(at, x)| values[at] = x);
-            }
+            let places = places_of(&self.family, &self.counted, &rows, each);
+            archive.rows(name, body.whose(), (&bonds, each), (values, places));
         }
         for (name, store) in [("past", &mut self.past), ("points", &mut self.point)] {
             let layout = store.layout;
