@@ -5,8 +5,8 @@ use crate::deck::{read, simd};
 use crate::failure::{Failure, say};
 use crate::numbers::{duration, memory};
 use crate::run::{shared_by_ranks, with_threads};
-use peridyne::run::Options;
 use peridyne::run::ranks::{Shares, StepCost, plan as planned};
+use peridyne::run::{Info, Options};
 use peridyne_io::deck::counted;
 use serde_json::json;
 use std::fmt::Write;
@@ -66,6 +66,128 @@ fn brief(seconds: f64) -> String {
     }
 }
 
+/// A number of machines, and what a step takes there.
+struct Row {
+    shares: Shares,
+    seconds: f64,
+    efficiency: f64,
+    /// Bytes that a machine holds.
+    held: f64,
+}
+
+/// What was measured and foreseen.
+struct Plan {
+    info: Info,
+    cost: StepCost,
+    steps: u64,
+    threads: usize,
+    cores: usize,
+    /// Of two ranks of one thread each, without what they tell each other.
+    foreseen: f64,
+    rows: Vec<Row>,
+}
+
+impl Plan {
+    fn of(
+        arguments: &PlanArguments,
+        (info, cost, shares): (Info, StepCost, Vec<Shares>),
+        (steps, threads): (u64, usize),
+    ) -> Plan {
+        let cores = arguments.cores.unwrap_or(threads);
+        let network = Network {
+            latency: 1e-6 * arguments.latency,
+            bandwidth: 1e9 * arguments.bandwidth,
+        };
+        let points = info.points as f64;
+        let of_core = cost.seconds * threads as f64;
+        let one = of_core / cores as f64;
+        let per_slot = info.bytes as f64 / points;
+        let row = |shares: Shares| {
+            let seconds = step(&shares, one / points, &cost, network);
+            Row {
+                seconds,
+                efficiency: one / (shares.ranks as f64 * seconds),
+                held: per_slot * (shares.points + shares.copies) as f64,
+                shares,
+            }
+        };
+        Plan {
+            rows: shares.into_iter().map(row).collect(),
+            foreseen: 0.5 * of_core,
+            info,
+            cost,
+            steps,
+            threads,
+            cores,
+        }
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let rows = self.rows.iter().map(|row| {
+            let s = &row.shares;
+            json!({
+                "nodes": s.ranks, "idle": s.ranks - s.working, "points": s.points, "copies": s.copies, "neighbours": s.neighbours(), "bytes": row.held,
+                "seconds_per_step": row.seconds, "efficiency": row.efficiency, "seconds": row.seconds * self.steps as f64,
+            })
+        });
+        let cost = &self.cost;
+        json!({
+            "points": self.info.points, "directed_bonds": self.info.directed_bonds, "steps": self.steps, "threads": self.threads, "cores": self.cores,
+            "seconds_per_step": cost.seconds, "messages": cost.messages, "bytes_per_copy": cost.bytes_per_copy, "rounds": cost.rounds,
+            "two_ranks": { "seconds_per_step": cost.seconds_of_two, "foreseen": self.foreseen },
+            "nodes": rows.collect::<Vec<_>>(),
+        })
+    }
+
+    fn text(&self, arguments: &PlanArguments) -> String {
+        let cost = &self.cost;
+        let per_bond = 1e9 * cost.seconds / self.info.directed_bonds as f64;
+        let mut text = format!(
+            "step      {} here on {}, {per_bond:.2} ns per bond; two ranks of one thread {}, foreseen {}\n",
+            brief(cost.seconds),
+            counted(self.threads as u64, "thread"),
+            brief(cost.seconds_of_two),
+            brief(self.foreseen),
+        );
+        let _ = writeln!(
+            text,
+            "tells     each neighbour {:.1} messages, {:.0} bytes per copy; all hear of all {:.1} times",
+            cost.messages, cost.bytes_per_copy, cost.rounds
+        );
+        let _ = writeln!(
+            text,
+            "machines  of {}, {} µs and {} GB/s between them\n",
+            counted(self.cores as u64, "core"),
+            arguments.latency,
+            arguments.bandwidth
+        );
+        let _ = write!(
+            text,
+            "{:>6} {:>12} {:>10} {:>10} {:>10} {:>11} {:>10}",
+            "nodes", "points", "copies", "memory", "step", "efficiency", "run"
+        );
+        for row in &self.rows {
+            let s = &row.shares;
+            let idle = match s.ranks - s.working {
+                0 => String::new(),
+                idle => format!("  {idle} idle"),
+            };
+            let _ = write!(
+                text,
+                "\n{:>6} {:>12} {:>10} {:>10} {:>10} {:>10.1}% {:>10}{idle}",
+                s.ranks,
+                s.points,
+                s.copies,
+                memory(row.held),
+                brief(row.seconds),
+                100.0 * row.efficiency,
+                duration(row.seconds * self.steps as f64),
+            );
+        }
+        text
+    }
+}
+
 pub fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     let wrong = [
         (
@@ -101,97 +223,13 @@ pub fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     };
     with_threads(arguments.threads.or(deck.threads), |threads| {
         let made = planned(&deck.spec, options, arguments.steps, &arguments.nodes);
-        let (info, cost, shares) = made.map_err(explained)?;
-        let cores = arguments.cores.unwrap_or(threads);
-        let network = Network {
-            latency: 1e-6 * arguments.latency,
-            bandwidth: 1e9 * arguments.bandwidth,
-        };
-        let points = info.points as f64;
-        let per_point = cost.seconds * threads as f64 / (points * cores as f64);
-        let one = per_point * points;
-        let steps = deck.steps(info.time_step);
-        let per_slot = info.bytes as f64 / points;
-        let rows: Vec<_> = { shares.iter() }
-            .map(|s| {
-                let seconds = step(s, per_point, &cost, network);
-                let held = per_slot * (s.points + s.copies) as f64;
-                (*s, seconds, one / (s.ranks as f64 * seconds), held)
-            })
-            .collect();
-        // two ranks of one thread each, whose messages are copies in memory
-        let two = Shares {
-            ranks: 2,
-            working: 2,
-            points: info.points.div_ceil(2) as usize,
-            copies: 0,
-        };
-        let nothing = Network {
-            latency: 0.0,
-            bandwidth: f64::INFINITY,
-        };
-        let foreseen = step(&two, cost.seconds * threads as f64 / points, &cost, nothing);
-        if arguments.json {
-            let rows: Vec<_> = { rows.iter() }
-                .map(|(s, seconds, efficiency, held)| {
-                    json!({
-                        "nodes": s.ranks, "idle": s.ranks - s.working, "points": s.points, "copies": s.copies, "neighbours": s.neighbours(), "bytes": held,
-                        "seconds_per_step": seconds, "efficiency": efficiency, "seconds": seconds * steps as f64,
-                    })
-                })
-                .collect();
-            let text = json!({
-                "points": info.points, "directed_bonds": info.directed_bonds, "steps": steps, "threads": threads, "cores": cores,
-                "seconds_per_step": cost.seconds, "messages": cost.messages, "bytes_per_copy": cost.bytes_per_copy, "rounds": cost.rounds,
-                "two_ranks": { "seconds_per_step": cost.seconds_of_two, "foreseen": foreseen },
-                "nodes": rows,
-            });
-            say(&format!("{text:#}"));
-            return Ok(());
-        }
-        let per_bond = 1e9 * cost.seconds / info.directed_bonds as f64;
-        let mut text = format!(
-            "step      {} here on {}, {per_bond:.2} ns per bond; two ranks of one thread {}, foreseen {}\n",
-            brief(cost.seconds),
-            counted(threads as u64, "thread"),
-            brief(cost.seconds_of_two),
-            brief(foreseen),
-        );
-        let _ = writeln!(
-            text,
-            "tells     each neighbour {:.1} messages, {:.0} bytes per copy; all hear of all {:.1} times",
-            cost.messages, cost.bytes_per_copy, cost.rounds
-        );
-        let _ = writeln!(
-            text,
-            "machines  of {}, {} µs and {} GB/s between them\n",
-            counted(cores as u64, "core"),
-            arguments.latency,
-            arguments.bandwidth
-        );
-        let _ = writeln!(
-            text,
-            "{:>6} {:>12} {:>10} {:>10} {:>10} {:>11} {:>10}",
-            "nodes", "points", "copies", "memory", "step", "efficiency", "run"
-        );
-        for (s, seconds, efficiency, held) in &rows {
-            let idle = match s.ranks - s.working {
-                0 => String::new(),
-                idle => format!("  {idle} idle"),
-            };
-            let _ = writeln!(
-                text,
-                "{:>6} {:>12} {:>10} {:>10} {:>10} {:>10.1}% {:>10}{idle}",
-                s.ranks,
-                s.points,
-                s.copies,
-                memory(*held),
-                brief(*seconds),
-                100.0 * efficiency,
-                duration(seconds * steps as f64),
-            );
-        }
-        say(text.trim_end());
+        let made = made.map_err(explained)?;
+        let steps = deck.steps(made.0.time_step);
+        let plan = Plan::of(arguments, made, (steps, threads));
+        say(&match arguments.json {
+            true => format!("{:#}", plan.json()),
+            false => plan.text(arguments),
+        });
         Ok(())
     })
 }

@@ -1,6 +1,6 @@
 //! The stream of a state: named arrays, one after the other.
 
-use super::shared::Ranks;
+use super::ranks::Ranks;
 use super::{Owner, Word};
 use peridyne_comm::Comm;
 use std::fmt;
@@ -407,7 +407,8 @@ impl<'a> Archive<'a> {
         };
         match &self.ranks {
             None => own,
-            Some(ranks) => ranks.hear(own, bytes),
+            Some(ranks) if ranks.hear(own.is_ok(), bytes) => Ok(()),
+            Some(_) => own.and(Err(StateError::Elsewhere(String::new()))),
         }
     }
 

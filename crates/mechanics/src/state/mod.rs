@@ -6,6 +6,7 @@
 //! how they lie in memory, and on which rank, does not show. What was read is followed by what follows from it: an owner looks again at whatever it derives.
 
 mod archive;
+mod ranks;
 mod shared;
 mod words;
 

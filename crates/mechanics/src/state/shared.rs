@@ -1,55 +1,9 @@
 //! What of a state is of points, of their bonds, or a sum over them: written in the order of ids, whoever has which, and read by whoever has them now.
 
 use super::archive::{Archive, StateError};
+use super::ranks::Ranks;
 use super::{Owner, Word};
 use crate::execute::exact::Exact;
-use bytemuck::{cast_slice, pod_read_unaligned};
-use peridyne_comm::Comm;
-use std::sync::Arc;
-use twox_hash::XxHash3_64;
-
-/// Ranks that do the same with their archives.
-pub(super) struct Ranks {
-    comm: Arc<Comm>,
-    /// Of all that must be the same on them.
-    digest: u64,
-    /// All know of an error.
-    over: bool,
-}
-
-impl Ranks {
-    pub fn new(comm: &Arc<Comm>) -> Ranks {
-        Ranks {
-            comm: comm.clone(),
-            digest: 0,
-            over: false,
-        }
-    }
-
-    fn is_first(&self) -> bool {
-        self.comm.rank() == 0
-    }
-
-    fn all(&self, own: &[u8]) -> Vec<Vec<u8>> {
-        let all = self.comm.all(own);
-        all.unwrap_or_else(|failure| self.comm.end(failure))
-    }
-
-    /// The bytes that the first rank has read, on all.
-    pub fn hear(&self, own: Result<(), StateError>, bytes: &mut [u8]) -> Result<(), StateError> {
-        let said = match (&own, self.is_first()) {
-            (Ok(()), true) => [&[1], &*bytes].concat(),
-            (Err(_), true) => vec![0],
-            (_, false) => vec![],
-        };
-        let heard = self.all(&said);
-        match &heard[0][..] {
-            [1, heard @ ..] => bytes.copy_from_slice(heard),
-            _ => own.and(Err(StateError::Elsewhere(String::new())))?,
-        }
-        Ok(())
-    }
-}
 
 /// Whose numbers an owner has.
 #[derive(Debug, Clone, Copy)]
@@ -127,7 +81,7 @@ impl Archive<'_> {
         };
         let mut bytes = name.as_bytes().to_vec();
         bytes.extend(bytes_of(&mut x.iter().copied()));
-        ranks.digest = XxHash3_64::oneshot_with_seed(ranks.digest, &bytes);
+        ranks.digest(&bytes);
         if cfg!(debug_assertions) {
             self.same_on_all();
         }
@@ -135,8 +89,7 @@ impl Archive<'_> {
 
     pub(super) fn same_on_all(&mut self) {
         let Some(ranks) = self.shared() else { return };
-        let all = ranks.all(&ranks.digest.to_le_bytes());
-        if all.iter().any(|other| *other != all[0]) {
+        if !ranks.are_alike() {
             let name = self.path.clone();
             self.error.get_or_insert(StateError::Apart { name });
         }
@@ -349,7 +302,7 @@ impl Archive<'_> {
                 None => parts = x.parts(),
                 Some(ranks) => {
                     let mut whole = [x.clone()];
-                    Exact::of_all(&mut whole, &ranks.comm);
+                    Exact::of_all(&mut whole, ranks.comm());
                     parts = whole[0].parts();
                 }
             }
@@ -392,46 +345,6 @@ impl Archive<'_> {
 impl Owner for Exact {
     fn archive(&mut self, archive: &mut Archive<'_>) {
         archive.sum("parts", self);
-    }
-}
-
-impl Ranks {
-    /// Rows of so many words each, of all ranks, one after the other by id, on the first.
-    fn merged(
-        &self,
-        ids: &[u32],
-        lengths: &[u32],
-        (each, own): (usize, Vec<u8>),
-    ) -> Option<Vec<u8>> {
-        let mut said = (ids.len() as u64).to_le_bytes().to_vec();
-        said.extend_from_slice(cast_slice(ids));
-        said.extend_from_slice(cast_slice(lengths));
-        said.extend(own);
-        let all = self.comm.first(said);
-        let all = all.unwrap_or_else(|failure| self.comm.end(failure))?;
-        let mut rows = vec![];
-        for (rank, said) in all.iter().enumerate() {
-            let count = u64::take(said) as usize;
-            let numbers = |n: usize| {
-                let bytes = said[8 + 4 * n * count..][..4 * count].chunks_exact(4);
-                bytes.map(pod_read_unaligned::<u32>)
-            };
-            let mut begin = 8 + 8 * count;
-            for (id, length) in numbers(0).zip(numbers(1)) {
-                let end = begin + each * length as usize;
-                // nothing of any: no rank has it
-                let end = end.min(said.len());
-                rows.push((id, rank, begin..end));
-                begin = end;
-            }
-        }
-        // of one rank in their order
-        rows.sort_by_key(|(id, _, _)| *id);
-        let mut whole = Vec::with_capacity(rows.iter().map(|(_, _, row)| row.len()).sum());
-        for (_, rank, row) in rows {
-            whole.extend_from_slice(&all[rank][row]);
-        }
-        Some(whole)
     }
 }
 

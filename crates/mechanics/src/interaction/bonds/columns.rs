@@ -315,21 +315,9 @@ fn places_of<const D: usize, F: Family<D>>(
     let rows = rows.iter().flatten().copied();
     rows.flat_map(move |(group, l)| {
         let bonds = 0..family.bonds(group);
-        let bonds = bonds.filter(move |k| counts(family, counted, (group, *k, l)));
+        let bonds = bonds.filter(move |k| family.counts(counted, (group, *k, l)));
         bonds.flat_map(move |k| (0..each).map(move |n| family.own(group, k, n, each) + l))
     })
-}
-
-/// Does damage count a bond?
-pub(super) fn counts<const D: usize, F: Family<D>>(
-    family: &F,
-    counted: &[u8],
-    (group, k, l): (usize, usize, usize),
-) -> bool {
-    match counted.get(family.byte(group, k)) {
-        Some(bits) => bits >> l & 1 == 1,
-        None => family.is_bond(group, k, l),
-    }
 }
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {

@@ -135,6 +135,14 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
         (r.xi, r.weight)
     }
 
+    /// Does damage count a bond? All that the family ever had, where no bits say which.
+    fn counts(&self, counted: &[u8], (group, k, l): (usize, usize, usize)) -> bool {
+        match counted.get(self.byte(group, k)) {
+            Some(bits) => bits >> l & 1 == 1,
+            None => self.is_bond(group, k, l),
+        }
+    }
+
     /// Bits of the bonds of a group, among those of all.
     fn bits<'a>(&self, all: &'a [u8], group: usize) -> &'a [u8] {
         match self.bonds(group) {

@@ -58,7 +58,7 @@ pub struct BondState<const D: usize, F> {
     pub stiffened: f64,
     /// In plane strain, per material: ν and 2G of the linear isotropic solid of its moduli, if it is isotropic; else empty.
     pub held: Vec<Option<[f64; 2]>>,
-    /// Bits of bonds that break in a sweep, and marks of their groups.
+    /// Bits of bonds that break in a sweep, and of points that lose bonds, by group.
     pub breaks: Vec<u8>,
     pub torn: Vec<u8>,
     /// Length of the step that equilibrium is sought for; 0: memory stands still.

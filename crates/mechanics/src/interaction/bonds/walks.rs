@@ -1,7 +1,6 @@
 //! Bond by bond: who is bonded with whom, what is broken, and how much of every point's family.
 
 use super::breaking::fibre_limit;
-use super::columns::counts;
 use super::family::{Family, Slots};
 use super::state::{BondState, WholeBond, all_whole};
 use crate::body::{Body, FieldView};
@@ -33,7 +32,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     }
 
     pub(super) fn is_counted(&self, group: usize, k: usize, l: usize) -> bool {
-        counts(&self.family, &self.counted, (group, k, l))
+        self.family.counts(&self.counted, (group, k, l))
     }
 
     /// The whole bonds of a point.

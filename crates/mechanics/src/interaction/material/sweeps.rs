@@ -15,7 +15,7 @@ pub struct Sums<'a, const D: usize, F, M> {
     pub view: View<'a, D, F, M>,
     pub pass: usize,
     pub out: OwnRows,
-    /// Marks of the groups that are meant; empty: all.
+    /// A bit for each point that is meant, of its group; empty: all. Groups without any are left out, what is written of other points is nobody's.
     pub only: &'a [u8],
 }
 
@@ -187,7 +187,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
         let v = &self.view;
         let mut tally = BlockTally::default();
         for group in v.block(block) {
-            if !self.only.is_empty() && self.only[group] == 0 {
+            let meant = self.only.get(group).copied().unwrap_or(u8::MAX);
+            if meant == 0 {
                 continue;
             }
             // SAFETY: groups of the family; each is written by one block
@@ -240,7 +241,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                 lost = part_of(v.integrity::<L>(at.rows), lost);
                 save(self.past, at.rows, &past);
                 for (l, x) in lost.to_array().iter().enumerate() {
-                    if v.family.is_point(group, l) {
+                    if v.family.is_point(group, l) && meant >> l & 1 == 1 {
                         tally.dissipated += x * self.volume.at(at.rows.slot(l));
                     }
                 }
