@@ -418,6 +418,7 @@ fn on_clouds(tries: impl Fn(usize) -> bool) {
                     panic!("a length");
                 };
                 spec.bonds.own_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
+                spec.bonds.calibration = Calibration::Continuum;
             }
         }
         // not every law is one of clouds, or bears being torn so fast

@@ -91,8 +91,6 @@ const IN_CIRCLES: &[&str] = &[
     "run/transfers/make",
     "space/membership",
     "space/membership/compile",
-    "state",
-    "state/archive",
 ];
 
 /// Files that can be reached from each other. What the face of a folder (`mod.rs`, or the file of its name) says of the

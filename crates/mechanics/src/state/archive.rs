@@ -1,12 +1,18 @@
 //! The stream of a state: named arrays, one after the other.
 
 use super::ranks::Ranks;
-use super::{Owner, Word};
+use super::words::Word;
 use peridyne_comm::Comm;
 use std::fmt;
 use std::io::{self, Read, Write};
 use std::ops::DerefMut;
 use std::sync::Arc;
+
+/// Has numbers that cannot be found again.
+pub trait Owner {
+    /// Passes them through an archive, always in the same order; after reading, what follows from them is found anew.
+    fn archive(&mut self, archive: &mut Archive<'_>);
+}
 
 /// Bytes that are turned into numbers at a time: no length that a file states asks for more room than it has numbers.
 const PIECE: usize = 1 << 16;

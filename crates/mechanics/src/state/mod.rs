@@ -10,12 +10,6 @@ mod ranks;
 mod shared;
 mod words;
 
-pub use archive::{Archive, StateError};
+pub use archive::{Archive, Owner, StateError};
 pub use shared::{Bonds, Whose};
 pub use words::{Word, words};
-
-/// Has numbers that cannot be found again.
-pub trait Owner {
-    /// Passes them through an archive, always in the same order; after reading, what follows from them is found anew.
-    fn archive(&mut self, archive: &mut Archive<'_>);
-}

@@ -1,8 +1,8 @@
 //! What of a state is of points, of their bonds, or a sum over them: written in the order of ids, whoever has which, and read by whoever has them now.
 
-use super::archive::{Archive, StateError};
+use super::archive::{Archive, Owner, StateError};
 use super::ranks::Ranks;
-use super::{Owner, Word};
+use super::words::Word;
 use crate::execute::exact::Exact;
 
 /// Whose numbers an owner has.
