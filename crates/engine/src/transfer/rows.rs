@@ -44,25 +44,13 @@ pub struct Surface<'a, const D: usize> {
 impl Rows {
     /// `g_ij = D k ω ν (1/m_i + 1/m_j) V_i V_j` of every whole bond, `m_i = Σ_j ω ν |ξ|² V_j` over these, and k the harmonic mean of
     /// both ends' conductivities; 0 of bonds that are broken from the start. Of a body that is exact at its surface each is multiplied with its
-    /// factor and `m_i` is that of a full family, less the part that broken bonds had in the sum.
-    ///
-    /// # Errors
-    /// They do not fit into memory.
+    /// factor and `m_i` is that of a full family, less the part that broken bonds had in the sum. All ranks ask at once.
     pub fn new<const D: usize>(
         body: &Body<D>,
         interaction: &dyn Interaction<D>,
         of: &Conduction<D>,
-        path: &str,
-    ) -> Result<Rows, BuildError> {
+    ) -> Rows {
         let points = body.points();
-        let bonds = interaction.directed_bonds() as f64;
-        let bytes = 28.0 * bonds + 64.0 * points as f64;
-        memory::afford(
-            path,
-            "the conductances of the bonds",
-            bytes,
-            "a smaller body, horizon or m_ratio",
-        )?;
         let place = |slot: usize| of.places.at(slot);
         let volume = |slot: usize| body.volume().at(slot);
         let mut start = vec![0usize; points + 1];
@@ -127,7 +115,26 @@ impl Rows {
             }
         }
         rows.conduct(body, interaction, of.places);
-        Ok(rows)
+        rows
+    }
+
+    /// Is there room for them?
+    ///
+    /// # Errors
+    /// There is not.
+    pub fn fit<const D: usize>(
+        body: &Body<D>,
+        interaction: &dyn Interaction<D>,
+        path: &str,
+    ) -> Result<(), BuildError> {
+        let bonds = interaction.directed_bonds() as f64;
+        let bytes = 28.0 * bonds + 64.0 * body.points() as f64;
+        memory::afford(
+            path,
+            "the conductances of the bonds",
+            bytes,
+            "a smaller body, horizon or m_ratio",
+        )
     }
 
     /// Conductances of the bonds that are whole now: the same of faces that were cut before and of those that opened since. All ranks ask at once.

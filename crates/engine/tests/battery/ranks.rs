@@ -935,6 +935,22 @@ fn a_mistake_of_one_rank_is_known_to_all() {
     });
     use peridyne::error::BuildErrorKind::{Elsewhere, Invalid};
     assert_eq!(ends, [Some(Elsewhere), Some(Elsewhere), Some(Invalid)]);
+    // of what spreads, whatever all have to say of its conditions
+    let case = Case::of("pmb", place(LatticeKind::Square));
+    let mut spec = torn(&case, false);
+    faced(&mut spec, &case);
+    let mut heat = spreading(
+        Quantity::Heat,
+        TransferMethod::Explicit { safety: 0.5 },
+        0.0,
+    );
+    heat.initial = vec![("all".into(), e("1/max(20 - y, 0)"))];
+    spec.interactions.transfers = vec![heat];
+    let ends = on_threads(3, |comm| {
+        let made = RankModel::<2>::new(&spec, options(None), &shelf(), &Arc::new(comm));
+        made.err().map(|e| e.kind)
+    });
+    assert_eq!(ends, [Some(Elsewhere), Some(Elsewhere), Some(Invalid)]);
 }
 
 /// A bond that bears more than any point of its rank allows breaks by its other end.

@@ -40,8 +40,9 @@ impl<const D: usize> Maker<'_, D> {
         }
         self.system.transfers.places = Places::new(&self.system.body);
         for t in transfers {
-            let made = self.transfer(spec, t);
-            let made = agreed(&self.system.body, made)?;
+            let (body, interaction) = (&self.system.body, self.system.interaction.as_ref());
+            agreed(body, Rows::fit(body, interaction, t.quantity.name()))?;
+            let made = self.transfer(spec, t)?;
             if let TransferMethod::Steady { .. } = t.method {
                 steady(&made, &self.system.body, &self.system.transfers.places)?;
             }
@@ -148,8 +149,7 @@ impl<const D: usize> Maker<'_, D> {
                     moment: &moment,
                 }),
             },
-            name,
-        )?;
+        );
         let capacity = slots.iter().map(|s| {
             let i = *s as usize;
             let volume = body.volume().at(i);
@@ -165,8 +165,10 @@ impl<const D: usize> Maker<'_, D> {
                 value[*i as usize] = e.eval(x, 0.0);
             }
         }
-        if let Some(n) = value[..slots.len()].iter().position(|v| !v.is_finite()) {
-            return Err(BuildError::invalid(
+        let begins = value[..slots.len()].iter().position(|v| !v.is_finite());
+        let begins = match begins {
+            None => Ok(()),
+            Some(n) => Err(BuildError::invalid(
                 name,
                 format!(
                     "the {} at the start is {} at {:?}",
@@ -174,8 +176,8 @@ impl<const D: usize> Maker<'_, D> {
                     value[n],
                     &body.position(slots[n] as usize)[..D]
                 ),
-            ));
-        }
+            )),
+        };
         let (mut conditions, mut loads) = (vec![], vec![]);
         for c in &t.conditions {
             let (made, told) = self.condition(c, t.quantity)?;
@@ -191,6 +193,8 @@ impl<const D: usize> Maker<'_, D> {
             value,
         );
         self.system.info.loads.extend(loads);
+        // which one rank may say: all have made theirs by now
+        agreed(&self.system.body, begins)?;
         Ok(made)
     }
 

@@ -289,12 +289,21 @@ impl<const D: usize, F: Family<D>> AnyBonds<D> for BondState<D, F> {
         strains(archive, body, &mut self.expansion);
         let records = self.room.records.len();
         let before = || Before::zeros(body.len, records);
+        // a rank without bonds keeps nothing
+        if body.exchange.any(self.before.is_some()) {
+            self.before.get_or_insert_with(before);
+        }
         archive.option("before", &mut self.before, before, |before, archive| {
             body.archive_field(archive, "displacement", &mut before.u);
             let records = (&mut before.records[..], 4);
             body.archive_points(archive, "records", records, |slot, n| 4 * slot + n);
             strains(archive, body, &mut before.expansion);
         });
+        // sweeps write work without looking
+        let has_bonds = self.directed().next().is_some();
+        if has_bonds && self.work.is_empty() && self.before.take().is_some() {
+            archive.refuse("before");
+        }
         archive.one("step", &mut self.step);
         if archive.loads() {
             self.restored(body);
