@@ -90,26 +90,6 @@ impl Store {
         self.data[at] = x;
     }
 
-    /// All numbers of some slots, slot by slot.
-    pub fn of(&self, slots: &[usize]) -> Vec<f64> {
-        let numbers = 0..self.layout.numbers;
-        let of = |slot: &usize| {
-            let slot = *slot;
-            numbers.clone().map(move |n| self.get(n, slot))
-        };
-        slots.iter().flat_map(of).collect()
-    }
-
-    /// Gives them back.
-    pub fn put_back(&mut self, slots: &[usize], numbers: &[f64]) {
-        let each = numbers.chunks_exact(self.layout.numbers.max(1));
-        for (slot, of) in slots.iter().zip(each) {
-            for (n, x) in of.iter().enumerate() {
-                self.set(n, *slot, *x);
-            }
-        }
-    }
-
     /// For sweeps that write their own points.
     pub fn shared(&mut self) -> OwnRows {
         OwnRows {

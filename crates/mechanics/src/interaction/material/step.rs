@@ -123,28 +123,13 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
 
     /// Of the points that are marked; no marks: of all.
     fn settle_only(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room, only: &[u8]) {
-        let others = self.others(only);
-        let slots: Vec<usize> = others.iter().map(|o| o.2).collect();
         for pass in 0..self.bonds.law.passes {
-            let before = self.bonds.point.of(&slots);
             let out = self.bonds.point.shared();
             let mut view = self.bonds.view(u, room);
             view.point = out.seen();
             self.law.sums(&self.bonds.blocks, view, pass, out, only);
-            self.bonds.point.put_back(&slots, &before);
             self.bonds.point.fill(&body.exchange);
         }
-    }
-
-    /// Of groups with marked points the others: group, place in it, slot. What is done again for those that lost bonds is not done for who shares a tile with
-    /// them, or its last digits would tell.
-    fn others(&self, only: &[u8]) -> Vec<(usize, usize, usize)> {
-        let family = &self.bonds.family;
-        let groups = (0..only.len()).filter(|group| only[*group] != 0);
-        let points = groups.flat_map(|group| family.points_of(group..group + 1));
-        points
-            .filter(|(group, l, _)| only[*group] >> l & 1 == 0)
-            .collect()
     }
 
     /// Forces on points that have settled.
@@ -297,11 +282,6 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         if self.bonds.memory.is_empty() && self.bonds.past.data.is_empty() {
             return Tally::default();
         }
-        let others = self.others(only);
-        let slots: Vec<usize> = others.iter().map(|o| o.2).collect();
-        let past_before = self.bonds.past.of(&slots);
-        let places = self.remembered_at(&others);
-        let memory_before: Vec<f64> = places.iter().map(|at| self.bonds.memory[*at]).collect();
         let past = self.bonds.past.shared();
         let memory = Shared(self.bonds.memory.as_mut_ptr());
         let mut view = self.bonds.view(u, room);
@@ -309,23 +289,8 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         let written = (past, memory);
         let blocks = &self.bonds.blocks;
         let tally = self.law.remember(blocks, view, written, &body.volume, only);
-        self.bonds.past.put_back(&slots, &past_before);
-        for (at, x) in places.into_iter().zip(memory_before) {
-            self.bonds.memory[at] = x;
-        }
         self.bonds.fill_memory(body);
         tally
-    }
-
-    /// Where the bonds of these points have what they remember.
-    fn remembered_at(&self, points: &[(usize, usize, usize)]) -> Vec<usize> {
-        let (family, count) = (&self.bonds.family, self.bonds.law.memory);
-        let of = |(group, l, _): &(usize, usize, usize)| {
-            let (group, l) = (*group, *l);
-            let bonds = 0..family.bonds(group);
-            bonds.flat_map(move |k| (0..count).map(move |n| family.own(group, k, n, count) + l))
-        };
-        points.iter().flat_map(of).collect()
     }
 
     fn swap_bonds(&mut self, (alive, form, integrity): &mut (Vec<u8>, Store, Column)) {

@@ -15,7 +15,8 @@ pub struct Sums<'a, const D: usize, F, M> {
     pub view: View<'a, D, F, M>,
     pub pass: usize,
     pub out: OwnRows,
-    /// A bit for each point that is meant, of its group; empty: all. Groups without any are left out, what is written of other points is nobody's.
+    /// A bit for each point that is meant, of its group; empty: all. What is done again for those that lost bonds is not done for who shares a tile with them,
+    /// or its last digits would tell.
     pub only: &'a [u8],
 }
 
@@ -27,7 +28,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> 
     fn block<L: Lane>(&self, block: usize) {
         let (v, pass) = (&self.view, self.pass);
         for group in v.block(block) {
-            if !self.only.is_empty() && self.only[group] == 0 {
+            let meant = self.only.get(group).copied().unwrap_or(u8::MAX);
+            if meant == 0 {
                 continue;
             }
             // SAFETY: groups of the family; each is written by one block
@@ -39,10 +41,23 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> 
                 }
                 let sum = v.sum::<L>(pass, &at, &point);
                 v.settle::<L>(pass, &at, sum, &mut point);
+                if meant != u8::MAX {
+                    point = kept(meant, &v.point::<L>(at.rows), &point);
+                }
                 save(self.out, at.rows, &point);
             }
         }
     }
+}
+
+/// What the points that are meant have now, and the others had before.
+#[inline(always)]
+fn kept<L: Lane, N: Numbers<L>>(meant: u8, before: &N, now: &N) -> N {
+    let (others, mut all) = (L::dead(meant), N::constant(0.0));
+    for n in 0..N::COUNT {
+        all.set(n, L::select(others, before.get(n), now.get(n)));
+    }
+    all
 }
 
 /// Force pass.
@@ -225,7 +240,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                             let (old, new) = (old.get(n), new.get(n));
                             // a line that did not change is not written
                             if L::any(old.lt(new)) || L::any(new.lt(old)) {
-                                let x = L::select(dead, old, new);
+                                let x = L::select(L::or(dead, L::dead(meant)), old, new);
                                 x.store(self.memory.at(v.family.own(group, k, n, count)));
                             }
                         }
@@ -239,6 +254,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                 };
                 lost = lost + v.law.remember(&site, &point, &mut past);
                 lost = part_of(v.integrity::<L>(at.rows), lost);
+                if meant != u8::MAX {
+                    past = kept(meant, &before, &past);
+                }
                 save(self.past, at.rows, &past);
                 for (l, x) in lost.to_array().iter().enumerate() {
                     if v.family.is_point(group, l) && meant >> l & 1 == 1 {
