@@ -160,19 +160,18 @@ impl Faces {
         sets: &[(String, Vec<u32>)],
     ) -> Result<(), BuildError> {
         let conditions = spec.loading.conditions.iter().enumerate();
-        let tractions = conditions.filter_map(|(n, c)| match &c.kind {
-            ConditionKind::Traction { area: None, .. } => {
-                Some((format!("conditions[{n}]"), &c.set))
-            }
-            _ => None,
+        let tractions = conditions.filter_map(|(n, c)| {
+            let ConditionKind::Traction { area: None, .. } = &c.kind else {
+                return None;
+            };
+            Some((format!("conditions[{n}]"), &c.set))
         });
         let spreads = spec.interactions.transfers.iter().flat_map(|t| {
             t.conditions.iter().filter_map(|c| match &c.kind {
-                TransferKind::Flux { area: None, .. }
-                | TransferKind::Exchange { area: None, .. } => {
-                    Some((t.quantity.name().to_string(), &c.set))
-                }
-                _ => None,
+                TransferKind::Flux { area, .. } | TransferKind::Exchange { area, .. } => area
+                    .is_none()
+                    .then(|| (t.quantity.name().to_string(), &c.set)),
+                TransferKind::Value(_) | TransferKind::Source(_) => None,
             })
         });
         for (path, set) in tractions.chain(spreads) {

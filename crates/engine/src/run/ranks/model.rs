@@ -9,7 +9,7 @@ use crate::observe::{Column, Snapshot, StateHash, Values};
 use crate::run::build::made_among;
 use crate::run::gathered::{Everyone, Gathered};
 use crate::run::state_hash::hashed;
-use crate::run::{Info, Model, Options, Shelf, Simulation};
+use crate::run::{Model, Options, Shelf, Simulation};
 use crate::spec::Spec;
 use peridyne_comm::{Comm, Traffic};
 use std::sync::Arc;
@@ -174,10 +174,5 @@ impl<const D: usize> RankModel<D> {
     pub fn halo(&self) -> (Traffic, usize) {
         let sent = self.subdomain().comm().traffic();
         (sent, self.model.system.body.exchange().received_slots())
-    }
-
-    /// What is known of the model of all ranks.
-    pub fn info(&self) -> &Info {
-        self.model.info()
     }
 }
