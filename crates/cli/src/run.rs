@@ -269,7 +269,8 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
         say(&report::told(&plan.dir));
     }
     say(&report::state(done.hash));
-    if done.status == Status::Ended {
+    // a warning has said why where none could be written
+    if done.status == Status::Ended && Checkpoint::any(&plan.dir) {
         say(&format!("go on:    peridyne resume {}", plan.dir.display()));
     }
     match signals::received() {
@@ -280,20 +281,11 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
 
 /// What ranks do not share yet of what is asked for beside the model.
 fn shares(deck: &Deck) -> Result<(), BuildError> {
-    let limits = [
-        ("modes", "modes of vibration", deck.modes > 0),
-        (
-            "output.linear_body",
-            "linear bodies",
-            deck.output.linear_body,
-        ),
-        ("fields", "continuum fields", !deck.fields.is_empty()),
-    ];
-    match limits.into_iter().find(|(_, _, asked)| *asked) {
-        None => Ok(()),
-        Some((path, what, _)) => {
-            let message = format!("ranks do not share {what} yet");
-            Err(BuildError::unsupported(path, message).help(ALONE))
+    match deck.fields.is_empty() {
+        true => Ok(()),
+        false => {
+            let message = "ranks do not share continuum fields yet";
+            Err(BuildError::unsupported("fields", message).help(ALONE))
         }
     }
 }

@@ -44,6 +44,33 @@ impl Comm {
         Ok(there)
     }
 
+    /// The bytes of every rank, in the order of ranks, on all of them, one after the other: all have as many. In as many rounds as [`Comm::all`] takes, with
+    /// half of its messages.
+    ///
+    /// # Errors
+    /// As of [`Comm::exchange`].
+    pub fn all_as_long(&self, own: &[u8]) -> Result<Vec<u8>, Failure> {
+        let (rank, ranks, size) = (self.rank(), self.ranks(), own.len());
+        self.count_round();
+        let mut there = own.to_vec();
+        let mut have = 1;
+        while have < ranks && size > 0 {
+            let count = have.min(ranks - have);
+            let to = (rank + ranks - have) % ranks;
+            let from = (rank + have) % ranks;
+            let mut new = vec![0; count * size];
+            self.trade(
+                &[(to, &there[..count * size])],
+                &mut [(from, &mut new)],
+                || (),
+            )?;
+            there.append(&mut new);
+            have += count;
+        }
+        there.rotate_right(rank * size);
+        Ok(there)
+    }
+
     /// What every rank has for this one, in their order; `own` is what this one has for each. Most have nothing for most.
     ///
     /// # Errors

@@ -24,8 +24,8 @@ pub(super) fn agreed<const D: usize, T>(
 /// The same.
 pub(super) fn agreed_among<T>(comm: &Comm, made: Result<T, BuildError>) -> Result<T, BuildError> {
     let own = { made.as_ref().err() }.is_some_and(|e| e.kind != BuildErrorKind::Elsewhere);
-    let all = comm.all(&[u8::from(own)]);
-    let all = all.unwrap_or_else(|failure| comm.end(failure)).concat();
+    let all = comm.all_as_long(&[u8::from(own)]);
+    let all = all.unwrap_or_else(|failure| comm.end(failure));
     match all.iter().position(|failed| *failed == 1) {
         Some(first) if first != comm.rank() => Err(BuildError::elsewhere(first)),
         Some(_) | None => made,

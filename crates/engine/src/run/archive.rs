@@ -19,7 +19,8 @@ impl<const D: usize> Owner for Model<D> {
                 a.one("solved", s);
             },
         );
-        archive.part("stepper", self.stages.now.as_mut());
+        let (stepper, body) = (&mut self.stages.now, &self.system.body);
+        archive.within("stepper", |archive| stepper.archive(body, archive));
         archive.part("system", &mut self.system);
     }
 }

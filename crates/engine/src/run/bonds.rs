@@ -1,5 +1,6 @@
 //! Factors of bonds: heterogeneous bodies and weak planes.
 
+use super::agreed::agreed;
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::family::periods;
@@ -24,6 +25,7 @@ pub(super) fn scale<const D: usize>(
         match factor {
             BondFactorSpec::Field(field) => {
                 let mut at = vec![1.0; body.len()];
+                let mut wrong = Ok(());
                 for &s in body.slots() {
                     let x = body.position(s as usize);
                     let value = field.eval(&x, 0.0);
@@ -33,11 +35,13 @@ pub(super) fn scale<const D: usize>(
                             field.source(),
                             &x[..D]
                         );
-                        return Err(BuildError::invalid(path, message)
+                        wrong = Err(BuildError::invalid(path.clone(), message)
                             .help("exp(…) and max(…, 0) are never negative"));
+                        break;
                     }
                     at[s as usize] = value;
                 }
+                agreed(body, wrong)?;
                 body.exchange().fill(&mut at);
                 let scaled =
                     |i: usize, j: usize, _| pair(mean(spec.interactions.interface, at[i], at[j]));
@@ -68,7 +72,7 @@ pub(super) fn scale<const D: usize>(
                     pair(if crosses { *factor } else { 1.0 })
                 };
                 interaction.scale_bonds(body, &scaled).map_err(named)?;
-                if !found.get() {
+                if !body.exchange().any(found.get()) {
                     warnings.push(format!(
                         "no bond crosses the shape of bonds entry {}",
                         n + 1

@@ -1,6 +1,7 @@
 //! What may be asked of a model beside its motion.
 
 use super::equilibrium::problem::Problem;
+use super::equilibrium::whole::whole_support;
 use super::model::Model;
 use super::system::System;
 use super::{AtomBond, Examined, Families, ModeShape, record};
@@ -53,31 +54,47 @@ impl<const D: usize> Examined for Model<D> {
     }
 
     fn linear_body(&mut self) -> AnyLinearBody {
-        let body = LinearBody {
-            carriers: self.names.carriers.clone(),
-            ..self.system.linear_now()
-        };
-        AnyLinearBody::new(body).expect("there are three dimensions")
+        linear_of_all(self).expect("this rank has it")
     }
 
     fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError> {
-        // the linear body is that of bonds
-        let mut loads = self.system.applied.loads.iter();
-        if loads.any(Load::changes_with_place) {
-            return Err(SolveError::PointStiffness);
-        }
-        // of a body that was loaded those of the motion that follows
-        let next = self.stages.due(self.system.clock.step());
-        let prescribed = next.map_or(&self.system.prescribed, |next| &next.prescribed);
-        let support = self.system.held_by(prescribed);
-        let body = self.system.linear_now();
-        let padded = |x: &[f64; D]| crate::array::from_fn(|a| if a < D { x[a] } else { 0.0 });
-        let shape = |m: &Mode<D>| ModeShape {
-            square: m.square,
-            frequency: m.frequency(),
-            shape: m.shape.iter().map(padded).collect(),
-        };
-        let found = modes::lowest(&body, &support, count)?;
-        Ok(found.iter().map(shape).collect())
+        Ok(modes_of_all(self, count)?.expect("this rank has them"))
     }
+}
+
+/// [`Examined::linear_body`] of all ranks, on the first.
+pub(super) fn linear_of_all<const D: usize>(model: &mut Model<D>) -> Option<AnyLinearBody> {
+    let body = LinearBody {
+        carriers: model.names.carriers.clone(),
+        ..model.system.linear_now()?
+    };
+    Some(AnyLinearBody::new(body).expect("there are three dimensions"))
+}
+
+/// [`Examined::modes`] of all ranks, on the first.
+pub(super) fn modes_of_all<const D: usize>(
+    model: &mut Model<D>,
+    count: usize,
+) -> Result<Option<Vec<ModeShape>>, SolveError> {
+    // the linear body is that of bonds
+    let mut loads = model.system.applied.loads.iter();
+    if loads.any(Load::changes_with_place) {
+        return Err(SolveError::PointStiffness);
+    }
+    // of a body that was loaded those of the motion that follows
+    let next = model.stages.due(model.system.clock.step());
+    let prescribed = next.map_or(&model.system.prescribed, |next| &next.prescribed);
+    let support = model.system.held_by(prescribed);
+    let support = whole_support(&model.system.body, &support);
+    let Some((body, support)) = model.system.linear_now().zip(support) else {
+        return Ok(None);
+    };
+    let padded = |x: &[f64; D]| crate::array::from_fn(|a| if a < D { x[a] } else { 0.0 });
+    let shape = |m: &Mode<D>| ModeShape {
+        square: m.square,
+        frequency: m.frequency(),
+        shape: m.shape.iter().map(padded).collect(),
+    };
+    let found = modes::lowest(&body, &support, count)?;
+    Ok(Some(found.iter().map(shape).collect()))
 }

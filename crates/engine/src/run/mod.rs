@@ -19,7 +19,6 @@ mod examined;
 mod faces;
 mod feasible;
 mod gaps;
-mod gathered;
 mod healing;
 mod implicit;
 mod indenters;

@@ -1,6 +1,5 @@
 //! The running model: a system, the stages that move it, and what may be asked of it.
 
-use super::gathered::Gathered;
 use super::names::Names;
 use super::probes::state::Probe;
 use super::stages::Stages;
@@ -89,7 +88,7 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn state_hash(&mut self) -> StateHash {
         self.finish();
-        hashed(&mut self.system, &Gathered::Own)
+        hashed(&mut self.system)
     }
 
     fn set_column(&mut self, name: &str, values: &[f64]) -> bool {

@@ -144,6 +144,9 @@ impl<const D: usize> State for View<'_, D> {
         system
             .interaction
             .each_partner(body, &mut |i, j, xi, state| {
+                if state == BondStatus::Absent {
+                    return;
+                }
                 let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
                 let eta: [f64; D] = crate::array::from_fn(|a| u[a][j] - u[a][i]);
                 visit(FamilyBond {

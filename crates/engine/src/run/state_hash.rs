@@ -3,7 +3,6 @@
 //! Points are hashed by id in blocks, bonds by the ids of their ends and the image that they lead to: how points and bonds lie in memory does not
 //! show. A bond that is whole adds nothing, so that a body where nothing broke costs a walk over its bonds.
 
-use super::gathered::Gathered;
 use super::system::System;
 use crate::body::{Field, view};
 use crate::columns::{Life, On};
@@ -69,15 +68,15 @@ impl<const D: usize> Bonds<'_, D> {
 }
 
 /// Of the model of all ranks on the first of them; others help.
-pub(super) fn hashed<const D: usize>(system: &mut System<D>, all: &Gathered) -> StateHash {
+pub(super) fn hashed<const D: usize>(system: &mut System<D>) -> StateHash {
     system.refresh_images();
     StateHash {
-        state: hash_of_state(system, all),
+        state: hash_of_state(system),
         ledger: hash_of_ledger(system),
     }
 }
 
-fn hash_of_state<const D: usize>(system: &System<D>, all: &Gathered) -> u64 {
+fn hash_of_state<const D: usize>(system: &System<D>) -> u64 {
     let mut words = Words::default();
     let points = system.body.all_points() as u64;
     words.put([
@@ -86,7 +85,7 @@ fn hash_of_state<const D: usize>(system: &System<D>, all: &Gathered) -> u64 {
         system.clock.step(),
         system.clock.shown().to_bits(),
     ]);
-    let points = digests_of_points(system, all);
+    let points = digests_of_points(system);
     for (digest, bonds) in points.into_iter().zip(sums_of_bonds(system)) {
         words.put([digest, bonds]);
     }
@@ -97,7 +96,7 @@ fn hash_of_state<const D: usize>(system: &System<D>, all: &Gathered) -> u64 {
 }
 
 /// Of each block, all that its points remember.
-fn digests_of_points<const D: usize>(system: &System<D>, all: &Gathered) -> Vec<u64> {
+fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
     let mut columns: Vec<(Cow<'static, str>, Owner)> = vec![
         ("displacement".into(), Owner::Displacement),
         ("velocity".into(), Owner::Velocity),
@@ -127,7 +126,7 @@ fn digests_of_points<const D: usize>(system: &System<D>, all: &Gathered) -> Vec<
                 (each, own.copied().collect())
             }
         };
-        if let Some(values) = all.columns(each, own) {
+        if let Some(values) = system.body.whole(each, own) {
             chain(&mut digests, (&name, each), &values);
         }
     }

@@ -4,7 +4,7 @@ use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::interaction::Interaction;
 use crate::law::BondFactors;
-use crate::spec::{SurfaceFactor, SurfaceFactors};
+use crate::spec::{Spec, SurfaceFactor, SurfaceFactors};
 use std::collections::HashMap;
 
 /// Factors of the bonds of a body by its slots.
@@ -17,11 +17,9 @@ pub(super) struct Factors<'a, const D: usize> {
 
 impl<'a, const D: usize> Factors<'a, D> {
     pub fn new(surface: &'a SurfaceFactors, body: &Body<D>) -> Factors<'a, D> {
+        let ids = body.ids_of_all();
         let mut row = vec![0u32; body.len()];
-        for (slot, r) in body.slots().iter().zip(&surface.row) {
-            row[*slot as usize] = *r;
-        }
-        body.exchange().fill(&mut row);
+        body.set_points(&mut row, |slot| surface.row[ids[slot] as usize]);
         let of_row = |bonds: &Vec<([i32; 3], SurfaceFactor)>| {
             let bonds = bonds.iter();
             bonds
@@ -54,13 +52,13 @@ pub(super) fn scale<const D: usize>(
     body: &mut Body<D>,
     interaction: &mut dyn Interaction<D>,
 ) -> Result<(), BuildError> {
-    let points = body.points();
+    let points = body.all_points();
     let rows = surface.rows.len();
     let fits = surface.row.len() == points
         && surface.part.len() == rows
         && surface.row.iter().all(|r| (*r as usize) < rows)
         && surface.part.iter().all(|p| *p > 0.0 && *p <= 1.0);
-    let (true, Layout::Grid(_), Some(cell)) = (fits, body.layout(), body.volume().uniform()) else {
+    let (true, Layout::Grid(_), Some(_)) = (fits, body.layout(), body.volume().uniform()) else {
         return Err(BuildError::conflict(
             "surface",
             format!(
@@ -81,16 +79,46 @@ pub(super) fn scale<const D: usize>(
             }
         })
         .map_err(|e| e.at("surface"))?;
-    if surface.ends_at_points() {
-        let mut volume = vec![0.0; body.len()];
-        body.set_points(&mut volume, |slot| cell * factors.part(slot));
-        body.set_volumes(volume);
-    }
+    end_at_points(surface, body);
     Ok(())
 }
 
+/// Points of a body that ends at its outermost ones get the part of their cells that they hold.
+fn end_at_points<const D: usize>(surface: &SurfaceFactors, body: &mut Body<D>) {
+    let Some(cell) = body.volume().uniform().filter(|_| surface.ends_at_points()) else {
+        return;
+    };
+    let ids = body.ids_of_all();
+    let part = |slot: usize| surface.part[surface.row[ids[slot] as usize] as usize];
+    let mut volume = vec![0.0; body.len()];
+    body.set_points(&mut volume, |slot| cell * part(slot));
+    drop(ids);
+    body.set_volumes(volume);
+}
+
+/// A whole body with the volumes that its points have once the bonds near its surfaces are scaled; `None`: it has them.
+pub(super) fn ended<const D: usize>(spec: &Spec, body: &Body<D>) -> Option<Body<D>> {
+    let surfaces = spec.body.pieces().iter().map(|p| p.surface.as_ref());
+    let surfaces: Vec<_> = surfaces.chain([spec.bonds.surface.as_ref()]).collect();
+    if !surfaces.iter().flatten().any(|s| s.ends_at_points()) {
+        return None;
+    }
+    let mut body = body.clone();
+    match &spec.bonds.surface {
+        Some(surface) => end_at_points(surface, &mut body),
+        None => {
+            for (n, surface) in surfaces.iter().enumerate() {
+                let Some(surface) = surface else { continue };
+                body.change_piece(n, |piece| end_at_points(surface, piece));
+            }
+            body.join_volumes();
+        }
+    }
+    Some(body)
+}
+
 /// The factors of a block that has the corners of a body filling its box: the same distance from the nearest face along
-/// every axis. `None` if the body does not fill its box.
+/// every axis. `None` if the body does not fill its box. All ranks ask at once.
 pub(super) fn of_block<const D: usize>(
     surface: &SurfaceFactors,
     body: &Body<D>,
@@ -101,13 +129,12 @@ pub(super) fn of_block<const D: usize>(
     };
     let own = |grid: &crate::body::Grid<D>, a: usize| (grid.cells()[a] - 2 * grid.halo()[a]) as i64;
     let full: i64 = (0..D).map(|a| own(whole, a)).product();
-    if full != body.points() as i64 {
+    if full != body.all_points() as i64 {
         return None;
     }
-    let mut row = vec![0u32; body.len()];
-    for (slot, r) in body.slots().iter().zip(&surface.row) {
-        row[*slot as usize] = *r;
-    }
+    let ids = body.ids_of_all();
+    let mut here = vec![false; body.len()];
+    body.slots().iter().for_each(|s| here[*s as usize] = true);
     let of = |slot: u32| {
         let (c, _) = small.cell(slot as usize);
         let there = crate::array::from_fn(|a| {
@@ -115,14 +142,17 @@ pub(super) fn of_block<const D: usize>(
             let (n, m) = (own(whole, a), own(small, a));
             whole.halo()[a] as i64 + if 2 * c < m { c } else { n - m + c }
         });
-        whole.slot(there, 0).map(|slot| row[slot])
+        let slot = whole.slot(there, 0).filter(|slot| here[*slot])?;
+        Some(surface.row[ids[slot] as usize])
     };
-    Some(SurfaceFactors {
-        row: block
-            .slots()
-            .iter()
-            .map(|s| of(*s))
-            .collect::<Option<Vec<_>>>()?,
+    // each is of a point that one of the ranks has
+    let own = block.slots().iter().enumerate();
+    let own: Vec<[u32; 2]> = own.filter_map(|(n, s)| Some([n as u32, of(*s)?])).collect();
+    let found = body.all_of(&own).concat();
+    let mut row = vec![0; block.points()];
+    found.iter().for_each(|[n, r]| row[*n as usize] = *r);
+    (found.len() == row.len()).then(|| SurfaceFactors {
+        row,
         ..surface.clone()
     })
 }

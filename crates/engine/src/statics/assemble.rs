@@ -8,12 +8,13 @@ use rayon::prelude::*;
 /// Points per piece of work.
 const CHUNK: usize = 512;
 
-/// The body's micromoduli at displacement `u`, images of which are fresh. State-based laws reach two families.
+/// The body's micromoduli at displacement `u`, images of which are fresh. State-based laws reach two families. Of a body that ranks share the first has
+/// it, `None` the others.
 pub fn linear_body<const D: usize>(
     body: &Body<D>,
     interaction: &mut dyn Interaction<D>,
     u: &Field<D>,
-) -> LinearBody<D> {
+) -> Option<LinearBody<D>> {
     linear_body_touching(body, interaction, None, u)
 }
 
@@ -23,22 +24,25 @@ pub fn linear_body_touching<const D: usize>(
     interaction: &mut dyn Interaction<D>,
     contact: Option<&ContactForces<D>>,
     u: &Field<D>,
-) -> LinearBody<D> {
-    let mut id = vec![u32::MAX; body.len()];
-    for (n, &s) in body.slots().iter().enumerate() {
-        id[s as usize] = n as u32;
-    }
+) -> Option<LinearBody<D>> {
+    let ids = body.ids_of_all();
     let mut bonds = Bonds::default();
-    let mut push = |mut bond: BondTangent<D>| {
-        (bond.i, bond.j) = (id[bond.i] as usize, id[bond.j] as usize);
+    interaction.tangents(body, view(u), &mut |mut bond: BondTangent<D>| {
+        (bond.i, bond.j) = (ids[bond.i] as usize, ids[bond.j] as usize);
         bonds.push(&bond);
-    };
-    interaction.tangents(body, view(u), &mut push);
+    });
     if let Some(contact) = contact {
-        contact.tangents(body, u, &mut push);
+        contact.tangents(body, u, &mut |bond| bonds.push(&bond));
     }
+    let bonds = bonds.of_all(body);
+    let gain = body.by_id(|slot| interaction.gain(slot));
+    let gain = body.whole(1, gain);
+    let position = body.whole(D, body.places().into_flattened());
+    let volume = body.whole(1, body.by_id(|slot| body.volume().at(slot)));
+    let density = body.whole(1, body.by_id(|slot| body.density().at(slot)));
+    let mut bonds = bonds?;
     bonds.sort();
-    let n = body.points();
+    let n = body.all_points();
     let mut first = vec![0; n + 1];
     for b in &bonds.direct {
         first[b.i as usize + 1] += 1;
@@ -46,37 +50,29 @@ pub fn linear_body_touching<const D: usize>(
     for i in 0..n {
         first[i + 1] += first[i];
     }
-    let gain: Vec<f64> = match (bonds.channels, bonds.gained) {
-        (0, _) => vec![],
-        (_, true) => vec![1.0; n],
-        (_, false) => (body.slots().iter())
-            .map(|s| interaction.gain(*s as usize))
-            .collect(),
-    };
     let rows = Rows {
         bonds: &bonds,
         first: &first,
-        gain,
+        gain: match (bonds.channels, bonds.gained) {
+            (0, _) => vec![],
+            (_, true) => vec![1.0; n],
+            (_, false) => gain?,
+        },
     };
     let points: Vec<usize> = (0..n).collect();
     let parts: Vec<Part<D>> = points
         .par_chunks(CHUNK)
         .map_init(|| rows.row(), |row, chunk| rows.part(chunk, row))
         .collect();
-    let at = |s: u32| {
-        let x = body.position(s as usize);
-        crate::array::from_fn(|a| x[a])
-    };
-    let per_point =
-        |v: &crate::body::Values| body.slots().iter().map(|s| v.at(*s as usize)).collect();
+    let entries = parts.iter().map(|p| p.partner.len()).sum();
     let mut made = LinearBody {
-        position: body.slots().iter().map(|s| at(*s)).collect(),
-        volume: per_point(body.volume()),
-        density: per_point(body.density()),
+        position: position?.as_chunks().0.to_vec(),
+        volume: volume?,
+        density: density?,
         period: body.period(),
         start: vec![0],
-        partner: Vec::with_capacity(parts.iter().map(|p| p.partner.len()).sum()),
-        block: Vec::with_capacity(parts.iter().map(|p| p.partner.len()).sum()),
+        partner: Vec::with_capacity(entries),
+        block: Vec::with_capacity(entries),
         carriers: None,
         mass: None,
     };
@@ -86,7 +82,7 @@ pub fn linear_body_touching<const D: usize>(
         made.partner.extend(part.partner);
         made.block.extend(part.block);
     }
-    made
+    Some(made)
 }
 
 /// What a bond does by itself.
@@ -153,6 +149,49 @@ impl<const D: usize> Bonds<D> {
 
     fn channels_of(&self, n: usize) -> &[Channel<D>] {
         &self.through[n * self.channels..(n + 1) * self.channels]
+    }
+
+    /// Those of all ranks, on the first: of each point in their order.
+    fn of_all(mut self, body: &Body<D>) -> Option<Bonds<D>> {
+        if body.subdomain().is_none() {
+            return Some(self);
+        }
+        let none = Channel {
+            share: [0.0; D],
+            pull: [[0.0; D]; 2],
+        };
+        self.widen(body.most(self.channels as f64) as usize, none);
+        let mut all = Bonds {
+            channels: self.channels,
+            gained: body.exchange().any(self.gained),
+            ..Bonds::default()
+        };
+        let mut own: Vec<f64> = vec![];
+        for (n, bond) in self.direct.iter().enumerate() {
+            own.extend([bond.i, bond.j].map(f64::from));
+            own.extend(bond.stiffness.as_flattened());
+            for channel in self.channels_of(n) {
+                own.extend(channel.share);
+                own.extend(channel.pull.as_flattened());
+            }
+        }
+        let numbers = body.joined(own)?;
+        for numbers in numbers.chunks_exact(2 + D * D + 3 * D * all.channels) {
+            let (ends, numbers) = numbers.split_at(2);
+            let (stiffness, through) = numbers.split_at(D * D);
+            let row = |numbers: &[f64]| -> [f64; D] { crate::array::from_fn(|b| numbers[b]) };
+            all.direct.push(DirectBond {
+                i: ends[0] as u32,
+                j: ends[1] as u32,
+                stiffness: crate::array::from_fn(|a| row(&stiffness[a * D..])),
+            });
+            all.through
+                .extend(through.chunks_exact(3 * D).map(|c| Channel {
+                    share: row(c),
+                    pull: [row(&c[D..]), row(&c[2 * D..])],
+                }));
+        }
+        Some(all)
     }
 
     /// Into the order of i; most interactions come in it.

@@ -1,11 +1,13 @@
 //! Conjugate gradients with blocks of the diagonal as preconditioner; every sum has a fixed order.
 
+use super::direct::SYMMETRIC;
 use super::goal::Goal;
-use super::operator::LinearOperator;
+use super::operator::{Assembled, LinearOperator, Shifted};
 use super::solved::Solved;
 use super::support::Support;
-use super::vectors::{add, add_to_multiple, product};
+use super::vectors::{Block, Sums, add, add_to_multiple};
 use crate::error::SolveError;
+use crate::spec::LinearBody;
 
 /// Solves `A x = b` (force) on the free components; held ones keep their `x`.
 ///
@@ -19,6 +21,7 @@ pub fn solve<const D: usize>(
     goal: Goal,
 ) -> Result<Solved, SolveError> {
     let n = operator.points();
+    let sums = operator.sums().clone();
     let preconditioner = Blocks::new(operator, support)?;
     let mut r = vec![[0.0; D]; n];
     operator.apply(x, &mut r);
@@ -26,7 +29,7 @@ pub fn solve<const D: usize>(
         *r = crate::array::from_fn(|a| b[a] - r[a]);
     }
     support.mask(&mut r);
-    let start = operator.sum(product(&r, &r)).sqrt();
+    let start = sums.dot(&r, &r).sqrt();
     if start == 0.0 {
         return Ok(Solved::default());
     }
@@ -37,25 +40,25 @@ pub fn solve<const D: usize>(
     preconditioner.apply(&r, &mut z);
     let mut p = z.clone();
     let mut q = vec![[0.0; D]; n];
-    let mut rz = operator.sum(product(&r, &z));
+    let mut rz = sums.dot(&r, &z);
     for iteration in 1..=goal.most_iterations {
-        goal.go_on()?;
+        goal.go_on(iteration, &sums)?;
         operator.apply(&p, &mut q);
         support.mask(&mut q);
-        let curvature = operator.sum(product(&p, &q));
+        let curvature = sums.dot(&p, &q);
         if !(curvature > 0.0) {
             return Err(if curvature.is_nan() {
                 SolveError::NotFinite
             } else {
                 SolveError::Indefinite {
-                    point: operator.first(Some(most_moved(&p))).unwrap_or(0),
+                    point: most_moved(&p, &sums),
                 }
             });
         }
         let step = rz / curvature;
         add(x, step, &p);
         add(&mut r, -step, &q);
-        let residual = operator.sum(product(&r, &r)).sqrt() / start;
+        let residual = sums.dot(&r, &r).sqrt() / start;
         if residual <= goal.tolerance {
             return Ok(Solved {
                 iterations: iteration,
@@ -63,12 +66,32 @@ pub fn solve<const D: usize>(
             });
         }
         preconditioner.apply(&r, &mut z);
-        let next = operator.sum(product(&r, &z));
+        let next = sums.dot(&r, &z);
         add_to_multiple(&mut p, next / rz, &z);
         rz = next;
     }
-    let left = operator.sum(product(&r, &r)).sqrt();
+    let left = sums.dot(&r, &r).sqrt();
     Err(goal.missed(goal.most_iterations, left / start))
+}
+
+/// As [`solve`] of a linear body with more on its diagonal (`[N]`, force / length; empty: nothing).
+///
+/// # Errors
+/// Those of [`solve`]; the body is not symmetric.
+pub fn solve_assembled<const D: usize>(
+    body: &LinearBody<D>,
+    added: &[Block<D>],
+    support: &Support<D>,
+    b: &[[f64; D]],
+    x: &mut [[f64; D]],
+    goal: Goal,
+) -> Result<Solved, SolveError> {
+    let asymmetry = body.soundness().asymmetry;
+    if asymmetry > SYMMETRIC {
+        return Err(SolveError::NotSymmetric { asymmetry });
+    }
+    let operator = &mut Assembled(body);
+    solve(&mut Shifted { operator, added }, support, b, x, goal)
 }
 
 /// Inverses of the diagonal's blocks on the free components.
@@ -90,7 +113,10 @@ impl<const D: usize> Blocks<D> {
         };
         let blocks = diagonal.iter().zip(&support.free).map(of);
         let blocks: Vec<_> = blocks.collect();
-        match operator.first(blocks.iter().position(Option::is_none)) {
+        match operator
+            .sums()
+            .first(blocks.iter().position(Option::is_none))
+        {
             Some(point) => Err(SolveError::Indefinite { point }),
             None => Ok(Blocks(blocks.into_iter().flatten().collect())),
         }
@@ -128,9 +154,11 @@ fn inverse<const D: usize>(mut a: [[f64; D]; D]) -> Option<[[f64; D]; D]> {
     Some(inverse)
 }
 
-/// Where a motion is largest.
-fn most_moved<const D: usize>(p: &[[f64; D]]) -> usize {
+/// The id where a motion is largest, the first one where many are.
+fn most_moved<const D: usize>(p: &[[f64; D]], sums: &Sums) -> usize {
     let square = |p: &[f64; D]| p.iter().map(|c| c * c).sum::<f64>();
-    let largest = (0..p.len()).max_by(|i, j| square(&p[*i]).total_cmp(&square(&p[*j])));
-    largest.unwrap_or(0)
+    let own = p.iter().map(square).fold(0.0, f64::max);
+    let most = sums.most(own);
+    sums.first(p.iter().position(|p| square(p) == most))
+        .unwrap_or(0)
 }

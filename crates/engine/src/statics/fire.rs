@@ -4,9 +4,8 @@
 //! minimization in atomistic simulations and its implementation in LAMMPS, Comput. Mater. Sci. 175, 109584).
 
 use super::Solved;
-use super::goal::{Goal, Left};
-use super::support::Support;
-use super::vectors::{add, dot};
+use super::goal::{Goal, Imbalance, Left};
+use super::vectors::{Sums, add};
 use crate::error::SolveError;
 
 /// Numbers of Guénolé et al., Table 2: steps downhill before the step grows, by what it grows and shrinks, how much velocities are turned at
@@ -21,7 +20,7 @@ const FIRST: f64 = 0.25;
 const LONGEST: f64 = 1.0;
 const SHORTEST: f64 = 0.01;
 
-/// Moves `x` until `force(x)` vanishes on the free components; masses, `force` and the errors are those of
+/// Moves `x` until `force(x)` vanishes; masses, `force` and the errors are those of
 /// [`relax`](super::relaxation::relax).
 ///
 /// # Errors
@@ -29,28 +28,26 @@ const SHORTEST: f64 = 0.01;
 pub fn minimize<const D: usize>(
     x: &mut [[f64; D]],
     mut mass: Vec<f64>,
-    support: &Support<D>,
-    goal: Goal,
-    mut force: impl FnMut(&mut [[f64; D]], &mut [[f64; D]], &mut [f64]) -> Option<f64>,
+    (goal, sums): (Goal, &Sums),
+    mut force: impl FnMut(&mut [[f64; D]], &mut [[f64; D]], &mut [f64]) -> Option<Imbalance>,
 ) -> Result<Solved, SolveError> {
     let mut f = vec![[0.0; D]; x.len()];
     let mut v = f.clone();
     let (mut step, mut turned, mut downhill) = (FIRST, TURNED, 0);
     let mut left = Left::unknown();
     for iteration in 0..=goal.most_iterations {
-        goal.go_on()?;
-        let Some(scale) = force(x, &mut f, &mut mass) else {
+        goal.go_on(iteration, sums)?;
+        let Some(found) = force(x, &mut f, &mut mass) else {
             v.iter_mut().for_each(|v| *v = [0.0; D]);
             continue;
         };
-        support.mask(&mut f);
-        if goal.is_reached(&mut left, &f, scale)? {
+        if goal.is_reached(&mut left, found)? {
             return Ok(Solved {
                 iterations: iteration,
                 residual: left.residual,
             });
         }
-        if dot(&f, &v) > 0.0 {
+        if sums.dot(&f, &v) > 0.0 {
             downhill += 1;
             if downhill > DELAY {
                 step = (step * GROWS).min(LONGEST);
@@ -65,22 +62,29 @@ pub fn minimize<const D: usize>(
             }
             (turned, downhill) = (TURNED, 0);
         }
-        push(&mut v, &f, &mass, step, turned);
+        push(&mut v, (&f, sums), &mass, step, turned);
         add(x, step, &v);
     }
     Err(goal.missed(goal.most_iterations, left.residual))
 }
 
 /// Velocities after a step, turned toward the accelerations: `v ← (1 − α) v + α a |v|/|a|`, sizes by masses.
-fn push<const D: usize>(v: &mut [[f64; D]], f: &[[f64; D]], mass: &[f64], step: f64, turned: f64) {
-    let [mut fast, mut strong] = [0.0; 2];
+fn push<const D: usize>(
+    v: &mut [[f64; D]],
+    (f, sums): (&[[f64; D]], &Sums),
+    mass: &[f64],
+    step: f64,
+    turned: f64,
+) {
     for ((v, f), m) in v.iter_mut().zip(f).zip(mass) {
         for a in 0..D {
             v[a] += step * f[a] / m;
-            fast += m * v[a] * v[a];
-            strong += f[a] * f[a] / m;
         }
     }
+    let [fast, strong] = sums.each(v.len(), |i| {
+        let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+        [mass[i] * square(&v[i]), square(&f[i]) / mass[i]]
+    });
     let toward = turned * (fast / strong).sqrt();
     for ((v, f), m) in v.iter_mut().zip(f).zip(mass) {
         for a in 0..D {
@@ -92,6 +96,7 @@ fn push<const D: usize>(v: &mut [[f64; D]], f: &[[f64; D]], mass: &[f64], step: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statics::vectors::ALONE;
 
     fn goal(most_iterations: usize) -> Goal {
         Goal {
@@ -106,10 +111,8 @@ mod tests {
         let n = 11;
         let k = |i: usize| if i.is_multiple_of(2) { 1.0 } else { 100.0 };
         let mut x = vec![[0.0]; n];
-        let mut support = Support::none(n);
-        support.free[0][0] = false;
         let mass = (0..n).map(|i| (k(i) + k(i.max(1) - 1)) * 2.0).collect();
-        let solved = minimize(&mut x, mass, &support, goal(most), |x, f, _| {
+        let solved = minimize(&mut x, mass, (goal(most), &ALONE), |x, f, _| {
             f.iter_mut().for_each(|f| *f = [0.0]);
             for i in 0..n - 1 {
                 let pull = k(i) * (x[i + 1][0] - x[i][0]);
@@ -117,7 +120,11 @@ mod tests {
                 f[i + 1][0] -= pull;
             }
             f[n - 1][0] += 0.3;
-            Some(0.3)
+            f[0][0] = 0.0;
+            Some(Imbalance {
+                size: ALONE.norm(f),
+                scale: 0.3,
+            })
         });
         solved.map(|s| (s, x[n - 1][0]))
     }
@@ -138,10 +145,13 @@ mod tests {
     fn a_double_well_is_left_downhill() {
         // U = (x² − 1)², from just beside its top
         let mut x = vec![[0.01]];
-        let support = Support::none(1);
-        let solved = minimize(&mut x, vec![8.0], &support, goal(10_000), |x, f, _| {
+        let goal = (goal(10_000), &ALONE);
+        let solved = minimize(&mut x, vec![8.0], goal, |x, f, _| {
             f[0][0] = -4.0 * x[0][0] * (x[0][0] * x[0][0] - 1.0);
-            Some(1.0)
+            Some(Imbalance {
+                size: ALONE.norm(f),
+                scale: 1.0,
+            })
         });
         assert!(solved.is_ok() && (x[0][0] - 1.0).abs() < 1e-9, "{x:?}");
     }

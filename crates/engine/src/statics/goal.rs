@@ -1,6 +1,6 @@
 //! When an iteration ends.
 
-use super::vectors::norm;
+use super::vectors::Sums;
 use crate::error::SolveError;
 
 /// Loads and reactions of this part of the greatest residual are none.
@@ -14,6 +14,16 @@ pub struct Goal {
     pub most_iterations: usize,
     /// Asked in every iteration: has somebody had enough?
     pub stop: fn() -> bool,
+}
+
+/// Iterations between questions of ranks whether somebody has had enough.
+const ASKED: usize = 16;
+
+/// Forces on free components, and the loads and reactions that they are compared with: sizes of all (force).
+#[derive(Debug, Clone, Copy)]
+pub struct Imbalance {
+    pub size: f64,
+    pub scale: f64,
 }
 
 /// What is left of the forces on points that seek their equilibrium.
@@ -39,27 +49,24 @@ impl Left {
 
 impl Goal {
     /// # Errors
-    /// Somebody has had enough.
-    pub fn go_on(&self) -> Result<(), SolveError> {
-        if (self.stop)() {
-            Err(SolveError::Stopped)
-        } else {
-            Ok(())
+    /// Somebody has had enough, on any rank; ranks ask each other now and then.
+    pub fn go_on(&self, iteration: usize, sums: &Sums) -> Result<(), SolveError> {
+        if sums.are_shared() && !iteration.is_multiple_of(ASKED) {
+            return Ok(());
+        }
+        match sums.any((self.stop)()) {
+            true => Err(SolveError::Stopped),
+            false => Ok(()),
         }
     }
 
-    /// Is little enough left in forces `f` on the free components beside loads and reactions of this size (force)? Where nothing bears a load in the
-    /// end, what is left is compared with what moved the points.
+    /// Is little enough left in forces on the free components? Where nothing bears a load in the end, what is left is compared with what moved the points.
     ///
     /// # Errors
     /// A force is not a number.
-    pub(super) fn is_reached<const D: usize>(
-        &self,
-        left: &mut Left,
-        f: &[[f64; D]],
-        scale: f64,
-    ) -> Result<bool, SolveError> {
-        left.size = norm(f);
+    pub(super) fn is_reached(&self, left: &mut Left, found: Imbalance) -> Result<bool, SolveError> {
+        let Imbalance { size, scale } = found;
+        left.size = size;
         if !left.size.is_finite() {
             return Err(SolveError::NotFinite);
         }

@@ -1,9 +1,8 @@
 //! Operators on displacements: `A u`, the forces that hold a body at u (force per point).
 
 use super::support::Support;
-use super::vectors::{Block, dot, norm};
+use super::vectors::{ALONE, Block, Sums};
 use crate::body::{Body, Field, view, view_mut, zeros};
-use crate::execute::exact::Exact;
 use crate::interaction::{Interaction, Sweep};
 use crate::spec::LinearBody;
 use rayon::prelude::*;
@@ -18,13 +17,9 @@ pub trait LinearOperator<const D: usize> {
     fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]);
     /// Blocks of A on the diagonal, or of an operator near to it.
     fn diagonal(&mut self) -> Vec<[[f64; D]; D]>;
-    /// A sum over the points of all ranks, of which this one has a part.
-    fn sum(&self, own: Exact) -> f64 {
-        own.value()
-    }
-    /// The first of all ranks' points at which something was found.
-    fn first(&self, found: Option<usize>) -> Option<usize> {
-        found
+    /// Over its points.
+    fn sums(&self) -> &Sums {
+        &ALONE
     }
 }
 
@@ -35,24 +30,25 @@ pub fn asymmetry<const D: usize>(
     support: &Support<D>,
 ) -> f64 {
     let n = operator.points();
-    let vector = |step: f64| {
-        let at =
-            |i: usize| crate::array::from_fn(|a| ((i * D + a + 1) as f64 * step).fract() - 0.5);
+    let vector = |step: f64, sums: &Sums| {
+        let number = |i: usize, a: usize| (sums.id(i) * D + a + 1) as f64;
+        let at = |i: usize| crate::array::from_fn(|a| (number(i, a) * step).fract() - 0.5);
         let mut x: Vec<[f64; D]> = (0..n).map(at).collect();
         support.mask(&mut x);
         x
     };
     // of the golden and the silver ratio: no lattice is in step with both
+    let sums = operator.sums().clone();
     let (x, y) = (
-        vector(0.618_033_988_749_894_9),
-        vector(0.414_213_562_373_095_1),
+        vector(0.618_033_988_749_894_9, &sums),
+        vector(0.414_213_562_373_095_1, &sums),
     );
     let mut product = vec![[0.0; D]; n];
     operator.apply(&y, &mut product);
     support.mask(&mut product);
-    let (there, size) = (dot(&x, &product), norm(&x) * norm(&product));
+    let (there, size) = (sums.dot(&x, &product), sums.norm(&x) * sums.norm(&product));
     operator.apply(&x, &mut product);
-    let back = dot(&y, &product);
+    let back = sums.dot(&y, &product);
     if size > 0.0 {
         (there - back).abs() / size
     } else {
@@ -107,6 +103,10 @@ impl<const D: usize> LinearOperator<D> for Shifted<'_, D> {
         self.operator.points()
     }
 
+    fn sums(&self) -> &Sums {
+        self.operator.sums()
+    }
+
     fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]) {
         self.operator.apply(x, y);
         for ((y, x), block) in y.iter_mut().zip(x).zip(self.added) {
@@ -139,13 +139,16 @@ pub const SMALL: f64 = 1e-60;
 pub struct Swept<'a, const D: usize> {
     body: &'a Body<D>,
     interaction: &'a mut dyn Interaction<D>,
+    sums: &'a Sums,
     u: Field<D>,
     f: Field<D>,
 }
 
 impl<'a, const D: usize> Swept<'a, D> {
-    pub fn new(body: &'a Body<D>, interaction: &'a mut dyn Interaction<D>) -> Self {
+    /// With sums over the points of the body, in order of ids.
+    pub fn new(body: &'a Body<D>, interaction: &'a mut dyn Interaction<D>, sums: &'a Sums) -> Self {
         Swept {
+            sums,
             u: body.at_rest(),
             f: zeros(body.len()),
             body,
@@ -159,9 +162,13 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
         self.body.points()
     }
 
+    fn sums(&self) -> &Sums {
+        self.sums
+    }
+
     fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]) {
         let body = self.body;
-        let peak = x.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
+        let peak = self.sums.largest(x);
         if peak == 0.0 {
             y.fill([0.0; D]);
             return;

@@ -1,10 +1,9 @@
 //! Adaptive dynamic relaxation: a damped motion with made-up masses that ends in equilibrium, whatever the law (Underwood 1983;
 //! for peridynamics Kilic & Madenci 2010).
 
-use super::goal::{Goal, Left};
+use super::goal::{Goal, Imbalance, Left};
 use super::solved::Solved;
-use super::support::Support;
-use super::vectors::{add, dot};
+use super::vectors::{Sums, add};
 use crate::error::SolveError;
 
 /// Stiffness over mass (of a step of 1) above which a step leads away: what is stable to 4 has met more than its masses bear.
@@ -12,9 +11,9 @@ const BEARS: f64 = 3.6;
 /// What masses are made for.
 const MEANT: f64 = 2.0;
 
-/// Moves `x` until `force(x)` (force on every component) vanishes on the free ones. `mass` per point makes a step of 1 stable:
-/// at least a quarter of the largest eigenvalue of stiffness over mass. `force` raises it where it meets more stiffness, and returns the force that
-/// residuals are compared with, or `None`: it put `x` back to where it was before it met that. Where the stiffness depends on the way (`path`: what flows
+/// Moves `x` until `force(x)` (force on every component, 0 on held ones) vanishes. `mass` per point makes a step of 1 stable:
+/// at least a quarter of the largest eigenvalue of stiffness over mass. `force` raises it where it meets more stiffness, and returns how much is left and what
+/// that is compared with, or `None`: it put `x` back to where it was before it met that. Where the stiffness depends on the way (`path`: what flows
 /// is softer than what unloads), masses of points that meet more than theirs bear are doubled, and all goes on from rest where the least was left
 /// (Underwood's error of the apparent frequency).
 ///
@@ -23,10 +22,9 @@ const MEANT: f64 = 2.0;
 pub fn relax<const D: usize>(
     x: &mut [[f64; D]],
     mut mass: Vec<f64>,
-    support: &Support<D>,
-    goal: Goal,
+    (goal, sums): (Goal, &Sums),
     path: bool,
-    mut force: impl FnMut(&mut [[f64; D]], &mut [[f64; D]], &mut [f64]) -> Option<f64>,
+    mut force: impl FnMut(&mut [[f64; D]], &mut [[f64; D]], &mut [f64]) -> Option<Imbalance>,
 ) -> Result<Solved, SolveError> {
     let n = x.len();
     let mut f = vec![[0.0; D]; n];
@@ -37,31 +35,20 @@ pub fn relax<const D: usize>(
     // where the least was left
     let mut least = (f64::INFINITY, if path { x.to_vec() } else { vec![] });
     for iteration in 0..=goal.most_iterations {
-        goal.go_on()?;
-        let Some(scale) = force(x, &mut f, &mut mass) else {
+        goal.go_on(iteration, sums)?;
+        let Some(found) = force(x, &mut f, &mut mass) else {
             for all in [&mut v, &mut moved] {
                 all.iter_mut().for_each(|x| *x = [0.0; D]);
             }
             continue;
         };
-        support.mask(&mut f);
-        if goal.is_reached(&mut left, &f, scale)? {
+        if goal.is_reached(&mut left, found)? {
             return Ok(Solved {
                 iterations: iteration,
                 residual: left.residual,
             });
         }
-        // Rayleigh's quotient of what has moved, with the stiffness that the last step met
-        let mut stiffness = 0.0;
-        for i in 0..n {
-            for a in 0..D {
-                if v[i][a] != 0.0 {
-                    let k = (before[i][a] - f[i][a]) / v[i][a];
-                    stiffness += moved[i][a] * moved[i][a] * k;
-                }
-            }
-        }
-        if path && grow(&mut mass, [&before, &f], &v) {
+        if path && grow((&mut mass, sums), [&before, &f], &v) {
             for all in [&mut v, &mut moved] {
                 all.iter_mut().for_each(|x| *x = [0.0; D]);
             }
@@ -74,11 +61,18 @@ pub fn relax<const D: usize>(
             least.0 = left.size;
             least.1.copy_from_slice(x);
         }
-        let weight: f64 = moved
-            .iter()
-            .zip(&mass)
-            .map(|(u, m)| m * u.iter().map(|c| c * c).sum::<f64>())
-            .sum();
+        // Rayleigh's quotient of what has moved, with the stiffness that the last step met
+        let [stiffness, weight] = sums.each(n, |i| {
+            let [mut stiffness, mut square] = [0.0; 2];
+            for a in 0..D {
+                let way = moved[i][a] * moved[i][a];
+                square += way;
+                if v[i][a] != 0.0 {
+                    stiffness += way * ((before[i][a] - f[i][a]) / v[i][a]);
+                }
+            }
+            [stiffness, mass[i] * square]
+        });
         let quotient = if weight > 0.0 {
             stiffness / weight
         } else {
@@ -91,13 +85,12 @@ pub fn relax<const D: usize>(
             }
         }
         // a step against the force has overshot
-        if dot(&v, &f) < 0.0 {
+        if sums.dot(&v, &f) < 0.0 {
             v.iter_mut().for_each(|v| *v = [0.0; D]);
             for i in 0..n {
                 v[i] = f[i].map(|f| 0.5 * f / mass[i]);
             }
         }
-        support.mask(&mut v);
         add(x, 1.0, &v);
         add(&mut moved, 1.0, &v);
         std::mem::swap(&mut before, &mut f);
@@ -107,7 +100,7 @@ pub fn relax<const D: usize>(
 
 /// Doubles masses of points that have met more stiffness in the step `v` than theirs bear, if the whole step has: from forces `before` to `after`.
 fn grow<const D: usize>(
-    mass: &mut [f64],
+    (mass, sums): (&mut [f64], &Sums),
     [before, after]: [&[[f64; D]]; 2],
     v: &[[f64; D]],
 ) -> bool {
@@ -119,12 +112,10 @@ fn grow<const D: usize>(
         }
         [met, square]
     };
-    let [mut met, mut borne] = [0.0; 2];
-    for (i, m) in mass.iter().enumerate() {
-        let [own, square] = of(i);
-        met += own;
-        borne += m * square;
-    }
+    let [met, borne] = sums.each(mass.len(), |i| {
+        let [met, square] = of(i);
+        [met, mass[i] * square]
+    });
     if !(met > BEARS * borne) {
         return false;
     }
@@ -140,6 +131,7 @@ fn grow<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statics::vectors::ALONE;
 
     fn goal() -> Goal {
         Goal {
@@ -162,13 +154,13 @@ mod tests {
         let relaxed = |path: bool| {
             let mut x = vec![[0.0]; 3];
             x[2][0] = 0.012;
-            let mut support = Support::none(3);
-            support.free[0][0] = false;
-            support.free[2][0] = false;
-            let solved = relax(&mut x, vec![2e-3; 3], &support, goal(), path, |x, f, _| {
+            let solved = relax(&mut x, vec![2e-3; 3], (goal(), &ALONE), path, |x, f, _| {
                 let [low, high] = [x[1][0] - x[0][0], x[2][0] - x[1][0]].map(pull);
                 f[1][0] = high - low;
-                Some(0.006)
+                Some(Imbalance {
+                    size: ALONE.norm(f),
+                    scale: 0.006,
+                })
             });
             (solved, x[1][0])
         };

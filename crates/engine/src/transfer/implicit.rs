@@ -3,8 +3,7 @@
 use super::{Places, Rows, Touching, Transfer};
 use crate::body::Body;
 use crate::error::SolveError;
-use crate::execute::exact::Exact;
-use crate::statics::{Goal, LinearOperator, Support, cg, product};
+use crate::statics::{Goal, LinearOperator, Sums, Support, cg};
 
 /// Rounds of Newton's method; radiation alone needs more than one.
 const ROUNDS: usize = 50;
@@ -16,6 +15,7 @@ const ROUND_OFF: f64 = 1e-15;
 /// `diag(own) − g`: what values take to be changed.
 struct Operator<'a, const D: usize> {
     of: (&'a Body<D>, &'a Places),
+    sums: &'a Sums,
     rows: &'a Rows,
     touching: Option<&'a Touching>,
     /// On the diagonal beside the bonds.
@@ -32,16 +32,8 @@ impl<const D: usize> LinearOperator<1> for Operator<'_, D> {
         self.own.len()
     }
 
-    fn sum(&self, own: Exact) -> f64 {
-        self.of.0.sums([own])[0]
-    }
-
-    /// By id of all ranks.
-    fn first(&self, found: Option<usize>) -> Option<usize> {
-        let (body, places) = self.of;
-        let id = |place: usize| body.number(places.here()[place] as usize) as f64 - 1.0;
-        let least = body.least(found.map_or(f64::INFINITY, id));
-        least.is_finite().then_some(least as usize)
+    fn sums(&self) -> &Sums {
+        self.sums
     }
 
     fn apply(&mut self, x: &[[f64; 1]], y: &mut [[f64; 1]]) {
@@ -120,7 +112,7 @@ impl Transfer {
         more: impl Fn(usize, f64) -> f64,
     ) -> Result<(), SolveError> {
         self.place(body, places, t);
-        let norm = |x: &[[f64; 1]]| body.sums([product(x, x)])[0].sqrt();
+        let sums = Sums::of(body, places.here());
         let support = Support {
             free: self.held.iter().map(|held| [!held]).collect(),
         };
@@ -134,13 +126,13 @@ impl Transfer {
             }
             let terms = { own.iter().zip(self.rows.totals()).zip(&self.value) }
                 .map(|((own, g), value)| [(own + theta * g) * value]);
-            let floor = ROUND_OFF * norm(&terms.collect::<Vec<_>>());
+            let floor = ROUND_OFF * sums.norm(&terms.collect::<Vec<_>>());
             let each = self.flow.iter().zip(&self.value).enumerate();
             let mut left: Vec<[f64; 1]> = each
                 .map(|(i, (p, value))| [theta * p + more(i, *value)])
                 .collect();
             support.mask(&mut left);
-            residual = norm(&left);
+            residual = sums.norm(&left);
             if !residual.is_finite() {
                 return Err(SolveError::NotFinite);
             }
@@ -151,6 +143,7 @@ impl Transfer {
             }
             let mut operator = Operator {
                 of: (body, places),
+                sums: &sums,
                 rows: &self.rows,
                 touching: self.touching.as_ref(),
                 own: &own,

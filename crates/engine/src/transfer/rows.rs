@@ -5,7 +5,7 @@ use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::for_each_piece;
 use crate::execute::memory;
-use crate::interaction::{BondStatus, Interaction};
+use crate::interaction::{BondStatus, EachBond, Interaction};
 
 /// Of every directed bond, row by row; points stand in the order of their [places](Places).
 #[derive(Debug, Clone)]
@@ -41,6 +41,19 @@ pub struct Surface<'a, const D: usize> {
     pub moment: &'a dyn Fn(usize) -> Option<f64>,
 }
 
+/// The bonds that damage counts, seen from each of their points.
+fn each_counted<const D: usize>(
+    body: &Body<D>,
+    interaction: &dyn Interaction<D>,
+    visit: &mut EachBond<D>,
+) {
+    interaction.each_partner(body, &mut |i, j, xi, state| {
+        if state != BondStatus::Absent {
+            visit(i, j, xi, state);
+        }
+    });
+}
+
 impl Rows {
     /// `g_ij = D k ω ν (1/m_i + 1/m_j) V_i V_j` of every whole bond, `m_i = Σ_j ω ν |ξ|² V_j` over these, and k the harmonic mean of
     /// both ends' conductivities; 0 of bonds that are broken from the start. Of a body that is exact at its surface each is multiplied with its
@@ -54,7 +67,9 @@ impl Rows {
         let place = |slot: usize| of.places.at(slot);
         let volume = |slot: usize| body.volume().at(slot);
         let mut start = vec![0usize; points + 1];
-        interaction.each_partner(body, &mut |i, _, _, _| start[place(i) + 1] += 1);
+        each_counted(body, interaction, &mut |i, _, _, _| {
+            start[place(i) + 1] += 1
+        });
         for n in 1..=points {
             start[n] += start[n - 1];
         }
@@ -67,20 +82,21 @@ impl Rows {
             total: vec![0.0; points],
             start,
         };
+        let ids = body.ids_of_all();
         let weight = |i: usize, j: usize, xi: &[f64; D], r: f64| {
             let weight = (of.weight)(i, j, xi, r);
             let Some(surface) = &of.surface else {
                 return weight;
             };
             // one factor for both ends
-            let factor = match i < j {
+            let factor = match ids[i] < ids[j] {
                 true => (surface.factor)(i, j, xi),
                 false => (surface.factor)(j, i, &xi.map(|x| -x)),
             };
             weight * factor
         };
         let mut next = rows.start.clone();
-        interaction.each_partner(body, &mut |i, j, xi, _| {
+        each_counted(body, interaction, &mut |i, j, xi, _| {
             let square: f64 = xi.iter().map(|x| x * x).sum();
             let [a, b] = [(of.conductivity)(i), (of.conductivity)(j)];
             let k = match a == b {
@@ -97,12 +113,11 @@ impl Rows {
         if let Some(surface) = &of.surface {
             // a full family has those, too, that were never there
             let mut absent = vec![0.0; points];
-            interaction.each_bond(body, &mut |i, j, xi, state| {
+            interaction.each_partner(body, &mut |i, j, xi, state| {
                 if state == BondStatus::Absent {
                     let square: f64 = xi.iter().map(|x| x * x).sum();
                     let weight = weight(i, j, &xi, square.sqrt());
                     absent[place(i)] += weight * square * volume(j);
-                    absent[place(j)] += weight * square * volume(i);
                 }
             });
             for slot in body.slots() {
@@ -147,7 +162,7 @@ impl Rows {
         let mut next = self.start.clone();
         let mut moment = vec![0.0; places.count()];
         let (conductance, part) = (&mut self.conductance, &self.part);
-        interaction.each_partner(body, &mut |i, _, _, state| {
+        each_counted(body, interaction, &mut |i, _, _, state| {
             let row = places.at(i);
             let at = next[row];
             next[row] += 1;

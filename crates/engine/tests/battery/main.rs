@@ -34,3 +34,9 @@ mod waves;
 mod allocations;
 
 use allocations::allocations;
+
+/// As its user would run it.
+#[test]
+fn a_law_from_outside_runs() {
+    own_law::main();
+}

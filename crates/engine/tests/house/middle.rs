@@ -19,7 +19,8 @@ const MIDDLE: &[(&str, &str, [usize; 3])] = &[
     (
         "equilibrium/problem.rs",
         "impl<const D: usize> Problem<'_, D> {",
-        [1, 45, 11],
+        // sums over the points of all ranks, and what the first one solves for all
+        [2, 46, 11],
     ),
 ];
 /// Methods of `Simulation`, `Steered` and `Examined`.

@@ -15,7 +15,7 @@ use super::atomic::{WriteError, create_directory, write_file};
 use super::folder::{CHECKPOINT, WAITING};
 
 /// What files begin with; the number is that of the format.
-const MAGIC: &[u8; 24] = b"peridyne checkpoint 005\n";
+const MAGIC: &[u8; 24] = b"peridyne checkpoint 006\n";
 /// Bytes of a block.
 const BLOCK: usize = 1 << 20;
 /// What names of states begin and end with.
@@ -204,6 +204,11 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
+    /// Has a folder of results a state, whole or not?
+    pub fn any(dir: &Path) -> bool {
+        !states(dir).is_empty()
+    }
+
     /// The newest whole state of a folder of results; every block of it was looked at.
     ///
     /// # Errors

@@ -206,9 +206,9 @@ impl Exchange {
         let Some(others) = &self.others else {
             return here;
         };
-        let all = others.comm.all(&[u8::from(here)]);
+        let all = others.comm.all_as_long(&[u8::from(here)]);
         let all = all.unwrap_or_else(|failure| others.comm.end(failure));
-        all.concat().contains(&1)
+        all.contains(&1)
     }
 
     /// Copies of points that other ranks have.

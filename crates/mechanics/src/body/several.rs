@@ -122,9 +122,16 @@ impl<const D: usize> Body<D> {
         self.volume.at(slot) / self.spacing_at(slot)
     }
 
-    /// Volumes of points become those that the pieces have now.
+    /// Volumes of points become those that the pieces have now, of other ranks' points, too.
     pub fn join_volumes(&mut self) {
-        self.volume = join(self.pieces(), &self.slots, self.len, 0.0, |b| &b.volume);
+        let mut volume = vec![0.0; self.len];
+        for p in self.pieces() {
+            for s in p.body.slots.iter().map(|s| *s as usize) {
+                volume[p.first + s] = p.body.volume.at(s);
+            }
+        }
+        self.exchange.fill(&mut volume);
+        self.volume = Values::PerSlot(volume);
     }
 
     /// Points have the horizons of their pieces (length, a number per slot), those of a piece without its own, of `of_pieces`; none have any if no piece has.

@@ -1,8 +1,9 @@
 //! What a part of a body knows of the whole.
 
+use bytemuck::{Pod, cast_slice, pod_read_unaligned};
 use peridyne_comm::Comm;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What a part of a body knows of the whole.
 #[derive(Debug)]
@@ -14,6 +15,8 @@ pub struct Subdomain {
     /// Of a cloud: slots of own points, and what the first one is in the whole.
     own: Range<usize>,
     first: usize,
+    /// Of each rank, on the first, once somebody asked.
+    ids_of_ranks: OnceLock<Vec<Vec<u32>>>,
 }
 
 impl Subdomain {
@@ -30,6 +33,7 @@ impl Subdomain {
             points,
             own: 0..0,
             first: 0,
+            ids_of_ranks: OnceLock::new(),
         }
     }
 
@@ -63,16 +67,42 @@ impl Subdomain {
         &self.of_slots
     }
 
+    /// Ids among all points of those of each rank, on the first; nothing on the others. All ask at once.
+    pub(super) fn ids_of_ranks(&self) -> &[Vec<u32>] {
+        self.ids_of_ranks
+            .get_or_init(|| self.first(&self.ids).unwrap_or_default())
+    }
+
+    /// Numbers of each rank, in their order, on the first. All ask at once.
+    pub(super) fn first<T: Pod>(&self, own: &[T]) -> Option<Vec<Vec<T>>> {
+        let all = self.comm.first(cast_slice(own).to_vec());
+        let all = all.unwrap_or_else(|failure| self.comm.end(failure))?;
+        Some(all.iter().map(|bytes| numbers(bytes)).collect())
+    }
+
+    /// What the first rank has for each. All ask at once.
+    pub(super) fn of_first<T: Pod>(&self, all: Vec<Vec<T>>) -> Vec<T> {
+        let all = all.iter().map(|own| cast_slice(own).to_vec()).collect();
+        let own = self.comm.of_first(all);
+        numbers(&own.unwrap_or_else(|failure| self.comm.end(failure)))
+    }
+
     /// What each rank says, in their order. All ask at once.
     pub(super) fn every<const N: usize>(&self, own: [u8; N]) -> impl Iterator<Item = [u8; N]> {
-        let all = self.comm.all(&own);
+        let all = self.comm.all_as_long(&own);
         let all = all.unwrap_or_else(|failure| self.comm.end(failure));
-        let as_many = |bytes: Vec<u8>| bytes.try_into().expect("all ranks say as much");
-        all.into_iter().map(as_many)
+        let each = all.as_chunks().0.to_vec();
+        each.into_iter()
     }
 
     /// Points of the whole.
     pub fn points(&self) -> usize {
         self.points
     }
+}
+
+/// Numbers, wherever their bytes lie.
+pub(super) fn numbers<T: Pod>(bytes: &[u8]) -> Vec<T> {
+    let each = bytes.chunks_exact(size_of::<T>());
+    each.map(pod_read_unaligned).collect()
 }

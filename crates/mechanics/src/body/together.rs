@@ -1,10 +1,11 @@
 //! What a body says as a whole, whoever has its parts: all ranks ask at once, and hear the same bits on any number of them.
 
-use super::{Body, Field, Layout};
+use super::subdomain::numbers;
+use super::{Body, Field, Layout, cut};
 use crate::execute::exact::Exact;
 use crate::space::Point;
 use crate::state::{Archive, Whose, Word};
-use bytemuck::{Pod, cast_slice, pod_read_unaligned};
+use bytemuck::{Pod, cast_slice};
 use std::borrow::Cow;
 
 impl<const D: usize> Body<D> {
@@ -16,13 +17,21 @@ impl<const D: usize> Body<D> {
         sums.map(|sum| sum.value())
     }
 
+    /// The same of as many as all have.
+    pub fn sums_of(&self, mut sums: Vec<Exact>) -> Vec<f64> {
+        if let Some(of) = self.subdomain() {
+            Exact::of_all(&mut sums, of.comm());
+        }
+        sums.iter().map(Exact::value).collect()
+    }
+
     /// Their sum over the points of all ranks.
     pub fn sum(&self, of_each: impl Iterator<Item = f64>) -> f64 {
         self.sums([of_each.collect()])[0]
     }
 
     /// Whose points are here.
-    pub(crate) fn whose(&self) -> Whose<'_> {
+    pub fn whose(&self) -> Whose<'_> {
         Whose {
             ids: self.subdomain().map(|of| of.ids()),
             points: self.all_points(),
@@ -48,6 +57,27 @@ impl<const D: usize> Body<D> {
         for column in field {
             self.archive_points(archive, name, (column, 1), |slot, _| slot);
         }
+    }
+
+    /// Passes what every point has by id through an archive, or that no point has anything; `none` is what it has before it is read.
+    pub fn archive_if_any<T: Word>(
+        &self,
+        archive: &mut Archive<'_>,
+        name: &str,
+        values: &mut Vec<T>,
+        none: T,
+    ) {
+        let mut there = self.exchange.any(!values.is_empty());
+        archive.within(name, |archive| {
+            archive.one("there", &mut there);
+            if archive.loads() {
+                *values = vec![none; if there { self.points() } else { 0 }];
+            }
+            if there {
+                let places = 0..self.points();
+                archive.points("of_points", self.whose(), 1, (values, places));
+            }
+        });
     }
 
     /// Passes what a list has of these slots through an archive.
@@ -101,11 +131,80 @@ impl<const D: usize> Body<D> {
         };
         let all = of.comm().all(cast_slice(own));
         let all = all.unwrap_or_else(|failure| of.comm().end(failure));
-        let numbers = |bytes: Vec<u8>| -> Vec<T> {
-            let each = bytes.chunks_exact(size_of::<T>());
-            each.map(pod_read_unaligned).collect()
+        all.iter().map(|bytes| numbers(bytes)).collect()
+    }
+
+    /// Does this rank have what is brought together?
+    pub fn is_first(&self) -> bool {
+        self.subdomain().is_none_or(|of| of.comm().rank() == 0)
+    }
+
+    /// `each` numbers of every point by id, of those of the points that are here: those of all ranks, on the first.
+    pub fn whole<T: Pod>(&self, each: usize, own: Vec<T>) -> Option<Vec<T>> {
+        let Some(of) = self.subdomain() else {
+            return Some(own);
         };
-        all.into_iter().map(numbers).collect()
+        let ids = of.ids_of_ranks();
+        let all = of.first(&own)?;
+        let mut whole = vec![T::zeroed(); each * of.points()];
+        for (ids, numbers) in ids.iter().zip(&all) {
+            for (id, numbers) in ids.iter().zip(numbers.chunks_exact(each)) {
+                whole[each * *id as usize..each * (*id as usize + 1)].copy_from_slice(numbers);
+            }
+        }
+        Some(whole)
+    }
+
+    /// Those of the points that are here, of what the first rank has of all points.
+    ///
+    /// # Panics
+    /// The first rank has nothing.
+    pub fn part_of<T: Pod>(&self, each: usize, whole: Option<Vec<T>>) -> Vec<T> {
+        let Some(of) = self.subdomain() else {
+            return whole.expect("the only rank has all");
+        };
+        let ids = of.ids_of_ranks();
+        let part = |ids: &Vec<u32>| {
+            let whole = whole.as_ref().expect("the first rank has all");
+            let each_of = |id: &u32| &whole[each * *id as usize..each * (*id as usize + 1)];
+            ids.iter().flat_map(each_of).copied().collect()
+        };
+        of.of_first(ids.iter().map(part).collect())
+    }
+
+    /// Lists of all ranks one after the other, on the first.
+    pub fn joined<T: Pod>(&self, own: Vec<T>) -> Option<Vec<T>> {
+        match self.subdomain() {
+            None => Some(own),
+            Some(of) => Some(of.first(&own)?.concat()),
+        }
+    }
+
+    /// What the first rank says.
+    ///
+    /// # Panics
+    /// It says nothing.
+    pub fn told<T: Pod>(&self, first: Option<T>) -> T {
+        let Some(of) = self.subdomain() else {
+            return first.expect("the only rank knows");
+        };
+        let all = first.map_or(vec![], |x| vec![vec![x]; of.comm().ranks()]);
+        of.of_first(all)[0]
+    }
+
+    /// Of points in the same block of work, all of which one rank has.
+    pub fn block(&self, slot: usize) -> u64 {
+        match &self.layout {
+            Layout::Grid(grid) => {
+                let (sublattice, cell) = grid.place(slot);
+                (sublattice as u64) << 40 | (cell / cut::CELLS) as u64
+            }
+            Layout::Cloud(_) => self.order(slot) / cut::CELLS as u64,
+            Layout::Several(pieces) => {
+                let n = self.piece_of(slot);
+                (n as u64) << 52 | pieces[n].body.block(slot - pieces[n].first)
+            }
+        }
     }
 
     /// How many all ranks have.

@@ -274,7 +274,8 @@ fn shorter(error: &SolveError) -> &'static str {
         | SolveError::NothingBreaks
         | SolveError::NotFinite
         | SolveError::NothingOpens
-        | SolveError::Stopped => "",
+        | SolveError::Stopped
+        | SolveError::Elsewhere => "",
     }
 }
 

@@ -71,6 +71,8 @@ pub enum SolveError {
     NotFinite,
     #[error("it was asked to end before it was found")]
     Stopped,
+    #[error("the first rank says why")]
+    Elsewhere,
 }
 
 fn part(points: usize, point: usize) -> String {

@@ -158,8 +158,10 @@ impl Exact {
     /// The sums of all ranks, on all of them.
     pub fn of_all(sums: &mut [Exact], ranks: &Comm) {
         let own: Vec<u8> = sums.iter().flat_map(Exact::to_bytes).collect();
-        let all = ranks.all(&own).unwrap_or_else(|failure| ranks.end(failure));
-        let others = { all.iter().enumerate() }.filter(|(rank, _)| *rank != ranks.rank());
+        let all = ranks.all_as_long(&own);
+        let all = all.unwrap_or_else(|failure| ranks.end(failure));
+        let all = all.chunks(own.len().max(1)).enumerate();
+        let others = all.filter(|(rank, _)| *rank != ranks.rank());
         for (_, bytes) in others {
             for (sum, bytes) in sums.iter_mut().zip(bytes.chunks_exact(Exact::BYTES)) {
                 sum.merge(&Exact::from_bytes(bytes));

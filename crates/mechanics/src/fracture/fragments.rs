@@ -72,11 +72,20 @@ impl Fragments {
         Fragments { label, size, mass }
     }
 
-    /// What whole bonds of this rank's points join: ids among all points, the lowest of each piece beside the others.
-    pub fn joined<const D: usize>(
+    /// The pieces of the body of all ranks, on the first; of more than one rank their masses are not known.
+    pub fn of_all<const D: usize>(
         body: &Body<D>,
         interaction: &dyn Interaction<D>,
-    ) -> Vec<[u32; 2]> {
+    ) -> Option<Fragments> {
+        if body.subdomain().is_none() {
+            return Some(Fragments::of(body, interaction));
+        }
+        let joined = body.joined(Self::joined(body, interaction))?;
+        Some(Self::of_joined(body.all_points(), joined.iter()))
+    }
+
+    /// What whole bonds of this rank's points join: ids among all points, the lowest of each piece beside the others.
+    fn joined<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Vec<[u32; 2]> {
         let ids = body.ids_of_all();
         let mut sets = Sets::new(body.all_points());
         interaction.each_bond(body, &mut |i, j, _, state| {
@@ -91,7 +100,7 @@ impl Fragments {
     }
 
     /// Of so many points, from what is joined; their masses are not known.
-    pub fn of_joined<'a>(points: usize, joined: impl Iterator<Item = &'a [u32; 2]>) -> Fragments {
+    fn of_joined<'a>(points: usize, joined: impl Iterator<Item = &'a [u32; 2]>) -> Fragments {
         let mut sets = Sets::new(points);
         joined.for_each(|[i, j]| sets.join(*i, *j));
         let roots = (0..points as u32).map(|id| sets.root(id)).collect();

@@ -6,7 +6,7 @@
 use super::cohesion::Cohesion;
 use super::nearness::{Bounds, Nearness};
 use super::pull::{End, Pull};
-use super::{EachTangent, Repulsion};
+use super::{BondTangent, EachTangent, Repulsion};
 use crate::body::{Body, Field, view};
 use crate::execute::exact::Exact;
 use crate::family::neighbours::ghosts::Ghosts;
@@ -265,16 +265,35 @@ impl<const D: usize> Contact<D> {
         })
     }
 
-    /// Tangents of all contacts, as those of bonds between points that touch. `u` as for [`Contact::energy`].
+    /// Tangents of all contacts, as those of bonds between points that touch, of points that are here: with ids among all points in place of slots.
+    /// `u` as for [`Contact::energy`]. All ranks ask at once.
     pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut EachTangent<D>) {
-        self.each_pull(body, u, |pull| pull.tangents(visit));
+        let ids = body.ids_of_all();
+        let mut of_pull = |pull: Pull<D>, there: &[u32]| {
+            pull.tangents(&mut |bond| {
+                let id = |n: usize| match n.checked_sub(body.len) {
+                    None => ids[n] as usize,
+                    Some(ghost) => there[ghost] as usize,
+                };
+                if bond.i < body.len {
+                    let (i, j) = (id(bond.i), id(bond.j));
+                    visit(BondTangent { i, j, ..bond });
+                }
+            });
+        };
+        let there = self.ghosts.ask(|slot| ids[slot]);
+        self.each_repulsion(body, u, |pull| of_pull(pull, &there));
+        if let Some(cohesion) = &self.cohesion {
+            let there = cohesion.ids_there(&ids);
+            cohesion.each_pull(body, u, |pull| of_pull(pull, &there));
+        }
     }
 
     /// Adds what points that touch resist with (force / length) to sums by slot; `u` as for [`Contact::energy`].
     pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
         self.each_pull(body, u, |touch| {
             let [vi, vj] = touch.volumes;
-            for s in [touch.i, touch.j] {
+            for s in [touch.i, touch.j].into_iter().filter(|s| *s < body.len) {
                 sum[s] += touch.slope.abs().max(touch.pull.abs()) * vi * vj;
             }
         });
@@ -340,14 +359,18 @@ impl<const D: usize> Contact<D> {
 
     /// Visit every central force: of pairs closer than allowed, then of those that attract each other.
     pub fn each_pull(&self, body: &Body<D>, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
+        self.each_repulsion(body, u, &mut visit);
+        if let Some(cohesion) = &self.cohesion {
+            cohesion.each_pull(body, u, visit);
+        }
+    }
+
+    fn each_repulsion(&self, body: &Body<D>, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
         let volume = |n: usize| match n.checked_sub(body.len) {
             None => body.volume.at(n),
             Some(ghost) => self.volumes_there[ghost],
         };
         self.each_contact(u, |touch| visit(touch.pull([touch.i, touch.j].map(volume))));
-        if let Some(cohesion) = &self.cohesion {
-            cohesion.each_pull(body, u, visit);
-        }
     }
 
     /// Visit the pairs closer than allowed.

@@ -3,7 +3,7 @@
 
 use super::contact::Contact;
 use super::friction::{Friction, Pressed};
-use super::{EachTangent, Evaluation, Interaction, PointEnergies};
+use super::{BondTangent, EachTangent, Evaluation, Interaction, PointEnergies};
 use crate::body::{Body, Field};
 use crate::state::{Archive, Owner};
 
@@ -48,11 +48,15 @@ impl<const D: usize> ContactForces<D> {
         }
     }
 
-    /// Tangents as those of bonds between points that touch, at the displacements `u` of the last evaluation.
+    /// Tangents as those of bonds between points that touch, at the displacements `u` of the last evaluation; as of [`Contact::tangents`].
     pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut EachTangent<D>) {
         self.central.tangents(body, u, visit);
         if let Some(friction) = &self.friction {
-            friction.tangents(body, visit);
+            let ids = body.ids_of_all();
+            friction.tangents(body, &mut |bond| {
+                let [i, j] = [bond.i, bond.j].map(|slot| ids[slot] as usize);
+                visit(BondTangent { i, j, ..bond });
+            });
         }
     }
 

@@ -189,16 +189,14 @@ pub trait Interaction<const D: usize>: Send + Sync {
         }
     }
 
-    /// Every bond that damage counts, seen from each of its points that are here: slots of the point and of its partner (images resolved), reference vector
+    /// The bonds of [`each_bond`](Interaction::each_bond), seen from each of their points that are here: slots of the point and of its partner, reference vector
     /// ξ. The partners of a point come in the same order on any number of ranks.
     fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         match self.bonds() {
             Some(bonds) => bonds.each_partner(body, visit),
             None => self.each_bond(body, &mut |i, j, xi, status| {
-                if status != BondStatus::Absent {
-                    visit(i, j, xi, status);
-                    visit(j, i, xi.map(|x| -x), status);
-                }
+                visit(i, j, xi, status);
+                visit(j, i, xi.map(|x| -x), status);
             }),
         }
     }

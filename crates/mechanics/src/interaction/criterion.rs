@@ -65,16 +65,26 @@ impl Wearing {
     }
 }
 
-/// Cycles until so many of these directed bonds are worn out, or until no more are allowed.
-pub fn cycles_to_wear(bonds: &[Wearing], options: &Cycles, left: f64) -> f64 {
+/// Cycles after which the first of these directed bonds are worn out, as many as end an increment; in any order.
+pub fn first_to_wear(bonds: &[Wearing], options: &Cycles) -> Vec<f64> {
     let last = |b: &Wearing| (b.rate > 0.0 && b.life > 0.0).then(|| b.life / b.rate);
     let mut all: Vec<f64> = bonds.iter().filter_map(last).collect();
-    if all.is_empty() {
-        return if left.is_finite() { left } else { 0.0 };
-    }
     // each bond is there from both ends
-    let n = (2 * options.bonds.max(1) - 1).min(all.len() - 1);
-    let (_, nth, _) = all.select_nth_unstable_by(n, f64::total_cmp);
+    let most = 2 * options.bonds.max(1);
+    if all.len() > most {
+        all.select_nth_unstable_by(most - 1, f64::total_cmp);
+        all.truncate(most);
+    }
+    all
+}
+
+/// Cycles until so many of the bonds are worn out of which these are the first, or until no more are allowed.
+pub fn cycles_to_wear(mut first: Vec<f64>, options: &Cycles, left: f64) -> f64 {
+    let Some(last) = first.len().checked_sub(1) else {
+        return if left.is_finite() { left } else { 0.0 };
+    };
+    let n = (2 * options.bonds.max(1) - 1).min(last);
+    let (_, nth, _) = first.select_nth_unstable_by(n, f64::total_cmp);
     nth.min(left)
 }
 
@@ -100,11 +110,16 @@ mod tests {
             bonds,
             most: f64::INFINITY,
         };
-        assert_eq!(cycles_to_wear(&bonds, &options(1), f64::INFINITY), 2.0);
-        assert_eq!(cycles_to_wear(&bonds, &options(2), f64::INFINITY), 10.0);
-        assert_eq!(cycles_to_wear(&bonds, &options(9), f64::INFINITY), 10.0);
-        assert_eq!(cycles_to_wear(&bonds, &options(2), 7.0), 7.0);
-        assert_eq!(cycles_to_wear(&bonds[4..], &options(1), f64::INFINITY), 0.0);
-        assert_eq!(cycles_to_wear(&bonds[4..], &options(1), 7.0), 7.0);
+        let until = |bonds: &[Wearing], n: usize, left: f64| {
+            let first = first_to_wear(bonds, &options(n));
+            assert!(first.len() <= 2 * n);
+            cycles_to_wear(first, &options(n), left)
+        };
+        assert_eq!(until(&bonds, 1, f64::INFINITY), 2.0);
+        assert_eq!(until(&bonds, 2, f64::INFINITY), 10.0);
+        assert_eq!(until(&bonds, 9, f64::INFINITY), 10.0);
+        assert_eq!(until(&bonds, 2, 7.0), 7.0);
+        assert_eq!(until(&bonds[4..], 1, f64::INFINITY), 0.0);
+        assert_eq!(until(&bonds[4..], 1, 7.0), 7.0);
     }
 }

@@ -394,7 +394,12 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
 
     /// Nothing is remembered but how long bonds are.
     fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
-        archive.all("expansion", &mut self.expansion);
+        body.archive_points(archive, "expansion", (&mut self.expansion, 1), |slot, _| {
+            slot
+        });
+        if archive.loads() && !self.expansion.is_empty() {
+            body.exchange.fill(&mut self.expansion);
+        }
         if archive.loads() {
             self.look(body);
         }

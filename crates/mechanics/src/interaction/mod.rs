@@ -42,7 +42,7 @@ pub use bond::{
 pub use bond::{add_virial, critical_stretch};
 pub use contact_forces::ContactForces;
 pub use contract::Interaction;
-pub use criterion::{Wearing, cycles_to_wear};
+pub use criterion::{Wearing, cycles_to_wear, first_to_wear};
 pub use evaluation::Evaluation;
 pub use interface::Interface;
 pub use point_constants::PointConstants;

@@ -130,16 +130,15 @@ impl<'a> Archive<'a> {
         self.ranks = None;
     }
 
-    /// Passes a state through that the first rank writes, or reads: `work` is what it does [among](Archive::among) all, within parts of this `path`.
-    /// Is all well on all ranks?
-    pub fn there(comm: &Arc<Comm>, load: bool, path: &str, work: impl FnOnce(&mut Self)) -> bool {
+    /// Passes a state through that the first rank writes, or reads: `work` is what it does [among](Archive::among) all, within parts of this `path`. What is
+    /// wrong on any rank the first one knows.
+    pub fn there(comm: &Arc<Comm>, load: bool, path: &str, work: impl FnOnce(&mut Self)) {
         let mut archive = Archive::new(match load {
             true => Way::LoadThere,
             false => Way::SaveThere,
         });
         archive.path = path.into();
         archive.among(comm, work);
-        archive.error.is_none()
     }
 
     /// The parts that the next array is in, each with a dot behind it.
@@ -533,6 +532,32 @@ mod tests {
         });
         read(&none, &mut to).unwrap();
         assert_eq!(to.next, None);
+    }
+
+    #[test]
+    fn what_differs_on_ranks_where_it_must_not_is_named() {
+        let saved = |off: bool| {
+            let all = peridyne_comm::on_threads(2, |comm| {
+                let comm = Arc::new(comm);
+                let mut of = made();
+                if off && comm.rank() == 1 {
+                    of.rows[2][1] = 0;
+                }
+                if comm.rank() == 1 {
+                    Archive::there(&comm, false, "", |a| a.part("it", &mut of));
+                    return None;
+                }
+                let mut to = vec![];
+                let mut archive = Archive::save(&mut to);
+                archive.among(&comm, |a| a.part("it", &mut of));
+                let done = archive.done().map_err(|e| e.to_string());
+                Some(done.map(|()| to))
+            });
+            all.into_iter().flatten().next().unwrap()
+        };
+        assert_eq!(saved(false), Ok(bytes(&mut made())));
+        let said = saved(true).unwrap_err();
+        assert!(said.contains("`it.rows.list`"), "{said}");
     }
 
     #[test]

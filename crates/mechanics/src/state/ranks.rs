@@ -9,8 +9,8 @@ use twox_hash::XxHash3_64;
 /// Ranks that do the same with their archives.
 pub(super) struct Ranks {
     comm: Arc<Comm>,
-    /// Of all that must be the same on them.
-    digest: u64,
+    /// Names and digests of all that must be the same on them.
+    alike: Vec<(String, u64)>,
     /// All know of an error.
     pub over: bool,
 }
@@ -19,7 +19,7 @@ impl Ranks {
     pub fn new(comm: &Arc<Comm>) -> Ranks {
         Ranks {
             comm: comm.clone(),
-            digest: 0,
+            alike: vec![],
             over: false,
         }
     }
@@ -49,14 +49,25 @@ impl Ranks {
     }
 
     /// These bytes are the same on all.
-    pub fn digest(&mut self, bytes: &[u8]) {
-        self.digest = XxHash3_64::oneshot_with_seed(self.digest, bytes);
+    pub fn digest(&mut self, name: String, bytes: &[u8]) {
+        self.alike.push((name, XxHash3_64::oneshot(bytes)));
     }
 
-    /// Were they, up to here?
-    pub fn are_alike(&self) -> bool {
-        let all = self.all(&self.digest.to_le_bytes());
-        all.iter().all(|other| *other == all[0])
+    /// The first that was not.
+    pub fn apart(&self) -> Option<String> {
+        let own = self
+            .alike
+            .iter()
+            .flat_map(|(_, digest)| digest.to_le_bytes());
+        let all = self.all(&own.collect::<Vec<u8>>());
+        let off = |other: &Vec<u8>| {
+            let both = other.chunks(8).zip(all[0].chunks(8));
+            let off = { both }.position(|(a, b)| a != b);
+            off.or((other.len() != all[0].len()).then(|| other.len().min(all[0].len()) / 8))
+        };
+        let first = all.iter().filter_map(off).min()?;
+        let name = { self.alike.get(first).or(self.alike.last()) }.map(|(name, _)| name.clone());
+        Some(name.unwrap_or_default())
     }
 
     pub fn comm(&self) -> &Comm {

@@ -79,18 +79,13 @@ impl Archive<'_> {
         let Some(ranks) = &mut self.ranks else {
             return;
         };
-        let mut bytes = name.as_bytes().to_vec();
-        bytes.extend(bytes_of(&mut x.iter().copied()));
-        ranks.digest(&bytes);
-        if cfg!(debug_assertions) {
-            self.same_on_all();
-        }
+        let name = format!("{}{name}", self.path);
+        ranks.digest(name, &bytes_of(&mut x.iter().copied()));
     }
 
     pub(super) fn same_on_all(&mut self) {
-        let Some(ranks) = self.shared() else { return };
-        if !ranks.are_alike() {
-            let name = self.path.clone();
+        let apart = self.shared().and_then(Ranks::apart);
+        if let Some(name) = apart {
             self.error.get_or_insert(StateError::Apart { name });
         }
     }
@@ -261,6 +256,22 @@ impl Archive<'_> {
         let Some(all) = all else { return Ok(()) };
         self.header(name, all.len() / T::BYTES, T::BYTES)?;
         self.put_each(&mut all.chunks(T::BYTES).map(T::take))
+    }
+
+    /// A list that the first rank has.
+    pub fn list_of_first<T: Word>(&mut self, name: &str, x: &mut Vec<T>) {
+        let first = self.shared().is_none_or(Ranks::is_first);
+        self.try_to(|archive| {
+            let Some(length) = archive.header(name, x.len(), T::BYTES)? else {
+                return archive.put(x);
+            };
+            x.clear();
+            archive.take(length as usize, &mut |value| {
+                if first {
+                    x.push(value);
+                }
+            })
+        });
     }
 
     /// What some points have, by their ids: each may have any number of them. They come back in the order of ids.

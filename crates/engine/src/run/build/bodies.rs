@@ -11,7 +11,7 @@ use crate::run::names::Names;
 use crate::run::parts::{Part, parts};
 use crate::run::reference::{cell, current_neighbours};
 use crate::run::sets::{assign_materials, sets};
-use crate::run::{atoms, clouds, gaps, meant, own_horizons, traits};
+use crate::run::{atoms, clouds, gaps, meant, own_horizons, surface, traits};
 use crate::spec::{BodySpec, FamilyChoice, Horizon, PieceSpec, Spec};
 use peridyne_comm::Comm;
 use std::sync::Arc;
@@ -101,8 +101,10 @@ impl<'a, const D: usize> Bodies<'a, D> {
         let nearest = gaps::between(&body, reach(spec, &parts, &body, horizon));
         if let Some(ranks) = ranks {
             // all ranks know all points until here, and find the same mistakes
-            warnings.extend(meant::all(spec, &body, &names.sets)?);
-            names.faces.find(spec, &body, &names.sets)?;
+            let ended = surface::ended(spec, &body);
+            let whole = ended.as_ref().unwrap_or(&body);
+            warnings.extend(meant::all(spec, whole, &names.sets)?);
+            names.faces.find(spec, whole, &names.sets)?;
             // volumes of partners fade over a spacing at the horizon
             body = body.subdomain_of(ranks, horizon + body.spacing());
             cut(&mut names, &body);

@@ -12,6 +12,7 @@ use super::system::{Border, unknowns};
 use super::tried::{Inertia, Tried};
 use crate::condition::indenter::Indenter;
 use crate::condition::rigid::Wrench;
+use crate::execute::exact::Exact;
 use crate::space::{cross, full};
 
 /// Where a place at `arm` goes when its body does what unknown `k` is, in D axes.
@@ -42,7 +43,7 @@ impl<const D: usize> Problem<'_, D> {
             let mass = body.rigid.inertia(inertia.acceleration);
             for &unknown in each {
                 let mut column = vec![[0.0; D]; self.system.body.points()];
-                let mut own = vec![0.0; all];
+                let mut own = vec![Exact::ZERO; all];
                 body.each_tangent(&self.system.body, &self.system.u, |slot, arm, block| {
                     let way = moves(unknown, arm);
                     // force on the point if the place goes there
@@ -53,10 +54,10 @@ impl<const D: usize> Problem<'_, D> {
                     }
                     for (other, &unknown) in each.iter().enumerate() {
                         let way = moves(unknown, arm);
-                        own[n * each.len() + other] +=
-                            (0..D).map(|a| force[a] * way[a]).sum::<f64>();
+                        own[n * each.len() + other].add((0..D).map(|a| force[a] * way[a]).sum());
                     }
                 });
+                let mut own = self.system.body.sums_of(own);
                 for (other, &row) in each.iter().enumerate() {
                     own[n * each.len() + other] += inertia.weight * mass[row][unknown];
                 }

@@ -4,17 +4,18 @@ use super::problem::Problem;
 use super::state::StaticState;
 use super::system::Equations;
 use super::tried::{Inertia, Onward};
+use super::whole::{told, whole_support};
 use crate::condition::load::Load;
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::spec::LinearBody;
 use crate::statics::{
-    self, Assembled, Block, Direct, Goal, LinearOperator, Shifted, Solved, Support, Swept, norm,
+    self, Assembled, Block, Direct, Goal, LinearOperator, Shifted, Solved, Support, Swept,
 };
 
 impl<const D: usize> Problem<'_, D> {
-    /// The linear body about the displacements of now, points that touch too.
-    pub(super) fn tangent_now(&mut self) -> LinearBody<D> {
+    /// The linear body about the displacements of now, points that touch too; on the first rank.
+    pub(super) fn tangent_now(&mut self) -> Option<LinearBody<D>> {
         let system = &mut *self.system;
         system.refresh_images();
         let (bonds, contact) = (system.interaction.as_mut(), system.contact.as_ref());
@@ -61,22 +62,59 @@ impl<const D: usize> Problem<'_, D> {
         if let Some(kept) = kept.filter(|k| factored && k.acceleration == acceleration) {
             return Ok(Equations { old: true, ..kept });
         }
-        let mut unstable = false;
         let reference = self.system.at_peace() && self.system.forgets();
         let coupled = inertia.and_then(|m| m.coupled.as_ref());
         let swept = !factored && reference && self.system.contact.is_none() && coupled.is_none();
+        let added = self.added(inertia);
+        let mut made = Equations {
+            swept,
+            border: border(self),
+            acceleration,
+            added,
+            ..Equations::none()
+        };
+        if swept {
+            return Ok(made);
+        }
+        let of_blocks = self.sums.any(!made.added.is_empty());
+        let blocks = made.added.as_flattened().as_flattened().to_vec();
+        let added = self.system.body.whole(D * D, blocks);
+        let support = whole_support(&self.system.body, support);
+        let tangent = self.tangent_now();
+        let found = added
+            .zip(support)
+            .zip(tangent)
+            .map(|((added, support), body)| {
+                if of_blocks {
+                    made.added = { added.as_chunks::<D>().0.chunks_exact(D) }
+                        .map(|rows| crate::array::from_fn(|a| rows[a]))
+                        .collect();
+                }
+                self.assemble(&mut made, body, &support, inertia, factored)
+            });
+        told(&self.system.body, found.transpose())?;
+        made.unstable = self.sums.any(made.unstable);
+        made.factored = self.sums.any(made.factors.is_some());
+        Ok(made)
+    }
+
+    /// The matrix of the points of all ranks, and its factors.
+    fn assemble(
+        &self,
+        made: &mut Equations<D>,
+        body: LinearBody<D>,
+        support: &Support<D>,
+        inertia: Option<&Inertia<D>>,
+        factored: bool,
+    ) -> Result<(), SolveError> {
         // conjugate gradients seek the step in the symmetric part of a tangent that has another: forces decide where it ends
-        let mut body = (!swept).then(|| match self.tangent_now() {
-            body if !factored && body.soundness().asymmetry > statics::SYMMETRIC => {
-                body.symmetric()
-            }
-            body => body,
-        });
-        let mut added = self.added(inertia);
-        if let (Some(masses), Some(inertia), Some(bonds)) = (coupled, inertia, &mut body) {
-            let (sum, own) = masses.with(bonds, inertia.weight * inertia.acceleration);
-            *bonds = sum;
-            for (added, own) in added.iter_mut().zip(own) {
+        let skew = !factored && body.soundness().asymmetry > statics::SYMMETRIC;
+        let mut body = if skew { body.symmetric() } else { body };
+        let coupled = inertia.and_then(|m| m.coupled.as_ref());
+        if let (Some(masses), Some(inertia)) = (coupled, inertia) {
+            let (sum, own) = masses.with(&body, inertia.weight * inertia.acceleration);
+            body = sum;
+            for (added, own) in made.added.iter_mut().zip(own) {
                 for a in 0..D {
                     for b in 0..D {
                         added[a][b] += own[a][b];
@@ -85,40 +123,29 @@ impl<const D: usize> Problem<'_, D> {
             }
         }
         // nothing but inertia resists what has lost all that held it
-        let resisted = match (&body, inertia) {
-            (Some(body), None) => Some(support.resisted(body)),
-            _ => None,
+        let resisted = match inertia {
+            None => Some(support.resisted(&body)),
+            Some(_) => None,
         };
         let any = resisted.as_ref().is_none_or(|s| s.unknowns() > 0);
-        let factors = match &body {
-            Some(body) if factored && any => {
-                let support = resisted.as_ref().unwrap_or(support);
-                let made = match added.is_empty() {
-                    false => Direct::against(body, support, &added),
-                    true => Direct::new(body, support, 0.0),
-                };
-                Some(match made {
-                    Err(SolveError::Indefinite { .. })
-                        if !self.system.at_peace() && inertia.is_none() =>
-                    {
-                        unstable = true;
-                        downhill(body, support)?
-                    }
-                    made => made?,
-                })
-            }
-            _ => None,
-        };
-        Ok(Equations {
-            body,
-            factors,
-            resisted,
-            added,
-            border: border(self),
-            acceleration,
-            unstable,
-            old: false,
-        })
+        if factored && any {
+            let support = resisted.as_ref().unwrap_or(support);
+            let factors = match made.added.is_empty() {
+                false => Direct::against(&body, support, &made.added),
+                true => Direct::new(&body, support, 0.0),
+            };
+            made.factors = Some(match factors {
+                Err(SolveError::Indefinite { .. })
+                    if !self.system.at_peace() && inertia.is_none() =>
+                {
+                    made.unstable = true;
+                    downhill(&body, support)?
+                }
+                factors => factors?,
+            });
+        }
+        (made.body, made.resisted) = (Some(body), resisted);
+        Ok(())
     }
 
     /// The step that leaves nothing of residuals of points and bodies, and iterations that it took.
@@ -130,40 +157,23 @@ impl<const D: usize> Problem<'_, D> {
         rest: &[Wrench],
         goal: Goal,
     ) -> Result<(Onward<D>, usize), SolveError> {
-        let system = &mut *self.system;
         let (mut x, mut iterations) = (vec![[0.0; D]; r.len()], 0);
-        let support = match &equations.resisted {
-            Some(resisted) => {
-                support.rests(resisted, r)?;
-                resisted
-            }
-            None => support,
-        };
         let mut solve = |b: &[[f64; D]], x: &mut [[f64; D]]| {
             // conjugate gradients need something to seek
-            if norm(b) == 0.0 {
-                return Ok(());
-            }
-            let added = &equations.added;
-            let solved = match (&equations.body, &equations.factors) {
-                (Some(body), Some(factors)) => {
-                    let operator = &mut Assembled(body);
-                    let solved =
-                        factors.solve_held(&mut Shifted { operator, added }, support, b, x);
-                    // LU of a singular matrix says nothing
-                    if !solved.residual.is_finite() {
-                        return Err(SolveError::Singular);
-                    }
-                    solved
+            let solved = match equations.swept {
+                true if self.sums.norm(b) == 0.0 => Solved::default(),
+                true => {
+                    let system = &mut *self.system;
+                    let bonds = system.interaction.as_mut();
+                    let operator = &mut Swept::new(&system.body, bonds, &self.sums);
+                    let added = &equations.added;
+                    statics::cg::solve(&mut Shifted { operator, added }, support, b, x, goal)?
                 }
-                (Some(body), None) => solve_assembled(body, added, support, b, x, goal)?,
-                (None, _) => {
-                    let operator = &mut Swept::new(&system.body, system.interaction.as_mut());
-                    let mut operator = Shifted { operator, added };
-                    statics::cg::solve(&mut operator, support, b, x, goal)?
-                }
+                false => self.solve_whole((support, b), x, |support, b, x| {
+                    equations.solve(support, b, x, goal)
+                })?,
             };
-            iterations += solved.iterations.max(1);
+            iterations += solved.iterations;
             Ok::<(), SolveError>(())
         };
         solve(r, &mut x)?;
@@ -177,7 +187,7 @@ impl<const D: usize> Problem<'_, D> {
                 solve(&masked, &mut x)?;
                 z.push(x);
             }
-            (bodies, far) = border.solve(&mut x, &z, rest)?;
+            (bodies, far) = border.solve((&mut x, &self.sums), &z, rest)?;
         }
         Ok((Onward { x, bodies, far }, iterations))
     }
@@ -224,20 +234,4 @@ fn downhill<const D: usize>(
             made => return made,
         }
     }
-}
-
-pub(super) fn solve_assembled<const D: usize>(
-    body: &LinearBody<D>,
-    added: &[Block<D>],
-    support: &Support<D>,
-    b: &[[f64; D]],
-    x: &mut [[f64; D]],
-    goal: Goal,
-) -> Result<Solved, SolveError> {
-    let asymmetry = body.soundness().asymmetry;
-    if asymmetry > statics::SYMMETRIC {
-        return Err(SolveError::NotSymmetric { asymmetry });
-    }
-    let operator = &mut Assembled(body);
-    statics::cg::solve(&mut Shifted { operator, added }, support, b, x, goal)
 }

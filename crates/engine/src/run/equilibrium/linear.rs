@@ -9,7 +9,7 @@ impl<const D: usize> Problem<'_, D> {
         let held: f64 = self.system.quadratic_energy().iter().sum();
         self.system.forces(true, self.system.clock.trial());
         let swept = &mut self.system.accounts.swept;
-        if swept.broken > before.broken {
+        if self.sums.any(swept.broken > before.broken) {
             (swept.lost, swept.made) = (before.lost, before.made);
             self.system.stressed = None;
             let kept: f64 = self.system.quadratic_energy().iter().sum();

@@ -13,9 +13,11 @@ mod solve;
 pub(super) mod state;
 mod system;
 pub(super) mod tried;
+pub(super) mod whole;
 
 use self::problem::Problem;
 use self::state::StaticState;
+use self::whole::unknowns;
 use super::system::System;
 use crate::body::{Field, view, view_mut, zeros};
 use crate::constitutive::{ConstitutiveModel, Laws};
@@ -23,6 +25,7 @@ use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::interaction::Sweep;
 use crate::quantity::rounded;
+use crate::run::agreed::agreed;
 use crate::run::traits;
 use crate::space::Point;
 use crate::spec::{LinearBody, Method, Statics};
@@ -50,7 +53,7 @@ impl<const D: usize> System<D> {
     pub(super) fn check_statics(&self, options: Statics) -> Result<(), BuildError> {
         traits::of_statics(self, options)?;
         let support = self.held();
-        if support.unknowns() == 0 {
+        if unknowns(&self.body, &support) == 0 {
             return Err(BuildError::ill_posed(
                 "conditions",
                 SolveError::NothingFree.to_string(),
@@ -60,19 +63,21 @@ impl<const D: usize> System<D> {
         let left_alone = options.method.minimizes()
             && self.applied.loads.is_empty()
             && self.applied.rigid.is_empty();
-        let loose = self.loose_parts(&support);
-        if let Some(loose) = loose.first().filter(|_| !left_alone) {
-            let x = self.body.position(self.body.slots()[loose.point] as usize);
-            let x = &x[..D];
-            return Err(BuildError::ill_posed(
+        let loose = match left_alone {
+            true => None,
+            false => self.loose_part(&support),
+        };
+        let held = loose.map_or(Ok(()), |(loose, x)| {
+            Err(BuildError::ill_posed(
                 "conditions",
                 format!(
                     "the body is not held: {} of the part of {} points around {x:?} meets no resistance",
                     loose.motion, loose.points
                 ),
             )
-            .help("prescribe displacements that hold every connected part: D translations and its rotations"));
-        }
+            .help("prescribe displacements that hold every connected part: D translations and its rotations"))
+        });
+        agreed(&self.body, held)?;
         let atoms = |r: &ConstitutiveModel| matches!(r.laws, Laws::Atoms(_));
         if !options.method.minimizes()
             && (self.factored(options, &support) || self.constitutive.all().any(atoms))
@@ -85,25 +90,29 @@ impl<const D: usize> System<D> {
     /// Do the rows of the equations fit into memory? Laws with a point scalar reach two families. What the factors fill in
     /// comes on top.
     pub(super) fn enough_memory_for_rows(&self) -> Result<(), BuildError> {
-        let points = self.body.points() as f64;
+        let points = self.body.all_points() as f64;
         let families = self.constitutive.all().map(|r| match &r.laws {
             Laws::Solid(_) | Laws::Atoms(_) => 2f64.powi(D as i32),
             Laws::Bond(_) | Laws::Springs(_) | Laws::Micromoduli(_) => 1.0,
         });
         let families = families.fold(1.0, f64::max);
         let row = (families * self.info.family.1).min(points) + 1.0;
-        memory::afford(
+        let fits = memory::afford(
             "statics.solver",
             &format!("the equations of {} points", rounded(points, 3)),
             points * row * (8 * D * D + 4) as f64,
             "leave solver out, or write solver = \"cg\", which needs no matrix; a shorter horizon makes shorter rows",
-        )
+        );
+        // those of all ranks are on the first
+        let fits = if self.body.is_first() { fits } else { Ok(()) };
+        agreed(&self.body, fits)
     }
 
     /// Points know what they bear once they were asked: a first time without load, or the bonds of the first increment would never break.
     pub(super) fn learn_strength(&mut self) {
         // asking is a step of no length, which laws remember
-        if self.criticals().is_empty() && self.interaction.criticals_between().is_empty() {
+        let none = self.criticals().is_empty() && self.interaction.criticals_between().is_empty();
+        if !self.body.exchange().any(!none) {
             return;
         }
         let rest = match self.is_linear() {
@@ -133,21 +142,29 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// The reference position that an error is about, if it is about one.
+    /// The reference position that an error is about, if it is about one. All ranks ask at once.
     pub(super) fn place_of(&self, error: &SolveError) -> Option<Point> {
-        let place = match error {
+        let id = match error {
             SolveError::Indefinite { point } => Some(*point),
             SolveError::Loose(loose) => Some(loose.point),
             SolveError::Unheld { point, .. } => Some(*point),
             _ => None,
         };
-        place.map(|n| self.body.position(self.body.slots()[n] as usize))
+        const NONE: u64 = u64::MAX;
+        let told = self
+            .body
+            .is_first()
+            .then(|| id.map_or(NONE, |id| id as u64));
+        match self.body.told(told) {
+            NONE => None,
+            id => Some(self.body.position_of(id as usize)),
+        }
     }
 }
 
 impl<const D: usize> Problem<'_, D> {
-    /// The linear body about the reference.
-    fn reference_body(&mut self) -> LinearBody<D> {
+    /// The linear body about the reference, on the first rank.
+    fn reference_body(&mut self) -> Option<LinearBody<D>> {
         let system = &mut *self.system;
         if !system.at_peace() {
             return system.stressed().tangent.clone();
@@ -200,7 +217,8 @@ impl<const D: usize> Problem<'_, D> {
                 true => self.tear_linear(),
                 false => self.system.forces(true, self.system.clock.trial()),
             }
-            if self.system.accounts.swept.broken == before {
+            let broke = self.system.accounts.swept.broken != before;
+            if !self.sums.any(broke) {
                 return Ok((total, way));
             }
             // the next solution is that of another body
@@ -251,15 +269,17 @@ impl<const D: usize> Problem<'_, D> {
 
     /// Are these forces (per volume) of points that were let go, more than a solver leaves beside those of points that are held?
     fn is_unbalanced(&self, support: &Support<D>, f: &Field<D>, tolerance: f64) -> bool {
-        let [mut loose, mut held] = [0.0; 2];
-        for (n, force) in self.system.body.per_point(f).into_iter().enumerate() {
+        let forces = self.system.body.per_point(f);
+        let [loose, held] = self.sums.each(forces.len(), |n| {
+            let [mut loose, mut held] = [0.0; 2];
             for a in 0..D {
                 match support.free[n][a] {
-                    true => loose += force[a] * force[a],
-                    false => held += force[a] * force[a],
+                    true => loose += forces[n][a] * forces[n][a],
+                    false => held += forces[n][a] * forces[n][a],
                 }
             }
-        }
+            [loose, held]
+        });
         loose.sqrt() > tolerance.sqrt() * held.sqrt()
     }
 
@@ -275,22 +295,27 @@ impl<const D: usize> Problem<'_, D> {
     ) {
         let system = &mut *self.system;
         let now = system.external();
-        for (n, &s) in system.body.slots().iter().enumerate() {
-            let i = s as usize;
+        let slots = system.body.slots();
+        let [work, lost] = self.sums.each(slots.len(), |n| {
+            let i = slots[n] as usize;
+            let [mut work, mut lost] = [0.0; 2];
             for a in 0..D {
                 let moved = 0.5 * system.body.volume().at(i) * (system.u[a][i] - u[a][i]);
                 let all = f[a][i] + system.f[a][i];
                 let loads = external[a][i] + now[a][i];
                 if support.free[n][a] {
-                    way.work += loads * moved;
+                    work += loads * moved;
                     if released {
-                        way.lost += all * moved;
+                        lost += all * moved;
                     }
                 } else {
                     // loads and reaction together hold what the bonds pull
-                    way.work += (loads - all) * moved;
+                    work += (loads - all) * moved;
                 }
             }
-        }
+            [work, lost]
+        });
+        way.work += work;
+        way.lost += lost;
     }
 }

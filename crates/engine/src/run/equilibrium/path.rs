@@ -17,12 +17,13 @@
 use super::Way;
 use super::problem::Problem;
 use super::state::{Followed, StaticState};
-use crate::body::Field;
+use super::whole::{told, unknowns, whole_support};
+use crate::body::{Field, zeros};
 use crate::error::{BuildError, SolveError};
 use crate::interaction::BondStatus;
 use crate::run::system::System;
 use crate::spec::Control;
-use crate::statics::{Assembled, Direct, Solved, Support, dot, norm};
+use crate::statics::{Assembled, Direct, Solved, Support};
 
 /// Newton's iterations in a trial of an increment.
 const TRIALS: usize = 25;
@@ -75,7 +76,7 @@ impl<const D: usize> Problem<'_, D> {
         [u, f, external]: [&Field<D>; 3],
     ) -> Result<(Solved, Way), SolveError> {
         let support = self.support_now(state.options)?.support;
-        if support.unknowns() == 0 {
+        if unknowns(&self.system.body, &support) == 0 {
             return Err(SolveError::NothingFree);
         }
         let before = self.system.clock.origin();
@@ -91,7 +92,7 @@ impl<const D: usize> Problem<'_, D> {
                 Ok(found) => break found,
                 Err(error) => {
                     let final_one = matches!(error, SolveError::Stopped | SolveError::TooLarge);
-                    if final_one || halvings == HALVINGS {
+                    if self.sums.any(final_one) || halvings == HALVINGS {
                         return Err(error);
                     }
                     halvings += 1;
@@ -128,7 +129,7 @@ impl<const D: usize> Problem<'_, D> {
             Control::Load | Control::Breaking => return Err(SolveError::NotFinite),
         };
         let unit = self.unit_load(support);
-        let points = start.len() as f64;
+        let points = self.system.body.all_points() as f64;
         let (longer, mut most) = last.map_or((0.0, 0.0), |l| (part / l.part, l.most));
         let way = match last {
             Some(l) => l.way.iter().map(|w| w.map(|c| longer * c)).collect(),
@@ -138,27 +139,29 @@ impl<const D: usize> Problem<'_, D> {
         let mut now = self.trial(way, factor, support, start, before, &mut most)?;
         let mut slope: Vec<[f64; D]> = vec![];
         for iterations in 0..TRIALS {
-            goal.go_on()?;
+            goal.go_on(0, &self.sums)?;
             let Along { a, b, stable } = self.along(support, &now.r, &unit)?;
             if opens && iterations == 0 {
                 let x = further(start, &now.way, 1.0);
                 slope = self.opening(&x, &b, stable)?;
             } else if !opens {
                 // of the length with the way, at first that along the load of 1
-                let along = if dot(&now.way, &now.way) > 0.0 {
+                let along = if self.sums.dot(&now.way, &now.way) > 0.0 {
                     &now.way
                 } else {
                     &b
                 };
-                let per = (dot(along, along) * points).sqrt();
+                let per = (self.sums.dot(along, along) * points).sqrt();
                 slope = along.iter().map(|w| w.map(|c| c / per)).collect();
             }
             // how far the way is from its length, over that
+            let sums = self.sums.clone();
             let short = |way: &[[f64; D]]| match opens {
-                true => dot(&slope, way) / target - 1.0,
-                false => (dot(way, way) / points).sqrt() / target - 1.0,
+                true => sums.dot(&slope, way) / target - 1.0,
+                false => (sums.dot(way, way) / points).sqrt() / target - 1.0,
             };
-            let more = (-target * short(&now.way) - dot(&slope, &a)) / dot(&slope, &b);
+            let more = -target * short(&now.way) - sums.dot(&slope, &a);
+            let more = more / sums.dot(&slope, &b);
             let step = further(&a, &b, more);
             let left = now.left.hypot(short(&now.way));
             for halving in 0..=BACK {
@@ -200,9 +203,9 @@ impl<const D: usize> Problem<'_, D> {
     ) -> Result<Trial<D>, SolveError> {
         let mut r = vec![[0.0; D]; way.len()];
         self.system.clock.set(before + factor);
-        let scale = self.imbalance(&further(start, &way, 1.0), &mut r, support);
-        *most = scale.max(*most);
-        let size = norm(&r);
+        let found = self.imbalance(&further(start, &way, 1.0), &mut r, support);
+        *most = found.scale.max(*most);
+        let size = found.size;
         if !size.is_finite() {
             return Err(SolveError::NotFinite);
         }
@@ -239,23 +242,34 @@ impl<const D: usize> Problem<'_, D> {
         r: &[[f64; D]],
         unit: &[[f64; D]],
     ) -> Result<Along<D>, SolveError> {
-        let body = self.tangent_now();
-        let support = &support.resisted(&body);
-        let (factors, stable) = match Direct::new(&body, support, 0.0) {
-            Err(SolveError::Indefinite { .. }) => (Direct::of_any_sign(&body, support)?, false),
-            made => (made?, true),
-        };
+        let whole = whole_support(&self.system.body, support);
+        let factored = self.tangent_now().zip(whole).map(|(body, support)| {
+            let support = support.resisted(&body);
+            let (factors, stable) = match Direct::new(&body, &support, 0.0) {
+                Err(SolveError::Indefinite { .. }) => {
+                    (Direct::of_any_sign(&body, &support)?, false)
+                }
+                made => (made?, true),
+            };
+            Ok((body, support, factors, stable))
+        });
+        let factored = told(&self.system.body, factored.transpose())?;
         let solved = |b: &[[f64; D]], mut x: Vec<[f64; D]>| {
-            let done = factors.solve_held(&mut Assembled(&body), support, b, &mut x);
-            match done.residual <= SOLVED {
-                true => Ok(x),
-                false => Err(SolveError::Singular),
-            }
+            self.solve_whole((support, b), &mut x, |_, b, x| {
+                let (body, support, factors, _) =
+                    { factored.as_ref() }.expect("the matrix is here");
+                let done = factors.solve_held(&mut Assembled(body), support, b, x);
+                match done.residual <= SOLVED {
+                    true => Ok(done),
+                    false => Err(SolveError::Singular),
+                }
+            })?;
+            Ok(x)
         };
         Ok(Along {
             a: solved(r, vec![[0.0; D]; r.len()])?,
             b: solved(unit, unit.to_vec())?,
-            stable,
+            stable: self.sums.any(factored.as_ref().is_some_and(|made| made.3)),
         })
     }
 
@@ -267,43 +281,50 @@ impl<const D: usize> Problem<'_, D> {
         b: &[[f64; D]],
         stable: bool,
     ) -> Result<Vec<[f64; D]>, SolveError> {
-        let system = &*self.system;
-        let id = system.body.ids_by_slot();
+        let body = &self.system.body;
+        let id = body.ids_by_slot();
+        // partners may be others' points
+        let [x, b] = [x, b].map(|of| {
+            let mut field = zeros(body.len());
+            body.set_vectors(&mut field, |id, _| of[id]);
+            field
+        });
+        // of each bond, at each of its points that are here: what it is longer by, and grows by
         let mut bonds = vec![];
         // along b, and against it
         let mut fastest = [0.0f64; 2];
-        system
+        self.system
             .interaction
-            .each_bond(&system.body, &mut |i, j, xi, state| {
+            .each_partner(body, &mut |i, j, xi, state| {
                 if state != BondStatus::Whole {
                     return;
                 }
-                let [i, j] = [i, j].map(|s| id[s] as usize);
-                let y: [f64; D] = crate::array::from_fn(|a| xi[a] + x[j][a] - x[i][a]);
+                let y: [f64; D] = crate::array::from_fn(|a| xi[a] + x[a][j] - x[a][i]);
                 let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
                 let lengths = (square(&y) * square(&xi)).sqrt();
                 let slope = y.map(|c| c / lengths);
-                let grows: f64 = (0..D).map(|a| slope[a] * (b[j][a] - b[i][a])).sum();
+                let grows: f64 = (0..D).map(|a| slope[a] * (b[a][j] - b[a][i])).sum();
                 fastest = [fastest[0].max(grows), fastest[1].max(-grows)];
-                bonds.push(([i, j], slope, grows));
+                bonds.push((id[i] as usize, slope, grows));
             });
-        let (sign, fastest) = match fastest {
+        let (sign, fastest) = match fastest.map(|own| self.sums.most(own)) {
             [along, against] if against > along && !stable => (-1.0, against),
             [along, _] => (1.0, along),
         };
         if !(fastest > 0.0) {
             return Err(SolveError::NothingOpens);
         }
-        let mut c = vec![[0.0; D]; x.len()];
-        let mut sum = 0.0;
-        for ([i, j], slope, grows) in bonds {
+        let mut c = vec![[0.0; D]; body.points()];
+        let mut weights = vec![0.0; body.points()];
+        for (i, slope, grows) in bonds {
             let weight = (sign * grows / fastest).max(0.0).powi(4);
-            sum += weight;
+            weights[i] += weight;
             for a in 0..D {
-                c[j][a] += weight * slope[a];
                 c[i][a] -= weight * slope[a];
             }
         }
+        // a bond has two points
+        let [sum] = self.sums.each(weights.len(), |i| [0.5 * weights[i]]);
         c.iter_mut().for_each(|c| *c = c.map(|x| x / sum));
         Ok(c)
     }

@@ -37,7 +37,7 @@ impl<const D: usize> Problem<'_, D> {
                 sum[bond.i] += body.volume().at(bond.i) * trace;
             });
         let mut own = self.system.body.by_id(|i| sum[i]);
-        let least = own.iter().copied().fold(0.0, f64::max) * 1e-3;
+        let least = self.sums.most(own.iter().copied().fold(0.0, f64::max)) * 1e-3;
         own.iter_mut().for_each(|m| *m = m.max(least));
         let top = largest_ratio(&self.system.body, self.system.interaction.as_mut(), &own);
         // a step of 1 is stable to 4; half of that leaves room for stiffening
@@ -60,8 +60,10 @@ impl<const D: usize> Problem<'_, D> {
             self.press();
             let mut calls = 0;
             let masses = own.clone();
+            let goal = (goal, &self.sums.clone());
             let force = |x: &mut [[f64; D]], f: &mut [[f64; D]], mass: &mut [f64]| {
-                let scale = self.imbalance(x, &mut r, support).hypot(reference);
+                let mut found = self.imbalance(x, &mut r, support);
+                found.scale = found.scale.hypot(reference);
                 if calls % LOOK == 0 {
                     if !repels && self.repels_inside() {
                         repels = true;
@@ -75,17 +77,18 @@ impl<const D: usize> Problem<'_, D> {
                 calls += 1;
                 f.copy_from_slice(&r);
                 self.weigh(&mut sum, &own, mass);
-                Some(scale)
+                Some(found)
             };
             let solved = match state.options.method {
-                Method::Fire => minimize(&mut x, masses, support, goal, force)?,
+                Method::Fire => minimize(&mut x, masses, goal, force)?,
                 Method::Linear | Method::Newton | Method::Relaxation => {
-                    relax(&mut x, masses, support, goal, path, force)?
+                    relax(&mut x, masses, goal, path, force)?
                 }
             };
             total.iterations += solved.iterations;
             total.residual = solved.residual;
-            if solved.iterations == 0 || !self.rubs() {
+            let rubs = self.rubs();
+            if !self.sums.any(rubs) || solved.iterations == 0 {
                 return Ok(total);
             }
         }
@@ -131,11 +134,10 @@ impl<const D: usize> Problem<'_, D> {
         let mut sum = vec![0.0; system.body.len()];
         system
             .interaction
-            .each_bond(&system.body, &mut |i, j, xi, _| {
+            .each_partner(&system.body, &mut |i, j, xi, _| {
                 let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
                 if let Some(stiffness) = contact.central.first_stiffness(&system.body, [i, j], r0) {
                     sum[i] += stiffness;
-                    sum[j] += stiffness;
                 }
             });
         for (m, &s) in own.iter_mut().zip(system.body.slots()) {

@@ -48,10 +48,12 @@ impl<const D: usize> System<D> {
         self.learn_strength();
         let between = self.interaction.criticals_between();
         let mut all = [self.criticals()].into_iter().chain(between).flatten();
+        let breaks = all.any(|e| e > 0.0 && e < history::NEVER);
         let rest = self.body.at_rest();
         let stress = self.interaction.stress_borne(&self.body, view(&rest));
         let works = (self.interaction).work_borne(&self.body, view(&rest), &mut |_, _, _, _| {});
-        if stress.is_none() && !works && !all.any(|e| e > 0.0 && e < history::NEVER) {
+        let breaks = breaks || works || stress.is_some();
+        if !self.body.exchange().any(breaks) {
             return Err(BuildError::missing(
                 "materials[0].fracture",
                 "no bond of this body breaks: nothing says how far the load goes",
@@ -67,11 +69,13 @@ impl<const D: usize> System<D> {
         traits::of_control(self, proportional)
     }
 
-    /// Critical values of `e` by slot; none where bonds do not break.
+    /// Critical values of `e` by slot, of copies too; none where bonds do not break.
     pub(super) fn criticals(&self) -> Vec<f64> {
         let mut out = vec![];
-        self.interaction
-            .read_column(&self.body, view(&self.u), history::ELONGATION, &mut out);
+        let bonds = &self.interaction;
+        if bonds.read_column(&self.body, view(&self.u), history::ELONGATION, &mut out) {
+            self.body.exchange().fill(&mut out);
+        }
         out
     }
 
@@ -84,17 +88,17 @@ impl<const D: usize> System<D> {
             [u, f]
         };
         let [none, half, whole] = [0.0, 0.5, 1.0].map(&mut at);
-        (0..2).all(|of| {
-            (0..D).all(|a| {
-                // absent sites are far away
-                let all = self.body.slots().iter().map(|s| whole[of][a][*s as usize]);
-                let most = all.fold(0.0f64, |m, x| m.max(x.abs()));
-                self.body.slots().iter().all(|s| {
-                    let [x, y, z] = [&none, &half, &whole].map(|w| w[of][a][*s as usize]);
-                    x.abs() <= ROUND_OFF * most && (y - 0.5 * z).abs() <= ROUND_OFF * most
-                })
-            })
-        })
+        let mut deviates = false;
+        for (of, a) in (0..2).flat_map(|of| (0..D).map(move |a| (of, a))) {
+            // absent sites are far away
+            let all = self.body.slots().iter().map(|s| whole[of][a][*s as usize]);
+            let most = self.body.most(all.fold(0.0f64, |m, x| m.max(x.abs())));
+            deviates |= self.body.slots().iter().any(|s| {
+                let [x, y, z] = [&none, &half, &whole].map(|w| w[of][a][*s as usize]);
+                !(x.abs() <= ROUND_OFF * most && (y - 0.5 * z).abs() <= ROUND_OFF * most)
+            });
+        }
+        !self.body.exchange().any(deviates)
     }
 }
 
@@ -120,7 +124,7 @@ impl<const D: usize> Problem<'_, D> {
         }
         let found = self.next_equilibrium(state, last.as_ref());
         if found.is_err() {
-            if !whole.is_empty() {
+            if last.is_some() {
                 self.system
                     .interaction
                     .write_column(&self.system.body, history::WHOLE, &whole);
@@ -137,21 +141,28 @@ impl<const D: usize> Problem<'_, D> {
         let held: f64 = system.quadratic_energy().iter().sum();
         let near = 1e-6 * system.body.spacing();
         let at = |slot: usize| -> [f64; D] {
-            let x = system.body.position(slot);
+            let x = system.body.home(slot);
             crate::array::from_fn(|a| x[a])
         };
         // from either end, through a periodic face as well
         let along =
             |x: [f64; D], xi: [f64; D], by: f64| crate::array::from_fn(|a| x[a] + by * xi[a]);
         let from = |slot: usize, xi: [f64; D], by: f64| [at(slot), along(at(slot), xi, by)];
-        let ends = bonds.iter();
-        let ends: Vec<[[f64; D]; 2]> = ends
+        let own = bonds.iter();
+        let own: Vec<[[f64; D]; 2]> = own
             .flat_map(|b| [from(b.i, b.xi, 1.0), from(b.j, b.xi, -1.0)])
             .collect();
+        // those of all ranks: a bond across a border is told by one of them
+        let ends = system
+            .body
+            .all_of(own.as_flattened().as_flattened())
+            .concat();
+        let ends = ends.as_chunks::<D>().0;
         let same = |x: &[f64; D], y: &[f64; D]| (0..D).all(|a| (x[a] - y[a]).abs() < near);
         let is = |from: [f64; D], to: [f64; D]| {
-            ends.iter()
-                .any(|[a, b]| (same(a, &from) && same(b, &to)) || (same(b, &from) && same(a, &to)))
+            { ends.chunks_exact(2) }.any(|e| {
+                (same(&e[0], &from) && same(&e[1], &to)) || (same(&e[1], &from) && same(&e[0], &to))
+            })
         };
         system.accounts.swept.broken +=
             system.interaction.cut(&system.body, CrackKind::Broken, &is);
@@ -231,18 +242,11 @@ impl<const D: usize> Problem<'_, D> {
         };
         let mut all = vec![];
         let mut most = 0.0f64;
-        // the points of bodies whose bonds break by work
-        let mut work = vec![
-            false;
-            if by_work.is_empty() {
-                0
-            } else {
-                system.body.len()
-            }
-        ];
+        // bodies whose bonds break by work
+        let mut work = vec![false; system.body.pieces().len().max(1)];
         for (i, j, xi, part) in by_work {
             if system.body.piece_of(i) == system.body.piece_of(j) {
-                (work[i], work[j]) = (true, true);
+                work[system.body.piece_of(i)] = true;
             }
             let s = stretch(i, j, &xi, &system.u);
             most = most.max(s.abs());
@@ -252,7 +256,8 @@ impl<const D: usize> Problem<'_, D> {
                 all.push((factor, Critical { i, j, xi, stretch }));
             }
         }
-        let works = |i: usize| work.get(i) == Some(&true);
+        let work: Vec<bool> = work.into_iter().map(|own| self.sums.any(own)).collect();
+        let forced = self.sums.any(!stress.is_empty()) || work.contains(&true);
         system
             .interaction
             .each_bond(&system.body, &mut |i, j, xi, state| {
@@ -260,7 +265,7 @@ impl<const D: usize> Problem<'_, D> {
                     return;
                 }
                 let whole_body = system.body.piece_of(i) == system.body.piece_of(j);
-                if whole_body && works(i) && works(j) {
+                if whole_body && work[system.body.piece_of(i)] {
                     return;
                 }
                 let [a, b] = [i, j].map(|s| stress.get(s).copied().unwrap_or(f64::NAN));
@@ -293,13 +298,14 @@ impl<const D: usize> Problem<'_, D> {
                 }
             });
         let least = all.iter().map(|(factor, _)| *factor);
-        let least = least.fold(f64::INFINITY, f64::min);
+        let least = -self.sums.most(-least.fold(f64::INFINITY, f64::min));
         let largest = all.iter().map(|(_, b)| b.stretch).fold(0.0, f64::max);
+        let [largest, most] = [largest, most].map(|own| self.sums.most(own));
         // where stress or work is all that there is of a body that moves as a whole it is round-off
         let peak = { system.body.slots().iter() }
             .flat_map(|s| system.u.iter().map(|c| c[*s as usize].abs()))
             .fold(0.0f64, f64::max);
-        let forced = !stress.is_empty() || !work.is_empty();
+        let peak = self.sums.most(peak);
         let rests = forced && !(most * system.body.spacing() > AT_REST * peak);
         if rests || !(least.is_finite() && least * most > AT_REST * largest) {
             return Err(SolveError::NothingBreaks);
@@ -313,13 +319,15 @@ impl<const D: usize> Problem<'_, D> {
     /// Work of loads and reactions from the last equilibrium to that at `factor`; displacements and forces are those under the load 1.
     fn account_sequence(&mut self, u: &Field<D>, last: Option<&Sequence<D>>, factor: f64) {
         let system = &mut *self.system;
-        let dot = |f: &dyn Fn(usize, usize) -> f64, x: &dyn Fn(usize, usize) -> f64| {
-            let each = system.body.slots().iter().map(|s| *s as usize);
-            each.map(|i| {
+        type At<'a> = &'a (dyn Fn(usize, usize) -> f64 + Sync);
+        let dot = |f: At<'_>, x: At<'_>| {
+            let slots = system.body.slots();
+            let each = |n: usize| {
+                let i = slots[n] as usize;
                 let along: f64 = (0..D).map(|a| f(a, i) * x(a, i)).sum();
-                system.body.volume().at(i) * along
-            })
-            .sum::<f64>()
+                [system.body.volume().at(i) * along]
+            };
+            self.sums.each(slots.len(), each)[0]
         };
         // what acts from outside is what bonds pull against
         let stiffness = -dot(&|a, i| system.f[a][i], &|a, i| system.u[a][i]);
@@ -330,7 +338,7 @@ impl<const D: usize> Problem<'_, D> {
                 .next
                 .iter()
                 .map(|b| b.stretch / stretch(b.i, b.j, &b.xi, &system.u));
-            let mean = each.sum::<f64>() / last.next.len() as f64;
+            let mean = system.body.sum(each) / system.body.count(last.next.len() as u64) as f64;
             // where the ends of a bond come nearer to each other under the load without it, it lets go at the load that it had
             from = match mean > 0.0 && mean.is_finite() {
                 true => mean,

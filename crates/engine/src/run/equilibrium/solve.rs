@@ -1,14 +1,14 @@
 //! How one increment finds its equilibrium: linear about the reference, or by Newton's method.
 
-use super::equations::solve_assembled;
 use super::problem::Problem;
 use super::state::StaticState;
 use super::tried::{Inertia, Tried};
+use super::whole::unknowns;
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::interaction::BondStatus;
 use crate::spec::Statics;
-use crate::statics::{self, Assembled, Direct, Goal, Solved, Support, Swept, norm};
+use crate::statics::{self, Assembled, Direct, Goal, Imbalance, Solved, Support, Swept};
 
 /// Relative residual above which a direct solution is none: the matrix is singular to round-off.
 const SOLVED: f64 = 1e-6;
@@ -80,35 +80,43 @@ impl<const D: usize> Problem<'_, D> {
         x: &mut [[f64; D]],
     ) -> Result<Solved, SolveError> {
         // all that is left rests
-        if support.unknowns() == 0 {
+        if unknowns(&self.system.body, support) == 0 {
             return Ok(Solved::default());
         }
         if self.system.factored(state.options, support) {
-            let (body, factors) = match state.factors.take() {
-                Some((body, factors)) => (body, Some(factors)),
-                None => (self.reference_body(), None),
+            let kept = state.factors.take();
+            // the first rank has what there is
+            let body = match self.sums.any(kept.is_some()) {
+                true => None,
+                false => self.reference_body(),
             };
-            let resisted = &support.resisted(&body);
-            support.rests(resisted, b)?;
-            if resisted.unknowns() == 0 {
-                return Ok(Solved::default());
-            }
-            let support = resisted;
-            let factors = match factors {
-                Some(kept) => kept,
-                None => Direct::new(&body, support, 0.0)?,
-            };
-            let solved = factors.solve_held(&mut Assembled(&body), support, b, x);
-            // LU of a singular matrix says nothing; what is not a number is no solution
-            if !(solved.residual <= SOLVED) {
-                return Err(SolveError::Singular);
-            }
-            state.factors = Some((body, factors));
-            return Ok(solved);
+            return self.solve_whole((support, b), x, |support, b, x| {
+                let kept = kept.map(|(body, factors)| (body, Some(factors)));
+                let (body, factors) = { kept.or(body.map(|body| (body, None))) }
+                    .expect("the first rank has the matrix");
+                let resisted = &support.resisted(&body);
+                support.rests(resisted, b)?;
+                if resisted.unknowns() == 0 {
+                    return Ok(Solved::default());
+                }
+                let support = resisted;
+                let factors = match factors {
+                    Some(kept) => kept,
+                    None => Direct::new(&body, support, 0.0)?,
+                };
+                let solved = factors.solve_held(&mut Assembled(&body), support, b, x);
+                // LU of a singular matrix says nothing; what is not a number is no solution
+                if !(solved.residual <= SOLVED) {
+                    return Err(SolveError::Singular);
+                }
+                state.factors = Some((body, factors));
+                Ok(solved)
+            });
         }
         let goal = self.goal(state.options);
         if self.system.at_peace() {
-            let mut operator = Swept::new(&self.system.body, self.system.interaction.as_mut());
+            let interaction = self.system.interaction.as_mut();
+            let mut operator = Swept::new(&self.system.body, interaction, &self.sums);
             let asymmetry = *state
                 .asymmetry
                 .get_or_insert_with(|| statics::operator::asymmetry(&mut operator, support));
@@ -118,7 +126,10 @@ impl<const D: usize> Problem<'_, D> {
             statics::cg::solve(&mut operator, support, b, x, goal)
         } else {
             let body = self.reference_body();
-            solve_assembled(&body, &[], support, b, x, goal)
+            self.solve_whole((support, b), x, |support, b, x| {
+                let body = body.expect("the first rank has the matrix");
+                statics::cg::solve_assembled(&body, &[], support, b, x, goal)
+            })
         }
     }
 
@@ -149,7 +160,7 @@ impl<const D: usize> Problem<'_, D> {
         let mut scale = missing.scale.hypot(reference);
         let mut iterations = 0;
         for _ in 0..NEWTON {
-            goal.go_on()?;
+            goal.go_on(0, &self.sums)?;
             let size = missing.size;
             if !size.is_finite() {
                 return Err(SolveError::NotFinite);
@@ -170,19 +181,15 @@ impl<const D: usize> Problem<'_, D> {
             };
             let (step, took) = self.step_of(&equations, support, &r, &missing.bodies, rough)?;
             iterations += took;
-            if inertia.is_some() && equations.factored() {
+            if inertia.is_some() && equations.factored {
                 state.step = Some(equations);
             }
-            let longest = |x: &[[f64; D]]| {
-                let all = x.as_flattened().iter();
-                all.fold(0.0f64, |m, s| m.max(s.abs()))
-            };
-            let far = longest(&step.x).max(step.far);
+            let far = self.sums.largest(&step.x).max(step.far);
             let least = match inertia {
                 None => LEAST_STEP * self.system.body.spacing(),
                 // points may have gone far from where they were
                 Some(_) => (LEAST_STEP * self.system.body.spacing())
-                    .max(4.0 * f64::EPSILON * longest(&now.x)),
+                    .max(4.0 * f64::EPSILON * self.sums.largest(&now.x)),
             };
             if far < least {
                 return Ok((
@@ -230,20 +237,21 @@ impl<const D: usize> Problem<'_, D> {
         support: &Support<D>,
     ) -> Missing {
         let Some(inertia) = inertia else {
-            let scale = self.imbalance(&tried.x, r, support);
+            let Imbalance { size, scale } = self.imbalance(&tried.x, r, support);
             return Missing {
-                size: norm(r),
+                size,
                 scale,
                 bodies: vec![],
             };
         };
         self.set_velocities_of(tried);
         self.place_bodies(tried, inertia);
-        let scale = self.imbalance(&tried.x, r, support);
+        let scale = self.imbalance(&tried.x, r, support).scale;
         let (bodies, [left, acting]) = self.missing_of_bodies(tried, inertia);
+        let found = inertia.take(tried, (r, &self.sums), support);
         Missing {
-            scale: scale.hypot(inertia.take(tried, r, support)).hypot(acting),
-            size: norm(r).hypot(left),
+            scale: scale.hypot(found.scale).hypot(acting),
+            size: found.size.hypot(left),
             bodies,
         }
     }
@@ -255,33 +263,35 @@ impl<const D: usize> Problem<'_, D> {
         }
         let before = self.system.body.values(&self.system.u);
         let mut r = vec![[0.0; D]; before.len()];
-        self.imbalance(&vec![[0.0; D]; before.len()], &mut r, support);
+        let found = self.imbalance(&vec![[0.0; D]; before.len()], &mut r, support);
         self.system.set_values(&before);
-        norm(&r)
+        found.size
     }
 
-    /// Forces on the free components at displacements `x`, and the size of the loads and reactions.
+    /// Forces on the free components at displacements `x`.
     pub(super) fn imbalance(
         &mut self,
         x: &[[f64; D]],
         r: &mut [[f64; D]],
         support: &Support<D>,
-    ) -> f64 {
+    ) -> Imbalance {
         self.system.set_values(x);
         self.system.forces_held(self.system.clock.trial());
         let all = self.system.body.per_point(&self.system.f);
         let loads = self.system.external();
         let loads = self.system.body.per_point(&loads);
-        let mut scale = 0.0;
-        for i in 0..r.len() {
-            for a in 0..D {
-                let free = support.free[i][a];
-                r[i][a] = if free { all[i][a] } else { 0.0 };
-                let outside = if free { loads[i][a] } else { all[i][a] };
-                scale += outside * outside;
-            }
-        }
-        scale.sqrt()
+        r.copy_from_slice(&all);
+        support.mask(r);
+        let squares = self.sums.each(r.len(), |i| {
+            let outside = |a: usize| match support.free[i][a] {
+                true => loads[i][a],
+                false => all[i][a],
+            };
+            let square = |of: &dyn Fn(usize) -> f64| (0..D).map(|a| of(a) * of(a)).sum::<f64>();
+            [square(&|a| r[i][a]), square(&outside)]
+        });
+        let [size, scale] = squares.map(f64::sqrt);
+        Imbalance { size, scale }
     }
 
     fn largest_stretch(&self) -> f64 {
@@ -298,7 +308,7 @@ impl<const D: usize> Problem<'_, D> {
                     .sum();
                 worst = worst.max((longer / square).abs());
             });
-        worst
+        self.sums.most(worst)
     }
 }
 

@@ -1,10 +1,12 @@
 //! What statics keeps between increments.
 
 use super::system::Equations;
-use crate::body::{Field, zeros};
+use crate::body::{Body, Field, zeros};
 use crate::spec::{Control, LinearBody, Statics};
 use crate::state::{Archive, words};
 use crate::statics::{Direct, Solved, Support};
+use std::cmp::Ordering;
+use std::collections::HashMap;
 
 pub(in crate::run) struct StaticState<const D: usize> {
     pub options: Statics,
@@ -18,7 +20,7 @@ pub(in crate::run) struct StaticState<const D: usize> {
     pub(super) followed: Option<Followed<D>>,
     /// Of the operator about the reference, once looked at.
     pub(super) asymmetry: Option<f64>,
-    /// The largest masses of points that relaxation had, of laws that remember; else empty.
+    /// `[N]` the largest masses of points that relaxation had, of laws that remember; else empty.
     pub(super) masses: Vec<f64>,
     /// Of the last increment.
     pub solved: Solved,
@@ -52,47 +54,81 @@ impl<const D: usize> StaticState<D> {
 }
 
 impl<const D: usize> StaticState<D> {
-    /// What later increments read, of a body with so many slots; factors of the reference are found anew.
-    pub fn archive(&mut self, slots: usize, archive: &mut Archive<'_>) {
+    /// What later increments read; factors of the reference are found anew.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        let points = body.points();
         let sequence = || Sequence {
             next: vec![],
-            f: zeros(slots),
+            f: zeros(body.len()),
             factor: 0.0,
         };
         archive.option("sequence", &mut self.sequence, sequence, |s, archive| {
-            archive.list("next", &mut s.next);
-            archive.columns("force_density", &mut s.f);
+            archive_bonds(body, archive, &mut s.next);
+            body.archive_field(archive, "force_density", &mut s.f);
             archive.one("factor", &mut s.factor);
         });
         let followed = || Followed {
-            way: vec![],
+            way: vec![[0.0; D]; points],
             factor: 0.0,
             part: 0.0,
             most: 0.0,
         };
         archive.option("followed", &mut self.followed, followed, |f, archive| {
-            archive.list("way", &mut f.way);
+            archive.points("way", body.whose(), 1, (&mut f.way, 0..points));
             archive.one("factor", &mut f.factor);
             archive.one("part", &mut f.part);
             archive.one("most", &mut f.most);
         });
-        archive.list("masses", &mut self.masses);
+        body.archive_if_any(archive, "masses", &mut self.masses, 0.0);
         archive.one("solved", &mut self.solved);
     }
 
     /// Equations of a step in time that may serve the next, factored anew with what was held.
-    pub fn archive_kept(
-        &mut self,
-        period: [Option<f64>; D],
-        held: &Support<D>,
-        archive: &mut Archive<'_>,
-    ) {
-        let none = || Equations::none(period);
-        archive.option("kept", &mut self.step, none, |kept, archive| {
-            kept.archive(held, archive);
+    pub fn archive_kept(&mut self, body: &Body<D>, held: &Support<D>, archive: &mut Archive<'_>) {
+        let unread = || Equations::unread(body);
+        archive.option("kept", &mut self.step, unread, |kept, archive| {
+            kept.archive(body, held, archive);
         });
         archive.one("solved", &mut self.solved);
     }
+}
+
+/// Passes bonds through an archive, of which the one of two ranks has each that has its lower id.
+fn archive_bonds<const D: usize>(
+    body: &Body<D>,
+    archive: &mut Archive<'_>,
+    bonds: &mut Vec<Critical<D>>,
+) {
+    let ids = body.ids_of_all();
+    let by_id = |bond: &Critical<D>| {
+        let [i, j] = [bond.i, bond.j].map(|slot| ids[slot] as usize);
+        let xi = if i < j { bond.xi } else { bond.xi.map(|x| -x) };
+        let (i, j) = (i.min(j), i.max(j));
+        (i as u32, Critical { i, j, xi, ..*bond })
+    };
+    let mut entries: Vec<(u32, Critical<D>)> = bonds.iter().map(by_id).collect();
+    entries.sort_by(|(_, a), (_, b)| (a.i, a.j).cmp(&(b.i, b.j)).then(total(&a.xi, &b.xi)));
+    archive.entries("next", body.whose(), &mut entries);
+    if !archive.loads() {
+        return;
+    }
+    let copies = body.exchange().copies();
+    let others = copies.filter(|slot| body.exchange().original(*slot) == *slot);
+    let own = body.slots().iter().map(|slot| *slot as usize);
+    let slots: HashMap<usize, usize> = own.chain(others).map(|s| (ids[s] as usize, s)).collect();
+    let lie = |(_, bond): (u32, Critical<D>)| {
+        let (i, j) = (*slots.get(&bond.i)?, *slots.get(&bond.j)?);
+        Some(Critical { i, j, ..bond })
+    };
+    match entries.into_iter().map(lie).collect() {
+        Some(found) => *bonds = found,
+        None => archive.refuse("next"),
+    }
+}
+
+fn total(x: &[f64], y: &[f64]) -> Ordering {
+    let each = x.iter().zip(y).map(|(x, y)| x.total_cmp(y));
+    each.fold(Ordering::Equal, Ordering::then)
 }
 
 /// A bond at its critical stretch.

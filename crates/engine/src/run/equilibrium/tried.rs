@@ -2,7 +2,7 @@
 
 use super::problem::Problem;
 use crate::condition::rigid::{NewmarkStep, Wrench};
-use crate::statics::{Masses, Support};
+use crate::statics::{Imbalance, Masses, Sums, Support};
 use std::sync::Arc;
 
 /// A state on trial, in order of ids.
@@ -93,23 +93,31 @@ impl<const D: usize> Inertia<D> {
         }
     }
 
-    /// Takes `m a` from the forces on the free components; how large it and `m v/Δt` are.
-    pub fn take(&self, tried: &Tried<D>, r: &mut [[f64; D]], support: &Support<D>) -> f64 {
-        let mut size = 0.0;
+    /// Takes `m a` from the forces on the free components: what is left of them, and how large it and `m v/Δt` are.
+    pub fn take(
+        &self,
+        tried: &Tried<D>,
+        (r, sums): (&mut [[f64; D]], &Sums),
+        support: &Support<D>,
+    ) -> Imbalance {
         let coupled = self.coupled.as_ref().map(|m| m.times(&tried.a));
+        let inertia = |n: usize, a: usize| match &coupled {
+            None => self.mass[n] * tried.a[n][a],
+            Some(force) => self.weight * force[n][a],
+        };
         for (n, r) in r.iter_mut().enumerate() {
-            let m = self.mass[n];
             for a in (0..D).filter(|a| support.free[n][*a]) {
-                let inertia = match &coupled {
-                    None => m * tried.a[n][a],
-                    Some(force) => self.weight * force[n][a],
-                };
-                let momentum = m * tried.v[n][a] / self.step;
-                r[a] -= inertia + self.past.get(n).map_or(0.0, |f| f[a]);
-                size += inertia * inertia + momentum * momentum;
+                r[a] -= inertia(n, a) + self.past.get(n).map_or(0.0, |f| f[a]);
             }
         }
-        size.sqrt()
+        let squares = sums.each(r.len(), |n| {
+            let free = (0..D).filter(|a| support.free[n][*a]);
+            let momentum = |a: usize| self.mass[n] * tried.v[n][a] / self.step;
+            let taken = free.map(|a| inertia(n, a).powi(2) + momentum(a).powi(2));
+            [r[n].iter().map(|c| c * c).sum(), taken.sum()]
+        });
+        let [size, scale] = squares.map(f64::sqrt);
+        Imbalance { size, scale }
     }
 }
 

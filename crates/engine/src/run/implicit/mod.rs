@@ -1,5 +1,6 @@
 //! Can a body move by implicit steps?
 
+use super::equilibrium::whole::unknowns;
 use super::system::System;
 use super::traits;
 use crate::error::BuildError;
@@ -61,7 +62,7 @@ impl<const D: usize> System<D> {
             .help("leave both out: 0.25 and 0.5 are of second order and lose no energy"));
         }
         traits::of_implicit_steps(self, options.solver)?;
-        if self.applied.free().next().is_some() && self.held().unknowns() == 0 {
+        if self.applied.free().next().is_some() && unknowns(&self.body, &self.held()) == 0 {
             return Err(BuildError::unsupported(
                 "indenters",
                 "an indenter with a mass moves implicitly beside points that are free, and all are held",

@@ -1,6 +1,7 @@
 //! Statics before motion: increments of load under conditions of their own, and the passage from the last equilibrium to motion. The
 //! ledger goes on through it: what loads and reactions did in statics is the strain energy that motion begins with.
 
+use super::agreed::agreed;
 use super::conditions::tell_loads;
 use super::model::Model;
 use super::names::Names;
@@ -74,7 +75,7 @@ impl<const D: usize> System<D> {
             constraints,
             ..PrescribedMotion::default()
         };
-        self.agrees(&prescribed, preload.end())?;
+        agreed(&self.body, self.agrees(&prescribed, preload.end()))?;
         let knows_contact = statics.method.minimizes();
         let next = Stage {
             stepper: motion,
@@ -87,8 +88,7 @@ impl<const D: usize> System<D> {
             cuts,
         };
         self.clock.load_first(preload);
-        self.check_agreement(conditions, preload.end())
-            .map_err(within)?;
+        agreed(&self.body, self.check_agreement(conditions, preload.end())).map_err(within)?;
         let statics = stepper::before_motion(statics, self).map_err(within)?;
         let loads = &mut self.applied.loads;
         let told = tell_loads(&self.body, loads, conditions, preload.end());
@@ -135,13 +135,18 @@ impl<const D: usize> System<D> {
     fn can_move(&mut self, next: &mut Stage<D>) -> Result<(), RunError> {
         let mut told = next.prescribed.displaced(0.0);
         let jump = told.find(|(slot, axis, asked)| self.apart(*asked, self.u[*axis][*slot]));
-        if let Some((slot, axis, asked)) = jump {
+        let own = jump.map(|(slot, axis, asked)| {
+            let id = self.body.number(slot) as f64 - 1.0;
+            [id, axis as f64, asked, self.u[axis][slot]]
+        });
+        let all = self.body.all_of(own.as_slice()).concat();
+        if let Some(&[id, axis, asked, found]) = all.first() {
             return Err(RunError::Jump {
                 step: self.clock.step(),
-                position: self.body.position(slot),
-                axis: ["x", "y", "z"][axis],
+                position: self.body.position_of(id as usize),
+                axis: ["x", "y", "z"][axis as usize],
                 asked,
-                found: self.u[axis][slot],
+                found,
             });
         }
         if let Some(contact) = &mut next.contact {
@@ -151,7 +156,8 @@ impl<const D: usize> System<D> {
             let mut pairs = 0;
             contact
                 .central
-                .each_pull(&self.body, &self.u, |_| pairs += 1);
+                .each_once(&self.body, &self.u, |_| pairs += 1);
+            let pairs = self.body.count(pairs) as usize;
             if pairs > 0 {
                 return Err(RunError::Touching {
                     step: self.clock.step(),
@@ -171,11 +177,11 @@ impl<const D: usize> System<D> {
                 .iter()
                 .sum();
             for crack in cuts {
-                self.info.cut +=
-                    self.interaction
-                        .cut(&self.body, CrackKind::Broken, &|from, to| {
-                            crack.crosses(&from, &to)
-                        });
+                let crosses = |from, to| crack.crosses(&from, &to);
+                let cut = self
+                    .interaction
+                    .cut(&self.body, CrackKind::Broken, &crosses);
+                self.info.cut += self.body.count(cut);
             }
             let kept: f64 = self
                 .interaction

@@ -17,6 +17,7 @@
 
 use super::rectangle::Contour;
 use crate::error::BuildError;
+use crate::execute::exact::Exact;
 use crate::message;
 use crate::observe::Values;
 use crate::quantity::Dimension;
@@ -51,6 +52,7 @@ impl<const D: usize> System<D> {
                 *b = [b[0].min(x), b[1].max(x)];
             }
         }
+        let bounds = bounds.map(|[low, high]| [self.body.least(low), self.body.most(high)]);
         let (horizon, half_cell) = (self.info.horizon, 0.5 * self.body.spacing());
         for a in 0..2 {
             let (low, high) = (spec.low[a], spec.high[a]);
@@ -83,7 +85,8 @@ impl<const D: usize> System<D> {
             .loads
             .iter()
             .flat_map(|l| l.slots().iter().map(|s| *s as usize));
-        if held.into_iter().chain(loaded).any(inside) {
+        let held = held.into_iter().chain(loaded).any(inside);
+        if self.body.exchange().any(held) {
             let message = "points inside the rectangle are held or loaded, and what that does would count as energy of the crack";
             return Err(BuildError::conflict(at("corners"), message)
                 .help("move the corners away from them"));
@@ -117,6 +120,7 @@ impl<const D: usize> System<D> {
                 moduli.push(c11 - c12 * c12 / c11);
             }
         }
+        let mut moduli = self.body.all_of(&moduli).concat();
         moduli.sort_by(f64::total_cmp);
         moduli.get(moduli.len() / 2).copied().unwrap_or(0.0)
     }
@@ -136,34 +140,31 @@ impl<const D: usize> Model<D> {
         else {
             unreachable!("by their declarations")
         };
-        let q: Vec<(f64, [f64; 2])> = self.system.body.by_id(|s| {
-            let x = self.system.body.position(s);
-            contour.q([x[0], x[1]])
-        });
-        let g: Vec<[f64; 2]> = gradient
-            .iter()
-            .map(|h| [h[0] * n[0] + h[1] * n[1], h[3] * n[0] + h[4] * n[1]])
-            .collect();
-        let mut sum = 0.0;
-        for (id, (_, slope)) in q.iter().enumerate() {
-            let volume = self
-                .system
-                .body
-                .volume()
-                .at(self.system.body.slots()[id] as usize);
-            sum -= volume * energy[id] * (slope[0] * n[0] + slope[1] * n[1]);
+        let body = &self.system.body;
+        // by slot, of copies too
+        let (mut q, mut slope) = (vec![0.0; body.len()], vec![[0.0; 2]; body.len()]);
+        let mut g = vec![[0.0; 2]; body.len()];
+        for (&s, h) in body.slots().iter().zip(gradient) {
+            let s = s as usize;
+            let x = body.position(s);
+            (q[s], slope[s]) = contour.q([x[0], x[1]]);
+            g[s] = [h[0] * n[0] + h[1] * n[1], h[3] * n[0] + h[4] * n[1]];
         }
-        let (id, volume) = (
-            self.system.body.ids_by_slot(),
-            self.system.body.volume().clone(),
-        );
-        self.system.each_pair_force(&mut |bond| {
-            let (i, j) = (id[bond.i] as usize, id[bond.j] as usize);
-            let across = q[i].0 - q[j].0;
-            let power: f64 = (0..2).map(|a| bond.force[a] * (g[i][a] + g[j][a])).sum();
-            sum -= 0.25 * volume.at(bond.i) * across * power;
+        body.exchange().fill(&mut q);
+        body.exchange().fill(&mut g);
+        let volume = body.volume().clone();
+        let each = body.slots().iter().zip(energy).map(|(&s, energy)| {
+            let along = slope[s as usize][0] * n[0] + slope[s as usize][1] * n[1];
+            -(volume.at(s as usize) * energy * along)
         });
-        let j = sum / contour.section;
+        let mut sum: Exact = each.collect();
+        self.system.each_pair_force(&mut |bond| {
+            let (i, j) = (bond.i, bond.j);
+            let across = q[i] - q[j];
+            let power: f64 = (0..2).map(|a| bond.force[a] * (g[i][a] + g[j][a])).sum();
+            sum.take(0.25 * volume.at(i) * across * power);
+        });
+        let j = self.system.body.sums([sum])[0] / contour.section;
         // closed by pressure: no intensity
         [j, (j.max(0.0) * contour.modulus).sqrt()]
     }

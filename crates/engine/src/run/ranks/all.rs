@@ -8,6 +8,7 @@ use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, StateHash};
 use crate::run::agreed::agreed_among;
+use crate::run::examined::{linear_of_all, modes_of_all};
 use crate::run::feasible::possible;
 use crate::run::{
     AtomBond, Examined, Families, Info, ModeShape, Options, Prescription, Seen, Shelf, Simulation,
@@ -27,6 +28,8 @@ enum Ask<'a> {
     Ledger,
     Summary,
     Fragments,
+    LinearBody,
+    Modes(usize),
     Hash,
     Measure,
     Columns,
@@ -51,6 +54,8 @@ impl<'a> Ask<'a> {
             Ask::Ledger => "ledger".into(),
             Ask::Summary => "summary".into(),
             Ask::Fragments => "fragments".into(),
+            Ask::LinearBody => "linear_body".into(),
+            Ask::Modes(count) => format!("modes {count}"),
             Ask::Hash => "hash".into(),
             Ask::Measure => "measure".into(),
             Ask::Columns => "columns".into(),
@@ -88,6 +93,8 @@ impl<'a> Ask<'a> {
             "ledger" => Ask::Ledger,
             "summary" => Ask::Summary,
             "fragments" => Ask::Fragments,
+            "linear_body" => Ask::LinearBody,
+            "modes" => Ask::Modes(of.parse().ok()?),
             "hash" => Ask::Hash,
             "measure" => Ask::Measure,
             "columns" => Ask::Columns,
@@ -136,6 +143,8 @@ impl<const D: usize> RankModel<D> {
                 Ask::Ledger => drop(self.model.ledger()),
                 Ask::Summary => drop(self.model.summary()),
                 Ask::Fragments => drop(self.fragments()),
+                Ask::LinearBody => drop(linear_of_all(&mut self.model)),
+                Ask::Modes(count) => drop(modes_of_all(&mut self.model, count)),
                 Ask::Hash => drop(self.state_hash()),
                 Ask::Measure => drop(self.model.measure()),
                 Ask::Columns => drop(self.columns()),
@@ -146,12 +155,12 @@ impl<const D: usize> RankModel<D> {
                 Ask::Write(name, component, first, values) => {
                     self.write(name, component, first, values);
                 }
-                Ask::Save => drop(Archive::there(&comm, false, "", |archive| {
+                Ask::Save => Archive::there(&comm, false, "", |archive| {
                     self.model.archive(archive);
-                })),
-                Ask::Load(path) => drop(Archive::there(&comm, true, path, |archive| {
+                }),
+                Ask::Load(path) => Archive::there(&comm, true, path, |archive| {
                     self.model.archive(archive);
-                })),
+                }),
                 Ask::Leave => return,
             }
         }
@@ -387,11 +396,13 @@ impl<const D: usize> Examined for AllRanks<D> {
     }
 
     fn linear_body(&mut self) -> AnyLinearBody {
-        not_shared("linear bodies")
+        self.ask(&Ask::LinearBody);
+        self.own.model.linear_body()
     }
 
-    fn modes(&mut self, _: usize) -> Result<Vec<ModeShape>, SolveError> {
-        not_shared("modes")
+    fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError> {
+        self.ask(&Ask::Modes(count));
+        self.own.model.modes(count)
     }
 }
 

@@ -1,13 +1,12 @@
 //! The part of a model that one rank has.
 
 use super::shared::{FRAGMENT, shared};
-use crate::body::Subdomain;
+use crate::body::{Body, Subdomain};
 use crate::columns::{Declaration, On};
 use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
 use crate::observe::{Column, Snapshot, StateHash, Values};
 use crate::run::build::made_among;
-use crate::run::gathered::{Everyone, Gathered};
 use crate::run::state_hash::hashed;
 use crate::run::{Model, Options, Shelf, Simulation};
 use crate::spec::Spec;
@@ -17,7 +16,6 @@ use std::sync::Arc;
 /// The part of a model that one rank has. What is asked of all ranks at once is told there.
 pub struct RankModel<const D: usize> {
     pub(super) model: Model<D>,
-    everyone: Gathered,
 }
 
 impl<const D: usize> RankModel<D> {
@@ -34,15 +32,15 @@ impl<const D: usize> RankModel<D> {
     ) -> Result<RankModel<D>, BuildError> {
         shared(spec)?;
         let model = made_among(spec, options, shelf, Some(comm))?;
-        let subdomain = model.system.body.subdomain();
-        let of = subdomain.expect("made of a part of a body");
-        let everyone = Gathered::First(Everyone::of(comm, of.ids(), of.points()));
-        Ok(RankModel { model, everyone })
+        Ok(RankModel { model })
+    }
+
+    fn body(&self) -> &Body<D> {
+        &self.model.system.body
     }
 
     pub(super) fn subdomain(&self) -> &Subdomain {
-        let subdomain = self.model.system.body.subdomain();
-        subdomain.expect("made of a part of a body")
+        self.body().subdomain().expect("made of a part of a body")
     }
 
     /// Ids among all points of those that are here, in the order of columns.
@@ -77,17 +75,14 @@ impl<const D: usize> RankModel<D> {
 
     /// Pieces of the body of all ranks, on the first; their masses are not known.
     pub(super) fn fragments(&self) -> Option<Fragments> {
-        let system = &self.model.system;
-        let own = Fragments::joined(&system.body, system.interaction.as_ref());
-        let joined = self.everyone.lists(own)?;
-        Some(Fragments::of_joined(self.points(), joined.iter()))
+        Fragments::of_all(self.body(), self.model.system.interaction.as_ref())
     }
 
     /// Of the model of all ranks, on the first.
     pub(super) fn state_hash(&mut self) -> Option<StateHash> {
         self.model.finish();
-        let hash = hashed(&mut self.model.system, &self.everyone);
-        self.everyone.is_first().then_some(hash)
+        let hash = hashed(&mut self.model.system);
+        self.body().is_first().then_some(hash)
     }
 
     /// A column of the points of all ranks, by their ids, on the first rank.
@@ -104,7 +99,7 @@ impl<const D: usize> RankModel<D> {
             .model
             .column(name)
             .filter(|c| c.declaration.on == On::Points)?;
-        let values = self.everyone.values(own.values)?;
+        let values = whole_values(self.body(), own.values)?;
         Some(Column { values, ..own })
     }
 
@@ -117,14 +112,14 @@ impl<const D: usize> RankModel<D> {
         let bonds = own.bonds.map(|bonds| {
             let ends = bonds.into_iter().map(<[u32; 2]>::from).collect();
             Some(
-                self.everyone
-                    .lists(ends)?
+                self.body()
+                    .joined(ends)?
                     .into_iter()
                     .map(<(u32, u32)>::from)
                     .collect(),
             )
         });
-        let reference = self.everyone.columns(1, own.reference)?;
+        let reference = self.body().whole(1, own.reference)?;
         Some(Snapshot {
             reference,
             columns,
@@ -137,7 +132,7 @@ impl<const D: usize> RankModel<D> {
     pub(super) fn members(&self, set: &str) -> Option<Vec<u32>> {
         let own = self.model.members_of(set)?;
         let ids = own.into_iter().map(|id| self.ids()[id as usize]);
-        let mut all = self.everyone.lists(ids.collect())?;
+        let mut all = self.body().joined(ids.collect())?;
         all.sort_unstable();
         Some(all)
     }
@@ -148,7 +143,7 @@ impl<const D: usize> RankModel<D> {
         if !self.model.read(name, component, 0, &mut own) {
             return None;
         }
-        self.everyone.columns(1, own)
+        self.body().whole(1, own)
     }
 
     /// As [`Simulation::write`], of points of all ranks.
@@ -175,4 +170,16 @@ impl<const D: usize> RankModel<D> {
         let sent = self.subdomain().comm().traffic();
         (sent, self.model.system.body.exchange().received_slots())
     }
+}
+
+/// The values of a column of all ranks' points, on the first.
+fn whole_values<const D: usize>(body: &Body<D>, own: Values) -> Option<Values> {
+    Some(match own {
+        Values::Scalars(v) => Values::Scalars(body.whole(1, v)?),
+        Values::Vectors(v) => Values::Vectors(body.whole(1, v)?),
+        Values::Symmetric(v) => Values::Symmetric(body.whole(1, v)?),
+        Values::Tensors(v) => Values::Tensors(body.whole(1, v)?),
+        Values::Integers(v) => Values::Integers(body.whole(1, v)?),
+        Values::Counts(v) => Values::Counts(body.whole(1, v)?),
+    })
 }

@@ -1,9 +1,7 @@
 //! What ranks share of a spec so far.
 
 use crate::error::BuildError;
-use crate::spec::{
-    ConditionKind, ConditionSpec, FamilyChoice, LawSpec, Measure, ProbeSpec, Spec, Stepper,
-};
+use crate::spec::{ConditionKind, ConditionSpec, FamilyChoice, LawSpec, Measure, ProbeSpec, Spec};
 
 /// The one that is found of all ranks together.
 pub(super) const FRAGMENT: &str = "fragment";
@@ -28,7 +26,8 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
             true
         }
         Measure::Over { of, .. } | Measure::Value { of, .. } => of != FRAGMENT,
-        Measure::Contour(_) => false,
+        // points that touch across ranks have no slot there
+        Measure::Contour(_) => spec.interactions.contact.is_none(),
     };
     let in_reference = |family| match family {
         FamilyChoice::Auto | FamilyChoice::Stencil | FamilyChoice::List => true,
@@ -43,14 +42,7 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
                 .chain(pieces.iter().filter_map(|p| p.family))
                 .all(in_reference),
         ),
-        (
-            "bonds",
-            "factors of bonds and surfaces",
-            { pieces.iter() }.any(|p| p.surface.is_some())
-                || bonded.surface.is_some()
-                || !bonded.factors.is_empty()
-                || bonded.smooth.is_some(),
-        ),
+        ("bonds", "fields on nodes", bonded.smooth.is_some()),
         (
             "materials",
             "potentials and micromoduli",
@@ -69,7 +61,9 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         (
             "conditions",
             "forces of the shelf",
-            spec.loading.conditions.iter().any(named),
+            { spec.loading.conditions.iter() }
+                .chain(run.preload.iter().flat_map(|p| &p.conditions))
+                .any(named),
         ),
         (
             "loading.thermal",
@@ -77,19 +71,10 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
             spec.loading.thermal.is_some(),
         ),
         (
-            "run.schedule.stepper",
-            "implicit steps and statics",
-            match run.schedule.stepper {
-                Stepper::Verlet | Stepper::Still => false,
-                Stepper::Newmark(_) | Stepper::Statics(_) => true,
-            },
-        ),
-        (
             "probes",
-            "probes of fragments and contour integrals",
+            "probes of fragments, and contour integrals beside contact",
             !run.probes.iter().all(probe),
         ),
-        ("run", "statics before motion", run.preload.is_some()),
     ];
     match limits.into_iter().find(|(_, _, wrong)| *wrong) {
         None => Ok(()),

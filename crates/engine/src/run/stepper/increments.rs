@@ -1,11 +1,11 @@
 //! Statics: every step is an increment of load, and ends in equilibrium.
 
 use super::{SplitStep, Stepper};
-use crate::body::{Field, view, view_mut, zeros};
+use crate::body::{Body, Field, view, view_mut, zeros};
 use crate::error::{BuildError, RunError};
 use crate::interaction::Sweep;
-use crate::interaction::cycles_to_wear;
 use crate::interaction::friction::Pressed;
+use crate::interaction::{cycles_to_wear, first_to_wear};
 use crate::message;
 use crate::quantity::Dimension;
 use crate::run::clock::Clock;
@@ -14,23 +14,19 @@ use crate::run::equilibrium::problem::Problem;
 use crate::run::equilibrium::state::StaticState;
 use crate::run::system::{Regime, System};
 use crate::spec::{Control, Cycles, Method, Spec, Statics};
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 use crate::statics::Solved;
 
 /// What later increments read.
 pub(super) struct Increments<const D: usize> {
     state: StaticState<D>,
-    /// Of the body.
-    slots: usize,
-}
-
-impl<const D: usize> Owner for Increments<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        self.state.archive(self.slots, archive);
-    }
 }
 
 impl<const D: usize> Stepper<D> for Increments<D> {
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        self.state.archive(body, archive);
+    }
+
     fn regime(&self) -> Regime {
         let options = self.state.options;
         Regime {
@@ -142,13 +138,12 @@ impl<const D: usize> Increments<D> {
                 }
             }
         }
-        Ok(Increments::new(options, system))
+        Ok(Increments::new(options))
     }
 
-    pub fn new(options: Statics, system: &System<D>) -> Self {
+    pub fn new(options: Statics) -> Self {
         Increments {
             state: StaticState::new(options),
-            slots: system.body.len(),
         }
     }
 
@@ -197,11 +192,15 @@ fn wear<const D: usize>(system: &mut System<D>, cycles: Option<Cycles>) {
     };
     system.refresh_images();
     let (body, u) = (&system.body, view(&system.u));
-    let Some(bonds) = system.interaction.wearing(body, u, &cycles) else {
+    let bonds = system.interaction.wearing(body, u, &cycles);
+    if !body.exchange().any(bonds.is_some()) {
         return;
-    };
+    }
+    let bonds = bonds.unwrap_or_default();
     let left = (cycles.most - system.accounts.cycles).max(0.0);
-    let passed = cycles_to_wear(&bonds, &cycles, left);
+    let first = first_to_wear(&bonds, &cycles);
+    let first = system.body.all_of(&first).concat();
+    let passed = cycles_to_wear(first, &cycles, left);
     system.interaction.wear(&mut bonds.into_iter(), passed);
     system.accounts.cycles += passed;
 }

@@ -11,14 +11,17 @@ use self::rest::Rest;
 use self::verlet::VelocityVerlet;
 use super::system::{Regime, System};
 use super::time_step::Limits;
+use crate::body::Body;
 use crate::error::{BuildError, RunError};
 use crate::execute::simd::Simd;
 use crate::spec::{Spec, Statics, Stepper as Kind};
-use crate::state::Owner;
+use crate::state::Archive;
 use crate::statics::Solved;
 
 /// Who moves a system, and keeps what it needs for that between steps.
-pub(super) trait Stepper<const D: usize>: Owner + Send {
+pub(super) trait Stepper<const D: usize>: Send {
+    /// Passes what it keeps of the points of a body through an archive, as an [`Owner`](crate::state::Owner) does.
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>);
     /// What states mean that it leads through.
     fn regime(&self) -> Regime;
     /// First forces and accounts of a run; without bonds: for a body whose bonds are still to be cut.
@@ -79,5 +82,5 @@ pub(super) fn before_motion<const D: usize>(
     system: &System<D>,
 ) -> Result<Box<dyn Stepper<D>>, BuildError> {
     system.check_statics(options)?;
-    Ok(Box::new(Increments::new(options, system)))
+    Ok(Box::new(Increments::new(options)))
 }

@@ -15,7 +15,7 @@
 //! then, and accelerations with them. So a crack grows by no more than the reach of a bond in a step.
 
 use super::{SplitStep, Stepper};
-use crate::body::Field;
+use crate::body::{Body, Field};
 use crate::condition::rigid::Wrench;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::interaction::friction::Pressed;
@@ -25,11 +25,12 @@ use crate::quantity::Dimension;
 use crate::run::equilibrium::problem::Problem;
 use crate::run::equilibrium::state::StaticState;
 use crate::run::equilibrium::tried::{Inertia, Tried};
+use crate::run::equilibrium::whole::unknowns;
 use crate::run::implicit;
 use crate::run::system::{Regime, System};
 use crate::run::time_step::Limits;
 use crate::spec::{Newmark, Spec};
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 use crate::statics::{Solved, Support};
 
 /// Factors that may serve again, and for whom.
@@ -44,20 +45,16 @@ pub(super) struct NewmarkStepper<const D: usize> {
     bodies: Vec<Wrench>,
     /// Can bonds break or heal?
     breaks: bool,
-    period: [Option<f64>; D],
-}
-
-impl<const D: usize> Owner for NewmarkStepper<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.list("acceleration", &mut self.acceleration);
-        archive.list("rigid_bodies", &mut self.bodies);
-        archive.list("free", &mut self.held.free);
-        self.equations
-            .archive_kept(self.period, &self.held, archive);
-    }
 }
 
 impl<const D: usize> Stepper<D> for NewmarkStepper<D> {
+    fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        body.archive_if_any(archive, "acceleration", &mut self.acceleration, [0.0; D]);
+        archive.list("rigid_bodies", &mut self.bodies);
+        body.archive_if_any(archive, "free", &mut self.held.free, [true; D]);
+        self.equations.archive_kept(body, &self.held, archive);
+    }
+
     fn regime(&self) -> Regime {
         Regime {
             implicit: true,
@@ -173,7 +170,6 @@ impl<const D: usize> NewmarkStepper<D> {
             acceleration: vec![],
             bodies: vec![],
             breaks,
-            period: system.body.period(),
         })
     }
 
@@ -184,8 +180,8 @@ impl<const D: usize> NewmarkStepper<D> {
         [u, v, f]: [&Field<D>; 3],
         change: Option<&Field<D>>,
     ) -> f64 {
-        let mut taken = 0.0;
-        for (free, &s) in self.held.free.iter().zip(system.body.slots()) {
+        let held = self.held.free.iter().zip(system.body.slots());
+        system.body.sum(held.map(|(free, &s)| {
             let i = s as usize;
             let rho = system.body.density().at(i);
             let mut each = 0.0;
@@ -198,9 +194,8 @@ impl<const D: usize> NewmarkStepper<D> {
                 };
                 each += work - 0.5 * momentum * (now + before);
             }
-            taken += each * system.body.volume().at(i);
-        }
-        taken
+            each * system.body.volume().at(i)
+        }))
     }
 
     /// Heals bonds that the end of a step brought back, breaks those that it stretched too far, and lets forces and accelerations jump.
@@ -209,7 +204,8 @@ impl<const D: usize> NewmarkStepper<D> {
         let whole = system.f.clone();
         let healed = system.heal(system.clock.time());
         system.evolve();
-        if !healed && system.accounts.swept.broken == before {
+        let broke = system.accounts.swept.broken != before;
+        if !system.body.exchange().any(healed || broke) {
             return;
         }
         self.equations.forget();
@@ -246,7 +242,7 @@ impl<const D: usize> NewmarkStepper<D> {
         }
         let t = system.clock.time();
         let support = system.held();
-        if self.held != support {
+        if system.body.exchange().any(self.held != support) {
             self.equations.forget();
             self.held = support.clone();
         }
@@ -280,7 +276,7 @@ impl<const D: usize> NewmarkStepper<D> {
             a,
             bodies: self.bodies_before(system),
         };
-        if support.unknowns() > 0 {
+        if unknowns(&system.body, &support) > 0 {
             let inertia = self.inertia(system, t, &f);
             let mut problem = Problem::of(system);
             let (solved, found) =

@@ -1,19 +1,18 @@
 //! Points stand where they are; what spreads through bonds goes on.
 
 use super::{SplitStep, Stepper};
+use crate::body::Body;
 use crate::error::RunError;
 use crate::run::system::{Regime, System};
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 use crate::statics::Solved;
 
 /// Keeps nothing.
 pub(super) struct Rest;
 
-impl Owner for Rest {
-    fn archive(&mut self, _: &mut Archive<'_>) {}
-}
-
 impl<const D: usize> Stepper<D> for Rest {
+    fn archive(&mut self, _: &Body<D>, _: &mut Archive<'_>) {}
+
     fn regime(&self) -> Regime {
         Regime::default()
     }

@@ -1,7 +1,7 @@
 //! Motion in time by velocity Verlet, and the way back from a step that failed.
 
 use super::{SplitStep, Stepper};
-use crate::body::view;
+use crate::body::{Body, view};
 use crate::constitutive::{ConstitutiveModel, Laws};
 use crate::dynamics::verlet::Verlet;
 use crate::error::RunError;
@@ -10,7 +10,7 @@ use crate::interaction::PointEnergies;
 use crate::run::system::{Regime, System};
 use crate::run::time_step::Limits;
 use crate::spec::{Spec, TimeStep};
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 use crate::statics::Solved;
 
 /// Part of the stable step of now that is not passed, where none was asked for.
@@ -28,12 +28,10 @@ pub(super) struct VelocityVerlet {
     fraction: Option<f64>,
 }
 
-impl Owner for VelocityVerlet {
-    /// Velocities are those of whole steps, and the next drift says its path.
-    fn archive(&mut self, _: &mut Archive<'_>) {}
-}
-
 impl<const D: usize> Stepper<D> for VelocityVerlet {
+    /// Nothing: velocities are those of whole steps, and the next drift says its path.
+    fn archive(&mut self, _: &Body<D>, _: &mut Archive<'_>) {}
+
     fn regime(&self) -> Regime {
         Regime::default()
     }

@@ -11,12 +11,16 @@ use crate::body::{Field, view, view_mut, zeros};
 use crate::constitutive::Laws;
 use crate::interaction::{PointEnergies, Sweep};
 use crate::law::descriptor::Memory;
+use crate::run::equilibrium::whole::unknowns;
 use crate::spec::{LinearBody, Solver, Statics};
 use crate::statics::operator::SMALL;
 use crate::statics::{self, Support};
 
 /// Unknowns up to which the equations are factored, per dimension.
 const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
+
+/// Of what was just looked for.
+const FOUND: &str = "it was just found";
 
 impl<const D: usize> System<D> {
     /// Does the state stand for the linear body about a reference without forces, point by point?
@@ -28,7 +32,7 @@ impl<const D: usize> System<D> {
     /// no tangent.
     pub fn left_linearly(&self) -> bool {
         let moved = || self.u.iter().flat_map(|c| c.iter()).any(|u| *u != 0.0);
-        self.regime.linear && (self.at_peace() || moved())
+        self.regime.linear && (self.at_peace() || self.body.exchange().any(moved()))
     }
 
     /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
@@ -52,7 +56,7 @@ impl<const D: usize> System<D> {
         match options.solver {
             Solver::Direct => true,
             Solver::ConjugateGradients => false,
-            Solver::Auto => support.unknowns() <= DIRECT[D - 1],
+            Solver::Auto => unknowns(&self.body, support) <= DIRECT[D - 1],
         }
     }
 
@@ -61,7 +65,9 @@ impl<const D: usize> System<D> {
     pub fn made_small(&self) -> (Field<D>, f64) {
         let slots = || self.body.slots().iter().map(|s| *s as usize);
         let peak = (0..D).flat_map(|a| slots().map(move |i| (a, i)));
-        let peak = peak.fold(0.0f64, |m, (a, i)| m.max(self.u[a][i].abs()));
+        let peak = self
+            .body
+            .most(peak.fold(0.0f64, |m, (a, i)| m.max(self.u[a][i].abs())));
         let small = match peak > 0.0 {
             true => (SMALL * self.body.spacing() / peak).log2().floor().exp2(),
             false => 1.0,
@@ -116,8 +122,9 @@ impl<const D: usize> System<D> {
     /// `E₀ − f₀·u + ½ uᵀK u` (energy); E₀ and f₀ are 0 where nothing pulls in the reference.
     pub fn quadratic_energy(&mut self) -> [f64; 2] {
         if !self.at_peace() {
-            let u = self.body.values(&self.u);
-            return self.stressed().energy_at(&u);
+            self.stressed();
+            let stressed = self.stressed.as_ref().expect(FOUND);
+            return stressed.energy_at(&self.body, &self.body.values(&self.u));
         }
         let (u, small) = self.made_small();
         let energy = self.interaction.energy(&self.body, view(&u));
@@ -127,8 +134,9 @@ impl<const D: usize> System<D> {
     /// Forces `−K u` of bonds in place of those of the law; no loads.
     pub fn linear_forces(&mut self) {
         if !self.at_peace() {
-            let u = self.body.values(&self.u);
-            let forces = self.stressed().forces_at(&u);
+            self.stressed();
+            let stressed = self.stressed.as_ref().expect(FOUND);
+            let forces = stressed.forces_at(&self.body, &self.body.values(&self.u));
             for (f, &s) in forces.iter().zip(self.body.slots()) {
                 for a in 0..D {
                     self.f[a][s as usize] = f[a];
@@ -155,12 +163,13 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// The linear body about the displacements of now.
-    pub fn linear_now(&mut self) -> LinearBody<D> {
+    /// The linear body about the displacements of now, on the first rank.
+    pub fn linear_now(&mut self) -> Option<LinearBody<D>> {
         self.refresh_images();
-        LinearBody {
+        let made = statics::linear_body(&self.body, self.interaction.as_mut(), &self.u)?;
+        Some(LinearBody {
             mass: self.inertia.as_ref().map(|i| i.masses.matrix().clone()),
-            ..statics::linear_body(&self.body, self.interaction.as_mut(), &self.u)
-        }
+            ..made
+        })
     }
 }

@@ -6,7 +6,7 @@ use crate::execute::lane::TILE;
 use std::ops::Range;
 
 /// Cells of a block of a lattice, points of one of a cloud.
-pub(super) const CELLS: usize = BLOCK * TILE;
+pub(in crate::body) const CELLS: usize = BLOCK * TILE;
 
 impl<const D: usize> Body<D> {
     /// How many points each block has.

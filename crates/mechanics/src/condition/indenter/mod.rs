@@ -11,7 +11,7 @@ mod surface;
 use super::force_field::{ForceField, power};
 use super::reaction::Reaction;
 use super::rigid::{Kept, NewmarkStep, Path, Rigid, Wrench};
-use crate::body::{Body, Field};
+use crate::body::{Body, Field, zeros};
 use crate::execute::exact::Exact;
 use crate::interaction::Evaluation;
 use crate::interaction::coulomb::Coefficients;
@@ -94,15 +94,13 @@ impl<const D: usize> Indenter<D> {
         let rigid = self.rigid.keep();
         let departure = || Departure {
             rigid,
-            u: crate::body::zeros(0),
+            u: zeros(body.len),
             touched: vec![],
             pressed: Pressed::Now,
         };
         archive.option("departure", &mut self.from, departure, |from, archive| {
             archive.one("rigid", &mut from.rigid);
-            for c in &mut from.u {
-                archive.part("displacement", c);
-            }
+            body.archive_field(archive, "displacement", &mut from.u);
             let mut held = from.pressed == Pressed::Held;
             archive.one("held", &mut held);
             from.pressed = if held { Pressed::Held } else { Pressed::Now };

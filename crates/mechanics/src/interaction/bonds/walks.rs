@@ -47,12 +47,30 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// Directed bonds of the reference family, in order of slots: group, bond and lane.
     pub fn directed(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        self.of_each_point(|group, k, l| self.is_counted(group, k, l))
+    }
+
+    /// Those of these bonds, of points in the order of slots.
+    fn of_each_point(
+        &self,
+        is: impl Fn(usize, usize, usize) -> bool + Copy,
+    ) -> impl Iterator<Item = (usize, usize, usize)> {
         let mut points: Vec<_> = self.family.points().collect();
         points.sort_unstable_by_key(|(_, _, slot)| *slot);
         points.into_iter().flat_map(move |(group, l, _)| {
             let bonds = (0..self.family.bonds(group)).map(move |k| (group, k, l));
-            bonds.filter(|(group, k, l)| self.is_counted(*group, *k, *l))
+            bonds.filter(move |(group, k, l)| is(*group, *k, *l))
         })
+    }
+
+    fn status(&self, group: usize, k: usize, l: usize) -> BondStatus {
+        if self.is_whole(group, k, l) {
+            BondStatus::Whole
+        } else if self.is_counted(group, k, l) {
+            BondStatus::Broken
+        } else {
+            BondStatus::Absent
+        }
     }
 
     /// Of those groups alone that may have lost a bond.
@@ -231,26 +249,25 @@ impl<const D: usize, F: Family<D>> Walks<D> for BondState<D, F> {
 
     fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         self.each_half(self.pairs(), body, &mut |[group, k, l], [i, j]| {
-            let status = if self.is_whole(group, k, l) {
-                BondStatus::Whole
-            } else if self.is_counted(group, k, l) {
-                BondStatus::Broken
-            } else {
-                BondStatus::Absent
-            };
-            visit(i, j, self.family.bond(group, k, l).0, status);
+            visit(
+                i,
+                j,
+                self.family.bond(group, k, l).0,
+                self.status(group, k, l),
+            );
         });
     }
 
     fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>) {
-        for (group, k, l) in self.directed() {
+        for (group, k, l) in self.of_each_point(|group, k, l| self.family.is_bond(group, k, l)) {
             let i = self.family.rows(group).slot(l);
             let j = body.exchange.original(self.family.ends(group, k).slot(l));
-            let status = match self.is_whole(group, k, l) {
-                true => BondStatus::Whole,
-                false => BondStatus::Broken,
-            };
-            visit(i, j, self.family.bond(group, k, l).0, status);
+            visit(
+                i,
+                j,
+                self.family.bond(group, k, l).0,
+                self.status(group, k, l),
+            );
         }
     }
 
@@ -259,7 +276,11 @@ impl<const D: usize, F: Family<D>> Walks<D> for BondState<D, F> {
     }
 
     fn each_directed(&self, body: &Body<D>, visit: &mut EachPair<D>) {
-        self.each_partner(body, &mut |i, j, xi, _| visit(i, j, xi));
+        self.each_partner(body, &mut |i, j, xi, status| {
+            if status != BondStatus::Absent {
+                visit(i, j, xi);
+            }
+        });
     }
 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {

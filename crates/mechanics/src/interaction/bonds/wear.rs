@@ -9,8 +9,8 @@ use crate::interaction::history;
 use crate::spec::Cycles;
 
 impl<const D: usize, F: Family<D>> BondState<D, F> {
-    /// Points in whose reference family is a crack, with the least damage that is one to each material.
-    fn near_cracks(&self, body: &Body<D>) -> Vec<bool> {
+    /// Points in whose reference family is a crack, with the least damage that is one to each material, and their copies: 1.
+    fn near_cracks(&self, body: &Body<D>) -> Vec<u8> {
         let mut of = vec![[0.0f64; 2]; body.len];
         for (group, k, l) in self.pairs() {
             let i = self.family.rows(group).slot(l);
@@ -24,15 +24,17 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         let cracked = |i: usize| {
             let fatigue = self.criteria.fatigue[self.material_at(i)];
             let [all, lost] = of[i];
-            fatigue.is_some_and(|f| all > 0.0 && lost >= f.crack * all)
+            u8::from(fatigue.is_some_and(|f| all > 0.0 && lost >= f.crack * all))
         };
-        let mut near: Vec<bool> = (0..body.len).map(cracked).collect();
+        let mut near: Vec<u8> = (0..body.len).map(cracked).collect();
+        body.exchange.fill(&mut near);
         let cracked = near.clone();
         for (group, k, l) in self.pairs() {
             let i = self.family.rows(group).slot(l);
             let j = body.exchange.original(self.family.ends(group, k).slot(l));
-            near[i] = near[i] || cracked[j];
+            near[i] |= cracked[j];
         }
+        body.exchange.fill(&mut near);
         near
     }
 
@@ -52,7 +54,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             let range = (1.0 - load.load_ratio) * stretch.abs();
             let of = |slot: usize| {
                 let fatigue = self.criteria.fatigue[self.material_at(slot)];
-                fatigue.map_or(0.0, |f| Wearing::rate(&f, range, near[i] || near[j]))
+                fatigue.map_or(0.0, |f| Wearing::rate(&f, range, near[i] | near[j] == 1))
             };
             all.push(Wearing {
                 life: self.life[self.family.own(group, k, 0, 1) + l],

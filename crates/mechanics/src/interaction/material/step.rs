@@ -389,6 +389,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         self.settle(body, u, &room);
         self.mises(body, u, &room, Shared(out.as_mut_ptr()));
         self.bonds.room = room;
+        body.exchange.fill(&mut out);
         Some(out.to_vec())
     }
 

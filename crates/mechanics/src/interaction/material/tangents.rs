@@ -140,6 +140,41 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
         (stiffness, through, slopes.force.map(|x| weight * x))
     }
 
+    /// What other ranks' points make of their sums, in their copies.
+    fn hear_of_copies(&self, body: &Body<D>, nodes: &mut [Option<Node<D>>]) {
+        if !body.exchange.is_shared() {
+            return;
+        }
+        let own = { nodes.iter().flatten().next() }.map(|n| n.gain.iter().map(Vec::len).sum());
+        let gains = body.most(own.unwrap_or(0) as f64) as usize;
+        let points = self.bonds.law.point;
+        let each = points + gains + 1;
+        let mut numbers = vec![0.0; each * body.len];
+        for (slot, node) in nodes.iter().enumerate() {
+            let Some(node) = node else { continue };
+            let of = node.point.iter().chain(node.gain.iter().flatten());
+            let of = of.chain([&node.integrity]);
+            for (number, x) in numbers[each * slot..].iter_mut().zip(of) {
+                *number = *x;
+            }
+        }
+        body.exchange
+            .fill_numbers(&mut numbers, each, |slot, n| each * slot + n);
+        for copy in body.exchange.copies() {
+            let numbers = &numbers[each * copy..each * (copy + 1)];
+            let gain = numbers[points..each - 1].chunks(gains.div_ceil(points.max(1)).max(1));
+            nodes[copy] = Some(Node {
+                place: (0, 0),
+                at: self.bonds.plain_point(self.constants, copy),
+                point: numbers[..points].to_vec(),
+                integrity: numbers[each - 1],
+                gain: gain.map(<[f64]>::to_vec).collect(),
+                bonds: vec![],
+                shares: vec![],
+            });
+        }
+    }
+
     pub fn each(&self, body: &Body<D>, visit: &mut EachTangent<D>) {
         let mut nodes: Vec<Option<Node<D>>> = (0..body.len).map(|_| None).collect();
         for &s in &body.slots {
@@ -147,6 +182,7 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
                 nodes[s as usize] = Some(self.node(group, l));
             }
         }
+        self.hear_of_copies(body, &mut nodes);
         for &s in &body.slots {
             let i = s as usize;
             let Some(node) = &nodes[i] else { continue };

@@ -1,5 +1,10 @@
 //! Ranks that share a body: the same bits as one that has all of it.
 
+mod heat;
+mod statics;
+mod tiles;
+
+use self::heat::{faced, spreading};
 use crate::own_law::Stiffening;
 use crate::sample::*;
 use peridyne::body::Body;
@@ -117,11 +122,11 @@ fn saved(sim: &mut dyn Simulation) -> Vec<u8> {
 }
 
 /// After some steps, of which a state may have half.
-fn said(sim: &mut dyn Simulation, from: Option<&[u8]>) -> Said {
+fn said(sim: &mut dyn Simulation, from: Option<&[u8]>, steps: usize) -> Said {
     match from {
         None => {
             sim.start(true);
-            (0..STEPS / 2).for_each(|_| sim.step().unwrap());
+            (0..steps / 2).for_each(|_| sim.step().unwrap());
         }
         Some(mut state) => {
             let mut archive = Archive::load(&mut state);
@@ -131,7 +136,7 @@ fn said(sim: &mut dyn Simulation, from: Option<&[u8]>) -> Said {
         }
     }
     let half = saved(sim);
-    (STEPS / 2..STEPS).for_each(|_| sim.step().unwrap());
+    (steps / 2..steps).for_each(|_| sim.step().unwrap());
     let ledger = sim.ledger().unwrap();
     let declared = sim.columns().into_iter().filter(|c| c.on == On::Points);
     let known: Vec<String> = declared.map(|c| c.name.to_string()).collect();
@@ -181,6 +186,14 @@ fn said(sim: &mut dyn Simulation, from: Option<&[u8]>) -> Said {
     }
 }
 
+/// Those that a spec asks for, or a few.
+fn steps(spec: &Spec) -> usize {
+    match spec.run.schedule.steps {
+        0 => STEPS,
+        steps => steps as usize,
+    }
+}
+
 fn shelf() -> Shelf {
     Shelf::standard().with::<Bonds<Stiffening, 1>>()
 }
@@ -207,7 +220,7 @@ fn among<const D: usize>(
             return None;
         }
         let mut sim = AllRanks::new(own);
-        let said = said(&mut sim, from);
+        let said = said(&mut sim, from, steps(spec));
         Some((sim.info().clone(), said))
     });
     all.into_iter().flatten().next().unwrap()
@@ -218,10 +231,10 @@ fn same<const D: usize>(spec: &Spec, ranks: &[usize], simd: Option<Simd>) -> boo
     shared(spec).unwrap();
     let name = &spec.title;
     let mut sim = build_in::<D>(spec, options(None), &shelf()).unwrap();
-    let one = said(&mut sim, None);
+    let one = said(&mut sim, None, steps(spec));
     if ranks.len() == 1 {
         let mut again = build_in::<D>(spec, options(None), &shelf()).unwrap();
-        let again = said(&mut again, Some(&one.states[0]));
+        let again = said(&mut again, Some(&one.states[0]), steps(spec));
         one.is(&again, &format!("{name}, gone on with"));
     }
     // and one rank more from what one process had half of the way
@@ -1004,6 +1017,45 @@ fn what_is_sent_is_what_the_law_says_of_the_copies() {
 }
 
 #[test]
+fn factors_of_bonds_are_those_of_the_whole_body() {
+    for (n, kind) in [LatticeKind::Square, LatticeKind::Cubic]
+        .into_iter()
+        .enumerate()
+    {
+        for m in 0..2 {
+            let case = Case::of("pmb", place(kind));
+            let mut spec = torn(&case, false);
+            let last = case.d() - 1;
+            let axis = ["x", "y", "z"][last];
+            let middle = 0.5 * H * case.place.cells[last] as f64;
+            let shape = match case.d() {
+                2 => CrackShape::Segment {
+                    from: [1.0, middle, 0.0],
+                    to: [9.0, middle + 0.3, 0.0],
+                },
+                _ => CrackShape::Disk {
+                    center: [2.0, 2.0, middle + 0.1],
+                    normal: [0.0, 0.0, 1.0],
+                    radius: 1.7,
+                },
+            };
+            spec.bonds.factors = vec![
+                BondFactorSpec::Field(e(&format!("1 + 0.3*sin(1.3*x)*cos(0.7*{axis})"))),
+                BondFactorSpec::Crossing { shape, factor: 0.4 },
+            ];
+            if m == n {
+                spec.bonds.family = FamilyChoice::List;
+            }
+            let broke = match case.d() {
+                2 => same::<2>(&spec, &[2 + m], None),
+                _ => same::<3>(&spec, &[3 - m], None),
+            };
+            assert!(broke, "{}", spec.title);
+        }
+    }
+}
+
+#[test]
 fn what_ranks_do_not_share_is_named() {
     let spec = Case::of("pmb", place(LatticeKind::Square)).spec();
     let refused = |change: &dyn Fn(&mut Spec)| {
@@ -1032,131 +1084,6 @@ fn what_ranks_do_not_share_is_named() {
         }];
     };
     assert_eq!(refused(&named), of("conditions"));
-}
-
-fn spreading(quantity: Quantity, method: TransferMethod, expansion: f64) -> TransferSpec {
-    let on = |set: &str, kind: TransferKind| TransferCondition {
-        set: set.into(),
-        kind,
-    };
-    let mut conditions = vec![
-        on("low", TransferKind::Value(e("1 + 0.2*sin(30*t)"))),
-        on(
-            "high",
-            TransferKind::Exchange {
-                law: Exchange::Convection {
-                    coefficient: e("0.7 + 0.1*x"),
-                    ambient: e("0.2 + t"),
-                },
-                area: None,
-            },
-        ),
-        on(
-            "middle",
-            TransferKind::Flux {
-                value: e("0.3"),
-                area: Some(2.0),
-            },
-        ),
-        on("all", TransferKind::Source(e("0.1*sin(x)*cos(40*t)"))),
-    ];
-    if quantity == Quantity::Heat {
-        let law = Exchange::Radiation {
-            coefficient: e("0.01"),
-            ambient: e("2"),
-        };
-        conditions.push(on(
-            "high",
-            TransferKind::Exchange {
-                law,
-                area: Some(1.5),
-            },
-        ));
-    }
-    TransferSpec {
-        quantity,
-        method,
-        reference: 0.5,
-        across_broken: quantity == Quantity::Species,
-        deformation: false,
-        materials: vec![TransferMaterial {
-            conductivity: 1.3,
-            capacity: 0.7,
-            expansion,
-        }],
-        initial: vec![("all".into(), e("1 + 0.3*sin(2*x)"))],
-        conditions,
-    }
-}
-
-/// Sets of the faces across the last axis, and of what lies about the middle.
-fn faced(spec: &mut Spec, case: &Case) {
-    let last = case.d() - 1;
-    let axis = ["x", "y", "z"][last];
-    let along = case.place.kind.edges()[last] * H;
-    // points lie from the middle of the first cell on
-    let all = case.place.cells[last] as f64 * along;
-    let set = |name: &str, which: String| SetSpec {
-        name: name.into(),
-        members: Members::Where(e(&which)),
-    };
-    spec.sets = vec![
-        set("low", format!("{axis} < {}", 0.9 * along)),
-        set("high", format!("{axis} > {}", all - 1.9 * along)),
-        set(
-            "middle",
-            format!("abs({axis} - {}) < {}", 0.4 * all, 0.3 * all),
-        ),
-    ];
-}
-
-#[test]
-fn heat_and_species_spread_on_any_number_of_ranks() {
-    let methods = [
-        TransferMethod::Explicit { safety: 0.5 },
-        TransferMethod::Implicit {
-            theta: 0.5,
-            tolerance: 1e-9,
-        },
-        TransferMethod::Steady { tolerance: 1e-9 },
-    ];
-    let kinds = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic];
-    let mut n = 0;
-    for kind in kinds {
-        for (method, name) in methods.into_iter().zip(["pmb", "lps", "elastic-plastic"]) {
-            n += 1;
-            // one of each dimension and method
-            let still = [2, 4, 9].contains(&n);
-            let case = Case::of(name, place(kind));
-            let mut spec = torn(&case, false);
-            faced(&mut spec, &case);
-            spec.interactions.transfers = vec![
-                spreading(Quantity::Heat, method, if still { 0.0 } else { 0.02 }),
-                spreading(Quantity::Species, methods[n % 3], 0.0),
-            ];
-            if n % 2 == 0 {
-                scattered(&mut spec);
-                for t in &mut spec.interactions.transfers {
-                    for c in &mut t.conditions {
-                        if let TransferKind::Exchange { area, .. } = &mut c.kind {
-                            *area = Some(3.0);
-                        }
-                    }
-                }
-            }
-            if still {
-                spec.run.schedule.stepper = Stepper::Still;
-                spec.loading.initial = vec![];
-            }
-            spec.title = format!("{} {method:?} {still}", spec.title);
-            let broke = match kind.dimension() {
-                1 => same::<1>(&spec, &[3], None),
-                2 => same::<2>(&spec, &[2], None),
-                _ => same::<3>(&spec, &[3], None),
-            };
-            assert_eq!(broke, !still, "{}", spec.title);
-        }
-    }
 }
 
 #[test]
@@ -1194,63 +1121,4 @@ fn a_part_of_a_body_is_neither_joined_nor_a_cloud() {
         assert_eq!(part.to_cloud().unwrap_err().path, "ranks");
         assert!(std::panic::catch_unwind(|| Body::several(vec![part, whole.clone()])).is_err());
     });
-}
-
-/// Eight points are walked together. Others beside them, of a body far away, change no bit of theirs.
-#[test]
-fn what_the_others_of_a_tile_do_does_not_show() {
-    let kinds = [LatticeKind::Square, LatticeKind::Cubic, LatticeKind::Chain];
-    let (mut tried, mut parted) = (0, 0);
-    for (n, material) in materials().into_iter().enumerate() {
-        let lives = |kind: &&LatticeKind| (material.lives)(kind.dimension(), Plane::Stress);
-        let kinds: Vec<_> = kinds.iter().filter(lives).collect();
-        let Some(kind) = kinds.get(n % 2 % kinds.len().max(1)) else {
-            continue;
-        };
-        let mut place = place(**kind);
-        place.cells = match kind.dimension() {
-            1 => [300, 1, 1],
-            2 => [21, 17, 1],
-            _ => [9, 8, 7],
-        };
-        let case = Case { place, material };
-        let ends = [0, 1].map(|others| {
-            let mut spec = torn(&case, false);
-            let BodySpec::Sites { quarters, .. } = &mut spec.body else {
-                panic!("a body of sites");
-            };
-            let corner: Vec<[i32; 3]> = { quarters.iter() }
-                .filter(|q| others > 0 && q.iter().all(|q| *q < 4 * 5))
-                .map(|q| [q[0] - 4 * 27, q[1], q[2]])
-                .collect();
-            let points = quarters.len();
-            quarters.extend(corner);
-            spec.interactions.contact = None;
-            let run = |sim: &mut dyn Simulation| (said(sim, None), points, sim.info().parts);
-            match case.d() {
-                1 => run(&mut build_in::<1>(&spec, options(None), &shelf()).unwrap()),
-                2 => run(&mut build_in::<2>(&spec, options(None), &shelf()).unwrap()),
-                _ => run(&mut build_in::<3>(&spec, options(None), &shelf()).unwrap()),
-            }
-        });
-        let [(alone, points, parts), (beside, _, parts_beside)] = ends;
-        tried += 1;
-        // steps in parts are so for all
-        if parts != parts_beside {
-            println!(
-                "{}: {parts} parts, {parts_beside} beside others",
-                case.name()
-            );
-            parted += 1;
-            continue;
-        }
-        let moved = ["displacement", "velocity", "force_density", "damage"];
-        for column in ["places"].into_iter().chain(moved) {
-            let (alone, beside) = (&alone.columns[column], &beside.columns[column]);
-            assert!(beside.len() > alone.len() && alone.len() % points == 0);
-            let off = alone.iter().zip(beside).position(|(a, b)| a != b);
-            assert_eq!(off, None, "{}: {column}", case.name());
-        }
-    }
-    assert!(tried > 35 && parted < 4, "{tried} {parted}");
 }

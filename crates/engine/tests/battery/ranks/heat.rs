@@ -1,0 +1,135 @@
+//! Heat and species on ranks.
+
+use super::{place, same, scattered, torn};
+use crate::sample::*;
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::*;
+
+pub(super) fn spreading(
+    quantity: Quantity,
+    method: TransferMethod,
+    expansion: f64,
+) -> TransferSpec {
+    let on = |set: &str, kind: TransferKind| TransferCondition {
+        set: set.into(),
+        kind,
+    };
+    let mut conditions = vec![
+        on("low", TransferKind::Value(e("1 + 0.2*sin(30*t)"))),
+        on(
+            "high",
+            TransferKind::Exchange {
+                law: Exchange::Convection {
+                    coefficient: e("0.7 + 0.1*x"),
+                    ambient: e("0.2 + t"),
+                },
+                area: None,
+            },
+        ),
+        on(
+            "middle",
+            TransferKind::Flux {
+                value: e("0.3"),
+                area: Some(2.0),
+            },
+        ),
+        on("all", TransferKind::Source(e("0.1*sin(x)*cos(40*t)"))),
+    ];
+    if quantity == Quantity::Heat {
+        let law = Exchange::Radiation {
+            coefficient: e("0.01"),
+            ambient: e("2"),
+        };
+        conditions.push(on(
+            "high",
+            TransferKind::Exchange {
+                law,
+                area: Some(1.5),
+            },
+        ));
+    }
+    TransferSpec {
+        quantity,
+        method,
+        reference: 0.5,
+        across_broken: quantity == Quantity::Species,
+        deformation: false,
+        materials: vec![TransferMaterial {
+            conductivity: 1.3,
+            capacity: 0.7,
+            expansion,
+        }],
+        initial: vec![("all".into(), e("1 + 0.3*sin(2*x)"))],
+        conditions,
+    }
+}
+
+/// Sets of the faces across the last axis, and of what lies about the middle.
+pub(super) fn faced(spec: &mut Spec, case: &Case) {
+    let last = case.d() - 1;
+    let axis = ["x", "y", "z"][last];
+    let along = case.place.kind.edges()[last] * H;
+    // points lie from the middle of the first cell on
+    let all = case.place.cells[last] as f64 * along;
+    let set = |name: &str, which: String| SetSpec {
+        name: name.into(),
+        members: Members::Where(e(&which)),
+    };
+    spec.sets = vec![
+        set("low", format!("{axis} < {}", 0.9 * along)),
+        set("high", format!("{axis} > {}", all - 1.9 * along)),
+        set(
+            "middle",
+            format!("abs({axis} - {}) < {}", 0.4 * all, 0.3 * all),
+        ),
+    ];
+}
+
+#[test]
+fn heat_and_species_spread_on_any_number_of_ranks() {
+    let methods = [
+        TransferMethod::Explicit { safety: 0.5 },
+        TransferMethod::Implicit {
+            theta: 0.5,
+            tolerance: 1e-9,
+        },
+        TransferMethod::Steady { tolerance: 1e-9 },
+    ];
+    let kinds = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic];
+    let mut n = 0;
+    for kind in kinds {
+        for (method, name) in methods.into_iter().zip(["pmb", "lps", "elastic-plastic"]) {
+            n += 1;
+            // one of each dimension and method
+            let still = [2, 4, 9].contains(&n);
+            let case = Case::of(name, place(kind));
+            let mut spec = torn(&case, false);
+            faced(&mut spec, &case);
+            spec.interactions.transfers = vec![
+                spreading(Quantity::Heat, method, if still { 0.0 } else { 0.02 }),
+                spreading(Quantity::Species, methods[n % 3], 0.0),
+            ];
+            if n % 2 == 0 {
+                scattered(&mut spec);
+                for t in &mut spec.interactions.transfers {
+                    for c in &mut t.conditions {
+                        if let TransferKind::Exchange { area, .. } = &mut c.kind {
+                            *area = Some(3.0);
+                        }
+                    }
+                }
+            }
+            if still {
+                spec.run.schedule.stepper = Stepper::Still;
+                spec.loading.initial = vec![];
+            }
+            spec.title = format!("{} {method:?} {still}", spec.title);
+            let broke = match kind.dimension() {
+                1 => same::<1>(&spec, &[3], None),
+                2 => same::<2>(&spec, &[2], None),
+                _ => same::<3>(&spec, &[3], None),
+            };
+            assert_eq!(broke, !still, "{}", spec.title);
+        }
+    }
+}
