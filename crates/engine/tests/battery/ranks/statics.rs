@@ -279,13 +279,14 @@ fn implicit_steps_are_the_same_on_any_number_of_ranks() {
         spec.loading.conditions.retain(tangent);
         spec.title = format!("{} {newmark:?}", spec.title);
         spec.run.schedule.stepper = Stepper::Newmark(newmark);
-        spec.run.schedule.time_step = TimeStep::Fixed(0.1 * H);
+        spec.run.schedule.time_step = TimeStep::Fixed(0.03 * H);
+        println!("{}", spec.title);
         same_of(&case, &spec, &[2 + n % 2]);
         // and bodies that meet
         let mut spec = meeting(&case, n % 2 == 0);
         spec.title = format!("{} {newmark:?}", spec.title);
         spec.run.schedule.stepper = Stepper::Newmark(newmark);
-        spec.run.schedule.time_step = TimeStep::Fixed(0.1 * H);
+        spec.run.schedule.time_step = TimeStep::Fixed(0.03 * H);
         same_of(&case, &spec, &[3 - n % 2]);
     }
 }
