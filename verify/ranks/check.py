@@ -29,6 +29,9 @@ ASKED = {
     "ten_lines": (["body.spacing=1 mm", "run.steps=200", "output.every=60"], 110, 10_000),
     "two_bodies": (["output.every=40"], 70, 10_000),
     "fast_and_hot": ([], 50, 1_000),
+    "snap_back": ([], 5, 10),
+    "dragged_disk": (["statics.increments=6"], 3, 0),
+    "implicit_crack": (["run.duration=\"12 us\""], 5, 1),
 }
 # a run that is killed: as the first one, with a state every fifth of a second
 KILLED = ["--set", "body.spacing=1 mm", "--set", "run.steps=400", "--set", "output.every=150", "--set", 'output.checkpoint={ every = "0.2 s", keep = 2 }']
