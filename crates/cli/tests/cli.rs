@@ -351,6 +351,11 @@ fn a_plan_is_of_what_a_step_costs_and_how_the_body_is_cut() {
         assert_eq!(output.status.code(), Some(2));
         assert!(errors(&output).contains(why), "{wrong}");
     }
+    // a matrix is on one of the ranks
+    let bar = deck("good/tent_bar.toml");
+    let output = peridyne(&["plan", bar.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(errors(&output).contains("equations are solved on the first rank"));
 }
 
 #[test]

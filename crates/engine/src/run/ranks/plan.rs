@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::run::build::made_among;
 use crate::run::ranks::shared;
 use crate::run::{Info, Options, Shelf, Simulation};
-use crate::spec::Spec;
+use crate::spec::{Spec, Stepper};
 use peridyne_comm::on_threads;
 use std::sync::Arc;
 use std::time::Instant;
@@ -46,7 +46,7 @@ impl Shares {
 /// What a step of a spec costs, by so many steps of one process and of two ranks, and how these numbers of ranks share its body.
 ///
 /// # Errors
-/// What ranks do not share yet; as of [`build`](crate::run::build); steps end with an error.
+/// What ranks do not share yet; equations may be solved by a matrix, which one rank has; as of [`build`](crate::run::build); steps end with an error.
 pub fn plan(
     spec: &Spec,
     options: Options,
@@ -54,6 +54,16 @@ pub fn plan(
     ranks: &[usize],
 ) -> Result<(Info, StepCost, Vec<Shares>), BuildError> {
     shared(spec)?;
+    let by_matrix = match spec.run.schedule.stepper {
+        Stepper::Verlet | Stepper::Still => false,
+        Stepper::Newmark(_) => true,
+        Stepper::Statics(statics) => !statics.method.minimizes(),
+    };
+    if by_matrix {
+        let message = "equations are solved on the first rank where they have a matrix, and what that takes does not shrink with the number of machines";
+        return Err(BuildError::unsupported("run", message)
+            .help("plan explicit steps, or statics with method = \"relaxation\""));
+    }
     match spec.space.dimension {
         1 => planned::<1>(spec, options, steps, ranks),
         2 => planned::<2>(spec, options, steps, ranks),
