@@ -142,12 +142,6 @@ impl Sums {
         self.all([u8::from(here)]).contains(&[1])
     }
 
-    /// How many all ranks have.
-    pub fn count(&self, own: usize) -> usize {
-        let all = self.all((own as u64).to_le_bytes()).into_iter();
-        all.map(|n| u64::from_le_bytes(n) as usize).sum()
-    }
-
     /// Id of a value's point among all.
     pub fn id(&self, value: usize) -> usize {
         match &self.ranks {

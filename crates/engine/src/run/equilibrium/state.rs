@@ -107,7 +107,7 @@ fn archive_bonds<const D: usize>(
         (i as u32, Critical { i, j, xi, ..*bond })
     };
     let mut entries: Vec<(u32, Critical<D>)> = bonds.iter().map(by_id).collect();
-    entries.sort_by(|(_, a), (_, b)| (a.i, a.j).cmp(&(b.i, b.j)).then(total(&a.xi, &b.xi)));
+    entries.sort_by(|(_, a), (_, b)| (a.i, a.j).cmp(&(b.i, b.j)).then(order(&a.xi, &b.xi)));
     archive.entries("next", body.whose(), &mut entries);
     if !archive.loads() {
         return;
@@ -126,7 +126,8 @@ fn archive_bonds<const D: usize>(
     }
 }
 
-fn total(x: &[f64], y: &[f64]) -> Ordering {
+/// By the first numbers that differ.
+fn order(x: &[f64], y: &[f64]) -> Ordering {
     let each = x.iter().zip(y).map(|(x, y)| x.total_cmp(y));
     each.fold(Ordering::Equal, Ordering::then)
 }
