@@ -52,13 +52,8 @@ pub(super) fn scale<const D: usize>(
     body: &mut Body<D>,
     interaction: &mut dyn Interaction<D>,
 ) -> Result<(), BuildError> {
-    let points = body.all_points();
-    let rows = surface.rows.len();
-    let fits = surface.row.len() == points
-        && surface.part.len() == rows
-        && surface.row.iter().all(|r| (*r as usize) < rows)
-        && surface.part.iter().all(|p| *p > 0.0 && *p <= 1.0);
-    let (true, Layout::Grid(_), Some(_)) = (fits, body.layout(), body.volume().uniform()) else {
+    let (points, rows) = (body.all_points(), surface.rows.len());
+    if !(fits(surface, body) && matches!(body.layout(), Layout::Grid(_))) {
         return Err(BuildError::conflict(
             "surface",
             format!(
@@ -66,7 +61,7 @@ pub(super) fn scale<const D: usize>(
                 surface.row.len()
             ),
         ));
-    };
+    }
     let factors = Factors::new(surface, body);
     interaction
         .scale_bonds(body, &|i, j, to| {
@@ -83,9 +78,20 @@ pub(super) fn scale<const D: usize>(
     Ok(())
 }
 
+/// Are factors for as many points as a body has, whose cells are alike?
+fn fits<const D: usize>(surface: &SurfaceFactors, body: &Body<D>) -> bool {
+    let rows = surface.rows.len();
+    surface.row.len() == body.all_points()
+        && surface.part.len() == rows
+        && surface.row.iter().all(|r| (*r as usize) < rows)
+        && surface.part.iter().all(|p| *p > 0.0 && *p <= 1.0)
+        && body.volume().uniform().is_some()
+}
+
 /// Points of a body that ends at its outermost ones get the part of their cells that they hold.
 fn end_at_points<const D: usize>(surface: &SurfaceFactors, body: &mut Body<D>) {
-    let Some(cell) = body.volume().uniform().filter(|_| surface.ends_at_points()) else {
+    let cell = { body.volume().uniform() }.filter(|_| surface.ends_at_points());
+    let Some(cell) = cell.filter(|_| fits(surface, body)) else {
         return;
     };
     let ids = body.ids_of_all();
@@ -96,7 +102,8 @@ fn end_at_points<const D: usize>(surface: &SurfaceFactors, body: &mut Body<D>) {
     body.set_volumes(volume);
 }
 
-/// A whole body with the volumes that its points have once the bonds near its surfaces are scaled; `None`: it has them.
+/// A whole body with the volumes that its points have once the bonds near its surfaces are [scaled](scale), which says of factors that do not fit;
+/// `None`: it has them.
 pub(super) fn ended<const D: usize>(spec: &Spec, body: &Body<D>) -> Option<Body<D>> {
     let surfaces = spec.body.pieces().iter().map(|p| p.surface.as_ref());
     let surfaces: Vec<_> = surfaces.chain([spec.bonds.surface.as_ref()]).collect();
