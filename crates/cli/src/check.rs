@@ -13,7 +13,7 @@ use crate::deck;
 use crate::enough::enough;
 use crate::failure::{Failure, note, printed, say};
 use crate::law;
-use crate::run::{pictures, shared_by_ranks, space_time, until, with_threads};
+use crate::run::{pictures, space_time, until, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Info, Simulation};
@@ -194,7 +194,9 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             steps: deck.steps(sim.info().time_step) - deck.increments(),
             increments: deck.increments(),
             fields: crate::run::continuum(&deck),
-            ranks: Some(shared_by_ranks(&deck).map_err(|e| e.message.to_string())),
+            ranks: Some(
+                peridyne::run::ranks::shared(&deck.spec).map_err(|e| e.message.to_string()),
+            ),
             units: deck.units,
             spec: deck.spec,
             script: false,

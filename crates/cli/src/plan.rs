@@ -4,7 +4,7 @@ use crate::Input;
 use crate::deck::{read, simd};
 use crate::failure::{Failure, say};
 use crate::numbers::{duration, memory};
-use crate::run::{shared_by_ranks, with_threads};
+use crate::run::with_threads;
 use peridyne::run::ranks::{Shares, StepCost, plan as planned};
 use peridyne::run::{Info, Options};
 use peridyne_io::deck::counted;
@@ -216,7 +216,7 @@ pub fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     }
     let deck = read(&arguments.input)?;
     let explained = |e| Failure::Input(deck.explain(&e).into());
-    shared_by_ranks(&deck).map_err(explained)?;
+    peridyne::run::ranks::shared(&deck.spec).map_err(explained)?;
     let options = Options {
         simd: simd(&arguments.input)?,
         ..Options::default()

@@ -8,7 +8,7 @@ use crate::failure::{Failure, note, say};
 use crate::initial::InitialState;
 use crate::law;
 use crate::progress::Terminal;
-use crate::ranks::{ALONE, agreed, alone, shared, some_threads, threads_here};
+use crate::ranks::{agreed, alone, shared, some_threads, threads_here};
 use crate::report;
 use crate::script;
 use crate::signals;
@@ -138,10 +138,6 @@ pub fn run_deck(
     (comm, threads): (&Arc<Comm>, usize),
     begin: Begin,
 ) -> Result<(), Failure> {
-    if comm.ranks() > 1 {
-        let shared = shares(deck).map_err(|e| Failure::Input(deck.explain(&e).into()));
-        agreed(comm, shared)?;
-    }
     let (rigid, spec) = RigidBodies::watched(&deck.spec);
     let made = deck::model_among(deck, &spec, &arguments.input, comm)?;
     // it has followed the first rank to the end
@@ -277,25 +273,6 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
         Some(signal) if done.status == Status::Ended => Err(Failure::Ended(signal)),
         _ => Ok(()),
     }
-}
-
-/// What ranks do not share yet of what is asked for beside the model.
-fn shares(deck: &Deck) -> Result<(), BuildError> {
-    match deck.fields.is_empty() {
-        true => Ok(()),
-        false => {
-            let message = "ranks do not share continuum fields yet";
-            Err(BuildError::unsupported("fields", message).help(ALONE))
-        }
-    }
-}
-
-/// Can ranks share the run of a deck?
-///
-/// # Errors
-/// What they do not share yet.
-pub fn shared_by_ranks(deck: &Deck) -> Result<(), BuildError> {
-    peridyne::run::ranks::shared(&deck.spec).and_then(|()| shares(deck))
 }
 
 /// Does the deck ask for the steps that were done?

@@ -1,5 +1,6 @@
 //! What atoms need beyond peridynamic points: their crystal looked at before it runs, and a temperature.
 
+use super::agreed::agreed;
 use super::reference::{SplitMix, current_neighbours};
 use super::system::System;
 use crate::constitutive::{AnyPotentials, breaks};
@@ -161,19 +162,16 @@ pub(super) fn step_of_speeds<const D: usize>(
     system: &System<D>,
     potentials: &AnyPotentials,
 ) -> Result<f64, BuildError> {
-    let slots = || system.body.slots().iter().map(|s| *s as usize);
-    let mass = |s: usize| system.body.volume().at(s) * system.body.density().at(s);
-    let total: f64 = slots().map(mass).sum();
-    let mean: [f64; D] =
-        crate::array::from_fn(|a| slots().map(|s| mass(s) * system.v[a][s]).sum::<f64>() / total);
-    let square = |s: usize| {
-        (0..D)
-            .map(|a| (system.v[a][s] - mean[a]).powi(2))
-            .sum::<f64>()
-    };
-    let twice: f64 = slots().map(|s| mass(s) * square(s)).sum();
-    let fastest = slots().map(square).fold(0.0, f64::max).sqrt();
-    let speed = fastest.max(FASTEST * (twice / (D as f64 * total)).sqrt());
+    let body = &system.body;
+    let mass = |s: usize| body.volume().at(s) * body.density().at(s);
+    let masses = body.whole(1, body.by_id(mass));
+    let velocities = body.whole(D, body.values(&system.v).into_flattened());
+    // by the first rank as by one that has all
+    let speed = body.told(
+        masses
+            .zip(velocities)
+            .map(|(m, v)| speed(&m, v.as_chunks::<D>().0)),
+    );
     if speed == 0.0 {
         return Ok(f64::INFINITY);
     }
@@ -183,11 +181,25 @@ pub(super) fn step_of_speeds<const D: usize>(
         .each_bond(&system.body, &mut |_, _, xi, _| {
             shortest = xi.iter().map(|c| c * c).sum::<f64>().min(shortest);
         });
-    let shortest = shortest.sqrt();
-    let heaviest = slots().map(mass).fold(0.0, f64::max);
+    let shortest = body.least(shortest).sqrt();
+    let heaviest = body.by_id(mass).into_iter().fold(0.0, f64::max);
+    let heaviest = body.most(heaviest);
     let from = shortest.min(potentials.reach);
     let closest = potentials.closest(from, heaviest * speed * speed)?;
     Ok(STRIDE * closest.unwrap_or(f64::INFINITY).min(shortest) / speed)
+}
+
+/// That of the fastest of these atoms against their mean, or of a Maxwellian of their energy.
+fn speed<const D: usize>(mass: &[f64], v: &[[f64; D]]) -> f64 {
+    let total: f64 = mass.iter().sum();
+    let mean: [f64; D] = crate::array::from_fn(|a| {
+        let momentum: f64 = mass.iter().zip(v).map(|(m, v)| m * v[a]).sum();
+        momentum / total
+    });
+    let square = |v: &[f64; D]| (0..D).map(|a| (v[a] - mean[a]).powi(2)).sum::<f64>();
+    let twice: f64 = mass.iter().zip(v).map(|(m, v)| m * square(v)).sum();
+    let fastest = v.iter().map(square).fold(0.0, f64::max).sqrt();
+    fastest.max(FASTEST * (twice / (D as f64 * total)).sqrt())
 }
 
 /// Maxwellian velocities: component by component normal with variance k_B T / m, without total momentum, scaled to
@@ -199,45 +211,56 @@ pub(super) fn heat<const D: usize>(
     system: &mut System<D>,
     thermal: &ThermalSpec,
 ) -> Result<(), BuildError> {
+    let body = &system.body;
+    let slots: Vec<usize> = body.slots().iter().map(|s| *s as usize).collect();
+    let mass = body.by_id(|s| body.volume().at(s) * body.density().at(s));
+    let energy = agreed(body, thermal_energies(system, &thermal.energy, &slots))?;
+    // by the first rank as by one that has all
+    let whole = body.whole(1, mass).zip(body.whole(1, energy));
+    let whole = whole.map(|(mass, energy)| maxwellian::<D>(thermal, &mass, &energy));
+    let own = body.part_of(D, whole.map(Vec::into_flattened));
+    for (s, v) in slots.into_iter().zip(own.as_chunks::<D>().0) {
+        (0..D).for_each(|a| system.v[a][s] = v[a]);
+    }
+    Ok(())
+}
+
+/// Of atoms of these masses and k_B T.
+fn maxwellian<const D: usize>(
+    thermal: &ThermalSpec,
+    mass: &[f64],
+    energy: &[f64],
+) -> Vec<[f64; D]> {
     let mut random = SplitMix(thermal.seed);
-    let slots: Vec<usize> = system.body.slots().iter().map(|s| *s as usize).collect();
-    let mass: Vec<f64> = slots
-        .iter()
-        .map(|&s| system.body.volume().at(s) * system.body.density().at(s))
-        .collect();
-    let energy = thermal_energies(system, &thermal.energy, &slots)?;
+    let mut v = vec![[0.0; D]; mass.len()];
     let mut momentum = [0.0; D];
-    for ((&s, m), energy) in slots.iter().zip(&mass).zip(&energy) {
+    for ((v, m), energy) in v.iter_mut().zip(mass).zip(energy) {
         for a in 0..D {
             // Box & Muller 1958
             let (x, y) = (1.0 - random.unit(), random.unit());
             let normal = (-2.0 * x.ln()).sqrt() * (std::f64::consts::TAU * y).cos();
-            system.v[a][s] = (energy / m).sqrt() * normal;
-            momentum[a] += m * system.v[a][s];
+            v[a] = (energy / m).sqrt() * normal;
+            momentum[a] += m * v[a];
         }
     }
     let total: f64 = mass.iter().sum();
     let mut twice = 0.0;
-    for (&s, m) in slots.iter().zip(&mass) {
+    for (v, m) in v.iter_mut().zip(mass) {
         for a in 0..D {
-            system.v[a][s] -= momentum[a] / total;
-            twice += m * system.v[a][s] * system.v[a][s];
+            v[a] -= momentum[a] / total;
+            twice += m * v[a] * v[a];
         }
     }
-    let free = (D * slots.len().saturating_sub(1)) as f64;
+    let free = (D * mass.len().saturating_sub(1)) as f64;
     let mean = match thermal.energy.as_constant() {
         Some(energy) => energy,
-        None => energy.iter().sum::<f64>() / slots.len() as f64,
+        None => energy.iter().sum::<f64>() / mass.len() as f64,
     };
     if twice > 0.0 {
         let scale = (free * mean / twice).sqrt();
-        for &s in &slots {
-            for a in 0..D {
-                system.v[a][s] *= scale;
-            }
-        }
+        v.iter_mut().flatten().for_each(|v| *v *= scale);
     }
-    Ok(())
+    v
 }
 
 /// k_B T of each point.

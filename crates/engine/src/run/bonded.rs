@@ -30,7 +30,7 @@ pub(super) fn around<const D: usize>(
             "give body.file",
         );
     }
-    fits(bonded, body.points())?;
+    fits(bonded, body.all_points())?;
     let pair = potentials.pair()?;
     Ok(Box::new(BondedAtoms::new(
         interaction,

@@ -110,27 +110,48 @@ impl<const D: usize> Names<D> {
         Ok(load)
     }
 
-    /// A force of the shelf on these points: what it adds, and what of it resists velocities.
+    /// A force of the shelf on these points: what it adds, and what of it resists velocities; and which of the points of all ranks these are. All ranks ask
+    /// at once.
     fn force(
         &self,
         body: &Body<D>,
         force: &ForceSpec,
         slots: &[u32],
         points: &[Point],
-    ) -> Result<impl Iterator<Item = LoadKind<D>> + use<D>, BuildError> {
-        let density = slots.iter().map(|s| body.density().at(*s as usize));
+    ) -> Result<(Vec<LoadKind<D>>, Vec<u32>), BuildError> {
+        let ids = body.ids_of_all();
+        let each = slots.iter().zip(points).map(|(s, [x, y, z])| {
+            let density = body.density().at(*s as usize);
+            [f64::from(ids[*s as usize]), *x, *y, *z, density]
+        });
+        let own: Vec<[f64; 5]> = each.collect();
+        let mut all = body.all_of(&own).concat();
+        let mut which: Vec<u32> = (0..own.len() as u32).collect();
+        if body.exchange().is_shared() {
+            all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let place = |p: &[f64; 5]| all.partition_point(|q| q[0] < p[0]) as u32;
+            which = own.iter().map(place).collect();
+        }
         let on = Placed {
             dimension: D,
-            points,
-            density: &density.collect::<Vec<_>>(),
+            points: &all
+                .iter()
+                .map(|[_, x, y, z, _]| [*x, *y, *z])
+                .collect::<Vec<_>>(),
+            density: &all.iter().map(|p| p[4]).collect::<Vec<_>>(),
             spacing: body.spacing(),
         };
         let made = self.shelf.force(force, &on)?;
-        let viscosity = (0..points.len()).map(|k| [Some(made.viscosity(k)), None, None]);
+        let viscosity = which
+            .iter()
+            .map(|k| [Some(made.viscosity(*k as usize)), None, None]);
         let viscosity: Vec<_> = viscosity.collect();
         let resists = viscosity.iter().any(|c| c[0] != Some(0.0));
-        let resists = resists.then(|| LoadKind::Damping(Program::listed(&viscosity)));
-        Ok([LoadKind::Named(made)].into_iter().chain(resists))
+        let mut kinds = vec![LoadKind::Named(made)];
+        if body.exchange().any(resists) {
+            kinds.push(LoadKind::Damping(Program::listed(&viscosity)));
+        }
+        Ok((kinds, which))
     }
 
     /// All that acts, and constraints.
@@ -182,8 +203,8 @@ impl<const D: usize> Names<D> {
                 ConditionKind::Force(force) => {
                     let path = format!("conditions[{n}]");
                     let made = self.force(body, force, &slots, &points);
-                    let made = made.map_err(|e| e.within(&path))?;
-                    loads.extend(made.map(load));
+                    let (made, which) = made.map_err(|e| e.within(&path))?;
+                    loads.extend(made.into_iter().map(|kind| load(kind).which(&which)));
                 }
                 ConditionKind::Traction { value, area } => {
                     let areas = { self.faces.areas(body, &c.set, &slots, *area) }

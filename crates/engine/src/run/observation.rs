@@ -162,11 +162,11 @@ impl<const D: usize> State for View<'_, D> {
 
     fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool {
         self.ids();
-        let id = &self.id;
+        let (id, called) = (&self.id, self.system.body.id_of());
         self.system.each_pair_force(&mut |bond| {
             visit(PointForce {
                 id: id[bond.i] as usize,
-                partner: id[bond.j] as usize,
+                partner: called(bond.j) as usize,
                 y: full(&bond.y),
                 force: full(&bond.force),
                 own: bond.own.as_ref().map(full),
@@ -286,16 +286,22 @@ impl<const D: usize> System<D> {
         let known = self.interaction.each_force(body, view(&self.u), visit);
         if let Some(contact) = &mut self.contact {
             contact.find(body, &self.u, self.interaction.as_ref());
-            contact.central.each_end(body, &self.u, |end| {
+            let mut ends = vec![];
+            contact
+                .central
+                .each_end(body, &self.u, |end| ends.push(end));
+            // as a point's are on any number of ranks
+            ends.sort_by_key(|end| body.order(end.at));
+            for end in ends {
                 let force = end.y.map(|y| end.pull * end.volume * y);
                 visit(BondForce {
                     i: end.at,
-                    j: end.other.unwrap_or(end.at),
+                    j: end.other,
                     y: end.y,
                     force,
                     own: Some(force.map(|f| 0.5 * f)),
                 });
-            });
+            }
         }
         known
     }
@@ -312,11 +318,11 @@ impl<const D: usize> System<D> {
 
     /// Ids of the ends of whole bonds, the lower first.
     fn whole_bonds(&self) -> Vec<(u32, u32)> {
-        let (id, mut bonds) = (self.body.ids_of_all(), vec![]);
+        let (id, mut bonds) = (self.body.id_of(), vec![]);
         self.interaction
             .each_bond(&self.body, &mut |i, j, _, state| {
                 if state == BondStatus::Whole {
-                    let (a, b) = (id[i], id[j]);
+                    let (a, b) = (id(i), id(j));
                     bonds.push((a.min(b), a.max(b)));
                 }
             });

@@ -25,14 +25,15 @@ pub fn linear_body_touching<const D: usize>(
     contact: Option<&ContactForces<D>>,
     u: &Field<D>,
 ) -> Option<LinearBody<D>> {
-    let ids = body.ids_of_all();
+    let id = body.id_of();
     let mut bonds = Bonds::default();
-    interaction.tangents(body, view(u), &mut |mut bond: BondTangent<D>| {
-        (bond.i, bond.j) = (ids[bond.i] as usize, ids[bond.j] as usize);
+    let mut push = |mut bond: BondTangent<D>| {
+        (bond.i, bond.j) = (id(bond.i) as usize, id(bond.j) as usize);
         bonds.push(&bond);
-    });
+    };
+    interaction.tangents(body, view(u), &mut push);
     if let Some(contact) = contact {
-        contact.tangents(body, u, &mut |bond| bonds.push(&bond));
+        contact.tangents(body, u, &mut push);
     }
     let bonds = bonds.of_all(body);
     let gain = body.by_id(|slot| interaction.gain(slot));

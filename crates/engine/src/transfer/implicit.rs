@@ -43,7 +43,7 @@ impl<const D: usize> LinearOperator<1> for Operator<'_, D> {
         let values = &self.values;
         self.rows.flow(|i| values[i], &mut self.room);
         if let Some(touching) = self.touching {
-            touching.flow(|i| values[i], &mut self.room);
+            touching.flow(body, |i| values[i], &mut self.room);
         }
         for (i, y) in y.iter_mut().enumerate() {
             y[0] = self.own[i] * x[i][0] - self.theta * self.room[i];
@@ -69,14 +69,14 @@ impl Transfer {
         theta: f64,
         tolerance: f64,
     ) -> Result<(), SolveError> {
-        self.powers(t, (1.0 - theta) * dt);
+        self.powers(of.0, t, (1.0 - theta) * dt);
         let past: Vec<f64> = self.flow.iter().map(|p| (1.0 - theta) * p).collect();
         let old = self.value.clone();
         let inertia: Vec<f64> = self.capacity.iter().map(|c| c / dt).collect();
         self.solve(of, (t + dt, theta), tolerance, &inertia, |i, value| {
             past[i] - inertia[i] * (value - old[i])
         })?;
-        self.powers(t + dt, theta * dt);
+        self.powers(of.0, t + dt, theta * dt);
         for i in &self.held_places {
             let i = *i as usize;
             let given = dt * (theta * self.flow[i] + past[i]);
@@ -119,7 +119,7 @@ impl Transfer {
         let mut first = None;
         let mut residual = f64::INFINITY;
         for _ in 0..ROUNDS {
-            self.powers(t, 0.0);
+            self.powers(body, t, 0.0);
             let mut own = self.slopes(t);
             for (own, c) in own.iter_mut().zip(inertia) {
                 *own = theta * *own + c;

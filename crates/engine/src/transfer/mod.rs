@@ -18,7 +18,7 @@ pub use account::TransferAccount;
 pub use condition::Condition;
 pub use places::Places;
 pub use rows::{Conduction, Rows, Surface};
-pub use touching::Touching;
+pub use touching::{Met, Touching};
 
 use crate::body::Body;
 use crate::error::SolveError;
@@ -258,11 +258,11 @@ impl Transfer {
     }
 
     /// What comes into every point at its value now.
-    fn powers(&mut self, t: f64, time: f64) {
+    fn powers<const D: usize>(&mut self, body: &Body<D>, t: f64, time: f64) {
         let value = &self.value;
         self.rows.flow(|i| value[i], &mut self.flow);
         if let Some(touching) = &self.touching {
-            let power = touching.flow(|i| value[i], &mut self.flow);
+            let power = touching.flow(body, |i| value[i], &mut self.flow);
             self.gained.through_contact.add(time * power);
         }
         for c in &self.conditions {
@@ -271,7 +271,7 @@ impl Transfer {
     }
 
     fn explicit<const D: usize>(&mut self, (body, places): (&Body<D>, &Places), t: f64, dt: f64) {
-        self.powers(t, dt);
+        self.powers(body, t, dt);
         let (flow, capacity, held) = (&self.flow, &self.capacity, &self.held);
         for_each_piece(&mut self.value[..capacity.len()], |first, piece| {
             for (n, value) in piece.iter_mut().enumerate() {

@@ -1,5 +1,7 @@
 //! Potentials and bodies that the tests share.
 
+use peridyne::law::fan::stillinger_weber::StillingerWeber;
+use peridyne::law::fan::tersoff::Tersoff;
 use peridyne::law::potential::Potential;
 use peridyne::law::potential::born_mayer::BornMayer;
 use peridyne::law::potential::buckingham::Buckingham;
@@ -165,6 +167,120 @@ pub fn atoms(
             std::array::from_fn(|x| (x < d).then_some(a * kind.edges()[x] * cells as f64));
     }
     spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.run.schedule.force_unstable = true;
+    spec
+}
+
+/// Stillinger & Weber 1985, in eV and Å.
+const SILICON: [(&str, f64); 10] = [
+    ("epsilon", 2.1683),
+    ("sigma", 2.0951),
+    ("a", 1.80),
+    ("lambda", 21.0),
+    ("gamma", 1.20),
+    ("cos_theta0", -0.333333333333),
+    ("A", 7.049556277),
+    ("B", 0.6022245584),
+    ("p", 4.0),
+    ("q", 0.0),
+];
+/// m, γ, λ₃, c, d, cos θ₀, n, β, λ₂, B, R, D, λ₁, A of Si and C (Tersoff 1988, 1989); two kinds in all triples, one with a λ₃ and one with
+/// a cut-off of its own.
+const SI: [f64; 14] = [
+    3.0, 1.0, 1.3258, 4.8381, 2.0417, 0.0, 22.956, 0.33675, 1.3258, 95.373, 3.0, 0.2, 3.2394,
+    3264.7,
+];
+const CARBON: [f64; 14] = [
+    3.0, 1.0, 0.0, 38049.0, 4.3484, -0.57058, 0.72751, 1.5724e-7, 2.2119, 346.7, 1.95, 0.15,
+    3.4879, 1393.6,
+];
+const MIXED: [f64; 14] = [
+    1.0, 1.0, 0.4, 38049.0, 4.3484, -0.57058, 0.72751, 1.5724e-7, 1.97205, 395.126, 2.36, 0.15,
+    2.9839, 1597.3111,
+];
+
+fn two_kinds() -> PotentialSpec {
+    let mut rows = vec![];
+    for n in 0..8 {
+        let [i, j, k] = [n / 4, n / 2 % 2, n % 2];
+        let mut constants = match (i, j) {
+            (0, 0) => SI,
+            (1, 1) => CARBON,
+            _ => MIXED,
+        };
+        if j != k {
+            constants[10] = 2.5;
+        }
+        let mut row = vec![i as f64, j as f64, k as f64];
+        row.extend(constants);
+        rows.push(row);
+    }
+    PotentialSpec::of_entries::<Tersoff>(rows).unwrap()
+}
+
+/// Name, potential, edge of the lattice and number of kinds.
+pub fn fans() -> Vec<(&'static str, PotentialSpec, f64, usize)> {
+    let weber = PotentialSpec::of_fan::<StillingerWeber>(&SILICON).unwrap();
+    let mut powers = SILICON;
+    powers[8].1 = 4.2;
+    powers[9].1 = 0.1;
+    let powers = PotentialSpec::of_fan::<StillingerWeber>(&powers).unwrap();
+    let row = [&[0.0; 3][..], &SI].concat();
+    let tersoff = PotentialSpec::of_entries::<Tersoff>(vec![row]).unwrap();
+    vec![
+        ("stillinger_weber", weber, 5.431, 1),
+        ("any powers", powers, 5.431, 1),
+        ("tersoff", tersoff, 5.432, 1),
+        ("two kinds", two_kinds(), 4.8, 2),
+    ]
+}
+
+/// Atoms on so many cells; of two kinds, every other plane is of the second.
+pub fn crystal(
+    potential: &PotentialSpec,
+    edge: f64,
+    kinds: usize,
+    cells: i32,
+    periodic: bool,
+) -> Spec {
+    let mut position = vec![];
+    let mut mark = vec![];
+    for n in 0..cells.pow(3) {
+        let cell = [n % cells, n / cells % cells, n / cells / cells];
+        for (s, site) in LatticeKind::Diamond.basis().iter().enumerate() {
+            let at = |a: usize| edge * (f64::from(cell[a]) + 0.25 * f64::from(site[a]));
+            position.push(std::array::from_fn(at));
+            mark.push(if kinds == 2 && s % 4 == 0 { 2 } else { 1 });
+        }
+    }
+    let volume = vec![edge.powi(3) / 8.0; position.len()];
+    let cloud = Cloud {
+        position,
+        volume,
+        mark,
+        ..Cloud::default()
+    };
+    let law = LawSpec::Atoms(potential.clone());
+    let mut spec = Spec::new(3, BodySpec::Cloud(cloud), 1.0, law);
+    let first = spec.materials[0].clone();
+    if kinds == 2 {
+        spec.materials.clear();
+        for (mark, name, density) in [(1, "one", 1.0), (2, "two", 0.4)] {
+            spec.sets.push(SetSpec {
+                name: name.into(),
+                members: Members::Mark(mark),
+            });
+            let mut material = first.clone();
+            material.name = name.into();
+            material.set = name.into();
+            material.density = density;
+            spec.materials.push(material);
+        }
+    }
+    if periodic {
+        spec.space.periodic = [Some(edge * f64::from(cells)); 3];
+    }
+    spec.run.schedule.time_step = TimeStep::Fixed(2e-3);
     spec.run.schedule.force_unstable = true;
     spec
 }

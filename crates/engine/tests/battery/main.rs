@@ -32,6 +32,10 @@ mod waves;
 
 #[path = "../allocations/mod.rs"]
 mod allocations;
+/// Potentials and crystals.
+#[allow(dead_code)]
+#[path = "../atoms/sample.rs"]
+mod atoms;
 
 use allocations::allocations;
 

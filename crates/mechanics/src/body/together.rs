@@ -134,6 +134,19 @@ impl<const D: usize> Body<D> {
         all.iter().map(|bytes| numbers(bytes)).collect()
     }
 
+    /// A number of every point by id, of those of the points that are here: those of all ranks, on all.
+    pub fn everywhere<T: Pod>(&self, own: Vec<T>) -> Vec<T> {
+        let Some(of) = self.subdomain() else {
+            return own;
+        };
+        let mut all = vec![T::zeroed(); of.points()];
+        let ids = self.all_of(of.ids()).concat();
+        for (id, x) in ids.into_iter().zip(self.all_of(&own).concat()) {
+            all[id as usize] = x;
+        }
+        all
+    }
+
     /// Does this rank have what is brought together?
     pub fn is_first(&self) -> bool {
         self.subdomain().is_none_or(|of| of.comm().rank() == 0)
@@ -264,7 +277,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// Of points in the order of the slots of the whole, also where a slot is a part's.
-    pub(crate) fn order(&self, slot: usize) -> u64 {
+    pub fn order(&self, slot: usize) -> u64 {
         match (&self.layout, self.subdomain()) {
             (Layout::Grid(grid), Some(_)) => {
                 let (sublattice, cell) = grid.place(slot);
@@ -279,9 +292,38 @@ impl<const D: usize> Body<D> {
         }
     }
 
+    /// Which of several bodies has the point at this place in that [order](Self::order), of a body that ranks share.
+    pub(crate) fn piece_of_order(order: u64) -> usize {
+        (order >> 52) as usize
+    }
+
     /// The id among the points of all ranks of one that is here.
     pub fn id_of_all(&self, id: usize) -> usize {
         self.subdomain().map_or(id, |of| of.ids()[id] as usize)
+    }
+
+    /// By id among the points of all ranks: a slot that it has here, its own or that of a copy; [`NOWHERE`](Self::NOWHERE) of who has none.
+    pub(crate) fn slots_of_ids(&self) -> Vec<u32> {
+        let ids = self.ids_of_all();
+        let mut slots = vec![Self::NOWHERE; self.all_points()];
+        let own = self.slots.iter().map(|s| *s as usize);
+        // own ones after copies of them
+        for slot in self.exchange.copies().chain(own) {
+            slots[ids[slot] as usize] = slot as u32;
+        }
+        slots
+    }
+
+    /// No slot.
+    pub(crate) const NOWHERE: u32 = u32::MAX;
+
+    /// Which id among the points of all ranks who is in a slot has; those of other ranks that have no copy here are called by their ids after all slots.
+    pub fn id_of(&self) -> impl Fn(usize) -> u32 + use<D> {
+        let (ids, slots) = (self.ids_of_all().into_owned(), self.len);
+        move |n| match n.checked_sub(slots) {
+            None => ids[n],
+            Some(id) => id as u32,
+        }
     }
 
     /// The id among the points of all ranks of who is in each slot; of another rank's point in its copies, too.

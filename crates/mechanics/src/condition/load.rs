@@ -138,9 +138,17 @@ impl<const D: usize> Load<D> {
     /// Passes what it remembers through an archive.
     pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
         body.archive_list(archive, "force", &self.slots, &mut self.last);
-        archive.all("memory", &mut self.named.memory);
+        let each = self.named.memory.len() / self.slots.len().max(1);
+        let each = body.most(each as f64) as usize;
         // loads are asked for before the next increment begins
-        archive.all("memory_before", &mut self.named.began);
+        let both = [&mut self.named.memory, &mut self.named.began];
+        for (name, memory) in ["memory", "memory_before"].into_iter().zip(both) {
+            for n in 0..each {
+                let mut own: Vec<f64> = memory.iter().skip(n).step_by(each).copied().collect();
+                body.archive_list(archive, name, &self.slots, &mut own);
+                { memory.iter_mut().skip(n).step_by(each).zip(own) }.for_each(|(m, x)| *m = x);
+            }
+        }
         archive.part("work", &mut self.work);
     }
 
@@ -169,6 +177,14 @@ impl<const D: usize> Load<D> {
             before: [0.0; 3],
             work: Exact::ZERO,
         }
+    }
+
+    /// Which of the points that a force of the shelf was made for each of these is.
+    pub fn which(mut self, point: &[u32]) -> Self {
+        if let LoadKind::Named(_) = self.kind {
+            self.named.point = point.to_vec();
+        }
+        self
     }
 
     /// A force density on points of a finer body, which reaches these slots.

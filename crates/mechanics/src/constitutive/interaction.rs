@@ -173,13 +173,13 @@ impl ConstitutiveModel {
                 format!("the micromoduli are those of a {found}-D body, this one has {D}"),
             ));
         };
-        if linear.points() != body.points() {
+        if linear.points() != body.all_points() {
             return Err(BuildError::conflict(
                 "micromoduli",
                 format!(
                     "there are micromoduli of {} points, the body has {}",
                     linear.points(),
-                    body.points()
+                    body.all_points()
                 ),
             ));
         }

@@ -175,6 +175,11 @@ impl<T> Seen<T> {
 }
 
 impl<T> Shared<T> {
+    /// Nobody asks for what would be written.
+    pub const fn nobody() -> Self {
+        Shared(std::ptr::null_mut())
+    }
+
     /// For those who read beside those who write.
     #[inline(always)]
     pub fn seen(self) -> Seen<T> {
@@ -183,7 +188,7 @@ impl<T> Shared<T> {
 }
 
 impl Shared {
-    pub const NULL: Shared = Shared(std::ptr::null_mut());
+    pub const NULL: Shared = Shared::nobody();
 }
 
 impl<T> Shared<T> {

@@ -86,11 +86,11 @@ impl Fragments {
 
     /// What whole bonds of this rank's points join: ids among all points, the lowest of each piece beside the others.
     fn joined<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Vec<[u32; 2]> {
-        let ids = body.ids_of_all();
+        let id = body.id_of();
         let mut sets = Sets::new(body.all_points());
         interaction.each_bond(body, &mut |i, j, _, state| {
             if state == BondStatus::Whole {
-                sets.join(ids[i], ids[j]);
+                sets.join(id(i), id(j));
             }
         });
         let all = 0..body.all_points() as u32;

@@ -1,5 +1,6 @@
 //! A bond, whatever its law and family: its arithmetic, what it bears, whether it is whole, and how bonds are visited.
 
+use crate::body::Body;
 use crate::execute::lane::Lane;
 use crate::execute::lane::series::{Function, Stretch};
 use crate::law::BondFactors;
@@ -54,6 +55,12 @@ pub fn add_virial<const D: usize>(sum: &mut [f64; 6], pull: &[f64; D], y: &[f64;
             *sum += factor * y[m] * pull[n];
         }
     }
+}
+
+/// Of all points, those of slots, of all ranks.
+pub(super) fn sum_of_virials<const D: usize>(body: &Body<D>, points: &[[f64; 6]]) -> [f64; 6] {
+    let own = || body.slots.iter().map(|s| &points[*s as usize]);
+    body.sums(crate::array::from_fn(|n| own().map(|v| v[n]).collect()))
 }
 
 /// `gradient · x`

@@ -219,11 +219,6 @@ impl<const D: usize> Cohesion<D> {
         }
     }
 
-    /// Ids of ghosts, of the ids in slots. All ranks ask at once.
-    pub fn ids_there(&self, ids: &[u32]) -> Vec<u32> {
-        self.ghosts.ask(|slot| ids[slot])
-    }
-
     /// Visit the pairs that attract each other, at the `u` of the last [`Cohesion::update`] or near it.
     pub fn each_pull(&self, body: &Body<D>, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
         let of = |n: usize| match n.checked_sub(body.len) {
@@ -244,8 +239,8 @@ impl<const D: usize> Cohesion<D> {
                 }
                 let left = 1.0 - r / range;
                 visit(Pull {
-                    i,
-                    j,
+                    i: self.ghosts.name(body, i),
+                    j: self.ghosts.name(body, j),
                     volumes: [vi, vj],
                     y,
                     r,

@@ -6,7 +6,7 @@
 use super::cohesion::Cohesion;
 use super::nearness::{Bounds, Nearness};
 use super::pull::{End, Pull};
-use super::{BondTangent, EachTangent, Repulsion};
+use super::{EachTangent, Repulsion};
 use crate::body::{Body, Field, view};
 use crate::execute::exact::Exact;
 use crate::family::neighbours::ghosts::Ghosts;
@@ -75,6 +75,16 @@ pub struct Contact<const D: usize> {
     bounds: Vec<Bounds>,
     /// What bodies attract each other by.
     cohesion: Option<Cohesion<D>>,
+}
+
+/// A point among those of all ranks.
+#[derive(Debug, Clone, Copy)]
+pub struct Named {
+    /// In the order of slots of the whole.
+    pub order: u64,
+    pub id: u32,
+    /// Which of several bodies has it.
+    pub piece: u32,
 }
 
 impl<const D: usize> Contact<D> {
@@ -207,7 +217,7 @@ impl<const D: usize> Contact<D> {
                 let r0 = square.sqrt();
                 let distance = self.repulsion.distance(r0, materials);
                 if let Some(near) = &self.near {
-                    let same = body.piece_of(i) == body.piece_of(j);
+                    let same = self.piece_of(body, i) == self.piece_of(body, j);
                     self.bounds.push(near.bounds(materials, same, r0, distance));
                 }
                 self.pairs.push(Pair {
@@ -265,28 +275,15 @@ impl<const D: usize> Contact<D> {
         })
     }
 
-    /// Tangents of all contacts, as those of bonds between points that touch, of points that are here: with ids among all points in place of slots.
-    /// `u` as for [`Contact::energy`]. All ranks ask at once.
+    /// Tangents of all contacts, as those of bonds between points that touch, of points that are here. `u` as for [`Contact::energy`].
     pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut EachTangent<D>) {
-        let ids = body.ids_of_all();
-        let mut of_pull = |pull: Pull<D>, there: &[u32]| {
+        self.each_pull(body, u, |pull| {
             pull.tangents(&mut |bond| {
-                let id = |n: usize| match n.checked_sub(body.len) {
-                    None => ids[n] as usize,
-                    Some(ghost) => there[ghost] as usize,
-                };
                 if bond.i < body.len {
-                    let (i, j) = (id(bond.i), id(bond.j));
-                    visit(BondTangent { i, j, ..bond });
+                    visit(bond);
                 }
             });
-        };
-        let there = self.ghosts.ask(|slot| ids[slot]);
-        self.each_repulsion(body, u, |pull| of_pull(pull, &there));
-        if let Some(cohesion) = &self.cohesion {
-            let there = cohesion.ids_there(&ids);
-            cohesion.each_pull(body, u, |pull| of_pull(pull, &there));
-        }
+        });
     }
 
     /// Adds what points that touch resist with (force / length) to sums by slot; `u` as for [`Contact::energy`].
@@ -338,6 +335,26 @@ impl<const D: usize> Contact<D> {
         }
     }
 
+    /// Who an end of a [near](Contact::each_near) pair is among the points of all ranks.
+    pub fn named(&self, body: &Body<D>, n: usize) -> Named {
+        let (order, id) = match self.ghosts.of(body, n) {
+            None => (body.order(n), body.ids_of_all()[n]),
+            Some(ghost) => (ghost.order, ghost.id as u32),
+        };
+        Named {
+            order,
+            id,
+            piece: self.piece_of(body, n) as u32,
+        }
+    }
+
+    fn piece_of(&self, body: &Body<D>, n: usize) -> usize {
+        match self.ghosts.of(body, n) {
+            None => body.piece_of(n),
+            Some(ghost) => Body::<D>::piece_of_order(ghost.order),
+        }
+    }
+
     /// How often the pairs were found anew.
     pub fn builds(&self) -> u64 {
         self.neighbours.builds()
@@ -370,7 +387,10 @@ impl<const D: usize> Contact<D> {
             None => body.volume.at(n),
             Some(ghost) => self.volumes_there[ghost],
         };
-        self.each_contact(u, |touch| visit(touch.pull([touch.i, touch.j].map(volume))));
+        self.each_contact(u, |touch| {
+            let pull = touch.pull([touch.i, touch.j].map(volume));
+            visit(pull.named(|n| self.ghosts.name(body, n)));
+        });
     }
 
     /// Visit the pairs closer than allowed.

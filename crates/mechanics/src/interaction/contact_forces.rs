@@ -3,7 +3,7 @@
 
 use super::contact::Contact;
 use super::friction::{Friction, Pressed};
-use super::{BondTangent, EachTangent, Evaluation, Interaction, PointEnergies};
+use super::{EachTangent, Evaluation, Interaction, PointEnergies};
 use crate::body::{Body, Field};
 use crate::state::{Archive, Owner};
 
@@ -52,11 +52,7 @@ impl<const D: usize> ContactForces<D> {
     pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut EachTangent<D>) {
         self.central.tangents(body, u, visit);
         if let Some(friction) = &self.friction {
-            let ids = body.ids_of_all();
-            friction.tangents(body, &mut |bond| {
-                let [i, j] = [bond.i, bond.j].map(|slot| ids[slot] as usize);
-                visit(BondTangent { i, j, ..bond });
-            });
+            friction.tangents(body, visit);
         }
     }
 

@@ -1,5 +1,6 @@
 //! What every law on every family can do: the contract between bonds and those who move, load and watch a body.
 
+use super::bond::sum_of_virials;
 use super::bonds::AnyBonds;
 use super::{
     BondStatus, Crosses, EachBond, EachForce, EachPair, EachTangent, FactorsOf, Gradient, Heals,
@@ -252,15 +253,15 @@ pub trait Interaction<const D: usize>: Send + Sync {
         self.bonds().map_or("none", |bonds| bonds.kind())
     }
 
-    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the law has no forces
+    /// Σ over pairs, of all ranks, of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the law has no forces
     /// of single bonds.
     fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
-        let mut virial = [0.0; 6];
+        let mut points = vec![[0.0; 6]; body.len];
         let known = self.each_force(body, u, &mut |bond| {
             let factor = -0.5 * body.volume.at(bond.i);
-            add_virial(&mut virial, &bond.force, &bond.y, factor);
+            add_virial(&mut points[bond.i], &bond.force, &bond.y, factor);
         });
-        known.then_some(virial)
+        known.then(|| sum_of_virials(body, &points))
     }
 
     /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot; 0 for points without a family.

@@ -4,7 +4,7 @@ use super::{
     BondStatus, BondTangent, EachBond, EachForce, EachTangent, Gradient, Interaction,
     PointEnergiesMut, Sweep, Tally,
 };
-use crate::body::{Body, FieldView, FieldViewMut, Identity};
+use crate::body::{Body, FieldView, FieldViewMut, Identity, Subdomain};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
@@ -24,6 +24,8 @@ pub struct MicromoduliInteraction<const D: usize> {
     start: Vec<usize>,
     /// Partners' slots.
     partner: Vec<u32>,
+    /// Does the partner not know the bond?
+    alone: Vec<bool>,
     block: Vec<[[f64; D]; D]>,
     /// `[partners]` reference vectors (length).
     xi: Vec<[f64; D]>,
@@ -32,7 +34,7 @@ pub struct MicromoduliInteraction<const D: usize> {
 }
 
 impl<const D: usize> MicromoduliInteraction<D> {
-    /// `linear` in order of the ids of `body`.
+    /// `linear` in order of the ids of `body`, of those of all ranks where it is a part: it has copies of all partners.
     pub fn new(body: &Body<D>, linear: &LinearBody<D>, simd: Simd) -> Self {
         let mut ids: Vec<usize> = (0..body.points()).collect();
         ids.sort_by_key(|id| body.slots[*id]);
@@ -42,17 +44,23 @@ impl<const D: usize> MicromoduliInteraction<D> {
             slots: ids.iter().map(|id| body.slots[*id]).collect(),
             row: vec![0; body.len],
             start: vec![0],
-            partner: Vec::with_capacity(linear.partner.len()),
-            block: Vec::with_capacity(linear.partner.len()),
-            xi: Vec::with_capacity(linear.partner.len()),
-            sums: PerBlock::sums(ids.len().div_ceil(BLOCK)),
+            partner: vec![],
+            alone: vec![],
+            block: vec![],
+            xi: vec![],
+            sums: PerBlock::sums(ids.len().div_ceil(BLOCK))
+                .among(body.subdomain().map(Subdomain::comm)),
             asymmetry: linear.soundness().asymmetry,
         };
+        let slots = body.slots_of_ids();
         for (row, &id) in ids.iter().enumerate() {
             made.row[body.slots[id] as usize] = row as u32;
+            let id = body.id_of_all(id);
             let (partners, blocks) = linear.row(id);
             for (&j, block) in partners.iter().zip(blocks) {
-                made.partner.push(body.slots[j as usize]);
+                made.partner.push(slots[j as usize]);
+                made.alone
+                    .push(linear.micromodulus(j as usize, id).is_none());
                 made.block.push(*block);
                 made.xi.push(linear.xi(id, j as usize));
             }
@@ -64,11 +72,6 @@ impl<const D: usize> MicromoduliInteraction<D> {
     fn bonds(&self, row: usize) -> impl Iterator<Item = (usize, &[[f64; D]; D], &[f64; D])> {
         let bonds = self.start[row]..self.start[row + 1];
         bonds.map(|k| (self.partner[k] as usize, &self.block[k], &self.xi[k]))
-    }
-
-    /// Has the point in slot `i` a bond to slot `j`?
-    fn knows(&self, i: usize, j: usize) -> bool {
-        self.bonds(self.row[i] as usize).any(|(k, ..)| k == j)
     }
 
     /// Force density on a row's point, and the energy density of its bonds.
@@ -227,18 +230,25 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         }
     }
 
-    fn each_bond(&self, _: &Body<D>, visit: &mut EachBond<D>) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        let id = body.id_of();
         for (row, &slot) in self.slots.iter().enumerate() {
             let i = slot as usize;
-            // a bond that only its other end knows is visited there
-            let once = |j: usize| i < j || !self.knows(j, i);
-            for (j, _, xi) in self.bonds(row).filter(|(j, ..)| once(*j)) {
-                visit(
-                    i.min(j),
-                    i.max(j),
-                    if i < j { *xi } else { xi.map(|x| -x) },
-                    BondStatus::Whole,
-                );
+            let alone = &self.alone[self.start[row]..];
+            for ((j, _, xi), alone) in self.bonds(row).zip(alone) {
+                // a bond that only its other end knows is visited there
+                if id(i) < id(j) || *alone {
+                    visit(i, j, *xi, BondStatus::Whole);
+                }
+            }
+        }
+    }
+
+    /// Of those that a point knows itself.
+    fn each_partner(&self, _: &Body<D>, visit: &mut EachBond<D>) {
+        for (row, &slot) in self.slots.iter().enumerate() {
+            for (j, _, xi) in self.bonds(row) {
+                visit(slot as usize, j, *xi, BondStatus::Whole);
             }
         }
     }
@@ -264,6 +274,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
 
     fn bytes(&self) -> usize {
         4 * (self.slots.len() + self.row.len() + self.partner.len())
+            + self.alone.len()
             + 8 * self.start.len()
             + 8 * D * (D + 1) * self.block.len()
     }

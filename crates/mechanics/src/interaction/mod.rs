@@ -32,7 +32,7 @@ mod sweep;
 pub mod tangent;
 pub mod weight;
 
-pub use atoms::bonded::BondedAtoms;
+pub use atoms::bonded::{BondedAtoms, longest_term};
 pub use atoms::smoothed::Smoothed;
 use bond::along;
 pub use bond::{

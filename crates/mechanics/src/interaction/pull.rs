@@ -7,8 +7,8 @@ use super::{BondTangent, EachTangent};
 pub struct End<const D: usize> {
     /// Its slot.
     pub at: usize,
-    /// That of the other one; `None`: another rank's.
-    pub other: Option<usize>,
+    /// That of the other one; of another rank's point [what it is called](crate::body::Body::id_of).
+    pub other: usize,
     /// Volume of the other.
     pub volume: f64,
     /// From it to the other now.
@@ -22,7 +22,7 @@ pub struct End<const D: usize> {
 /// A central force of a pair.
 #[derive(Debug, Clone, Copy)]
 pub struct Pull<const D: usize> {
-    /// Slots, or numbers from the slots on of [ghosts](crate::family::neighbours::ghosts).
+    /// Slots, or [what](crate::body::Body::id_of) points of other ranks are called.
     pub i: usize,
     pub j: usize,
     pub volumes: [f64; 2],
@@ -38,6 +38,15 @@ pub struct Pull<const D: usize> {
 }
 
 impl<const D: usize> Pull<D> {
+    /// With the ends called so.
+    pub fn named(self, name: impl Fn(usize) -> usize) -> Self {
+        Pull {
+            i: name(self.i),
+            j: name(self.j),
+            ..self
+        }
+    }
+
     /// Its ends that are here, of a body of so many slots.
     pub fn ends(self, slots: usize) -> impl Iterator<Item = End<D>> {
         let [vi, vj] = self.volumes;
@@ -48,7 +57,7 @@ impl<const D: usize> Pull<D> {
         let here = both.into_iter().filter(move |(at, ..)| *at < slots);
         here.map(move |(at, other, volume, y)| End {
             at,
-            other: (other < slots).then_some(other),
+            other,
             volume,
             y,
             pull: self.pull,

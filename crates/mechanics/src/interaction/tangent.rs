@@ -5,7 +5,7 @@
 //! number of their sums have a [`Channel`] for each sum.
 
 use super::BondForce;
-use crate::body::{Body, FieldView};
+use crate::body::FieldView;
 use crate::law::blocks::PairTangent;
 use crate::law::jet::{self, Jet};
 use crate::law::potential::Potential;
@@ -118,19 +118,24 @@ impl<const D: usize> BondTangent<D> {
         }
     }
 
-    /// What both ends of a pair of a potential have from a term of it: of the first, then of the second.
-    pub(super) fn both(body: &Body<D>, [i, j]: [usize; 2], pair: &PairTangent<D>) -> [Self; 2] {
+    /// What both ends of a pair of a potential have from a term of it: of the first, then of the second; of those that have a `volume` here.
+    pub(super) fn both(
+        volume: impl Fn(usize) -> Option<f64>,
+        [i, j]: [usize; 2],
+        pair: &PairTangent<D>,
+    ) -> impl Iterator<Item = Self> {
         let turned = crate::array::from_fn(|a| crate::array::from_fn(|b| pair.block[b][a]));
         let ends = [
             (i, j, pair.y, pair.block),
             (j, i, pair.y.map(|y| -y), turned),
         ];
-        ends.map(|(i, j, y, block)| {
-            let scale = 1.0 / body.volume.at(i);
-            BondTangent {
-                tension: scale * pair.pull,
+        let pull = pair.pull;
+        ends.into_iter().filter_map(move |(i, j, y, block)| {
+            let scale = 1.0 / volume(i)?;
+            Some(BondTangent {
+                tension: scale * pull,
                 ..Self::direct(i, j, y, block.map(|row| row.map(|c| scale * c)))
-            }
+            })
         })
     }
 

@@ -89,6 +89,24 @@ impl AnyLinearBody {
         }
     }
 
+    /// Do its points carry loads of a finer body?
+    pub fn has_carriers(&self) -> bool {
+        match self {
+            Self::One(b) => b.carriers.is_some(),
+            Self::Two(b) => b.carriers.is_some(),
+            Self::Three(b) => b.carriers.is_some(),
+        }
+    }
+
+    /// Longest bond, whether it acts or not (length).
+    pub fn longest(&self) -> f64 {
+        match self {
+            Self::One(b) => b.longest(),
+            Self::Two(b) => b.longest(),
+            Self::Three(b) => b.longest(),
+        }
+    }
+
     /// Longest bond that acts (length).
     pub fn range(&self) -> f64 {
         match self {
@@ -185,6 +203,14 @@ impl<const D: usize> LinearBody<D> {
     pub fn row(&self, i: usize) -> (&[u32], &[[[f64; D]; D]]) {
         let row = self.start[i]..self.start[i + 1];
         (&self.partner[row.clone()], &self.block[row])
+    }
+
+    /// Longest bond, whether it acts or not (length).
+    pub fn longest(&self) -> f64 {
+        let points = 0..self.points();
+        let each = points.flat_map(|i| self.row(i).0.iter().map(move |j| self.xi(i, *j as usize)));
+        let squares = each.map(|xi| xi.iter().map(|x| x * x).sum::<f64>());
+        squares.fold(0.0, f64::max).sqrt()
     }
 
     /// `C_ij`, if j is a partner of i.

@@ -25,7 +25,7 @@ impl Whose<'_> {
     }
 
     /// The place here of one by its id.
-    pub(crate) fn place(&self, id: u32) -> Option<usize> {
+    pub fn place(&self, id: u32) -> Option<usize> {
         match self.ids {
             None => Some(id as usize).filter(|id| *id < self.points),
             Some(ids) => ids.binary_search(&id).ok(),

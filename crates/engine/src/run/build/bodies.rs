@@ -4,6 +4,7 @@ use crate::body::Body;
 use crate::constitutive::{AnyPotentials, Shelf};
 use crate::error::BuildError;
 use crate::family::nodes::Nodes;
+use crate::interaction::longest_term;
 use crate::quantity::Warnings;
 use crate::run::faces::Faces;
 use crate::run::feasible::enough_memory;
@@ -105,8 +106,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             let whole = ended.as_ref().unwrap_or(&body);
             warnings.extend(meant::all(spec, whole, &names.sets)?);
             names.faces.find(spec, whole, &names.sets)?;
-            // volumes of partners fade over a spacing at the horizon
-            body = body.subdomain_of(ranks, horizon + body.spacing());
+            body = body.subdomain_of(ranks, halo(spec, &body, horizon));
             cut(&mut names, &body);
             enough(spec, &parts, &body)?;
         }
@@ -130,6 +130,18 @@ fn reach<const D: usize>(spec: &Spec, parts: &[Part], body: &Body<D>, horizon: f
     let own = parts.iter().zip(body.pieces());
     let ranges = own.map(|(part, p)| free * cell(&part.spec, &p.body));
     ranges.fold(horizon, f64::max)
+}
+
+/// How far the points are of which a part of a body has copies (length). Atoms find who is near by themselves, but for those that they are bonded to.
+fn halo<const D: usize>(spec: &Spec, body: &Body<D>, horizon: f64) -> f64 {
+    let given = spec.micromoduli().map_or(0.0, |l| 1.001 * l.longest());
+    if !current_neighbours(spec) {
+        // volumes of partners fade over a spacing at the horizon
+        return given.max(horizon + body.spacing());
+    }
+    let bonded = spec.interactions.bonded.as_ref();
+    let term = bonded.map_or(0.0, |bonded| longest_term(body, bonded));
+    term.max(body.spacing())
 }
 
 /// What is left of the names in this part of a body.

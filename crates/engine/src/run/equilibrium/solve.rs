@@ -296,18 +296,27 @@ impl<const D: usize> Problem<'_, D> {
 
     fn largest_stretch(&self) -> f64 {
         let mut worst = 0.0f64;
-        self.system
-            .interaction
-            .each_bond(&self.system.body, &mut |i, j, xi, state| {
-                if state == BondStatus::Absent {
-                    return;
-                }
-                let square: f64 = xi.iter().map(|c| c * c).sum();
-                let longer: f64 = (0..D)
-                    .map(|a| (self.system.u[a][j] - self.system.u[a][i]) * xi[a])
-                    .sum();
-                worst = worst.max((longer / square).abs());
-            });
+        let (body, u) = (&self.system.body, &self.system.u);
+        let interaction = self.system.interaction.as_ref();
+        // atoms may be near to some that have no copy here
+        let mut far = false;
+        interaction.each_bond(body, &mut |_, j, _, _| far |= j >= body.len());
+        let known = match self.sums.any(far) {
+            true => u.each_ref().map(|u| body.everywhere(body.by_id(|s| u[s]))),
+            false => crate::array::from_fn(|_| vec![]),
+        };
+        let at = |a: usize, n: usize| match n.checked_sub(body.len()) {
+            None => u[a][n],
+            Some(id) => known[a][id],
+        };
+        interaction.each_bond(body, &mut |i, j, xi, state| {
+            if state == BondStatus::Absent {
+                return;
+            }
+            let square: f64 = xi.iter().map(|c| c * c).sum();
+            let longer: f64 = (0..D).map(|a| (at(a, j) - at(a, i)) * xi[a]).sum();
+            worst = worst.max((longer / square).abs());
+        });
         self.sums.most(worst)
     }
 }

@@ -152,6 +152,20 @@ impl<const D: usize> Model<D> {
         }
         body.exchange().fill(&mut q);
         body.exchange().fill(&mut g);
+        // contact may be with points that have no copy here
+        let touched = self.system.contact.is_some() && body.exchange().is_shared();
+        let [q_there, g_there] = match touched {
+            true => [
+                body.everywhere(body.by_id(|s| [q[s], 0.0])),
+                body.everywhere(body.by_id(|s| g[s])),
+            ],
+            false => [vec![], vec![]],
+        };
+        let slots = body.len();
+        let of = |n: usize| match n.checked_sub(slots) {
+            None => (q[n], g[n]),
+            Some(id) => (q_there[id][0], g_there[id]),
+        };
         let volume = body.volume().clone();
         let each = body.slots().iter().zip(energy).map(|(&s, energy)| {
             let along = slope[s as usize][0] * n[0] + slope[s as usize][1] * n[1];
@@ -160,8 +174,9 @@ impl<const D: usize> Model<D> {
         let mut sum: Exact = each.collect();
         self.system.each_pair_force(&mut |bond| {
             let (i, j) = (bond.i, bond.j);
-            let across = q[i] - q[j];
-            let power: f64 = (0..2).map(|a| bond.force[a] * (g[i][a] + g[j][a])).sum();
+            let (there, slope) = of(j);
+            let across = q[i] - there;
+            let power: f64 = (0..2).map(|a| bond.force[a] * (g[i][a] + slope[a])).sum();
             sum.take(0.25 * volume.at(i) * across * power);
         });
         let j = self.system.body.sums([sum])[0] / contour.section;

@@ -28,10 +28,14 @@ enum Ask<'a> {
     Ledger,
     Summary,
     Fragments,
+    Observed,
+    Forces,
     LinearBody,
     Modes(usize),
     Hash,
     Measure,
+    Watch(Watched),
+    Watched(Watched),
     Columns,
     Column(&'a str),
     Snapshot(Vec<&'a str>, bool),
@@ -54,10 +58,14 @@ impl<'a> Ask<'a> {
             Ask::Ledger => "ledger".into(),
             Ask::Summary => "summary".into(),
             Ask::Fragments => "fragments".into(),
+            Ask::Observed => "observed".into(),
+            Ask::Forces => "forces".into(),
             Ask::LinearBody => "linear_body".into(),
             Ask::Modes(count) => format!("modes {count}"),
             Ask::Hash => "hash".into(),
             Ask::Measure => "measure".into(),
+            Ask::Watch(what) => format!("watch {what:?}"),
+            Ask::Watched(what) => format!("watched {what:?}"),
             Ask::Columns => "columns".into(),
             Ask::Column(name) => format!("column {name}"),
             Ask::Snapshot(fields, bonds) => format!("snapshot {bonds} {}", fields.join(" ")),
@@ -93,10 +101,14 @@ impl<'a> Ask<'a> {
             "ledger" => Ask::Ledger,
             "summary" => Ask::Summary,
             "fragments" => Ask::Fragments,
+            "observed" => Ask::Observed,
+            "forces" => Ask::Forces,
             "linear_body" => Ask::LinearBody,
             "modes" => Ask::Modes(of.parse().ok()?),
             "hash" => Ask::Hash,
             "measure" => Ask::Measure,
+            "watch" => Ask::Watch(watched(of)?),
+            "watched" => Ask::Watched(watched(of)?),
             "columns" => Ask::Columns,
             "column" => Ask::Column(of),
             "snapshot" => {
@@ -117,6 +129,12 @@ impl<'a> Ask<'a> {
             _ => return None,
         })
     }
+}
+
+/// By its name.
+fn watched(name: &str) -> Option<Watched> {
+    let all = [Watched::Energies, Watched::Virial, Watched::Virials];
+    all.into_iter().find(|what| format!("{what:?}") == name)
 }
 
 /// Hears what the first rank says, whoever says it.
@@ -143,10 +161,14 @@ impl<const D: usize> RankModel<D> {
                 Ask::Ledger => drop(self.model.ledger()),
                 Ask::Summary => drop(self.model.summary()),
                 Ask::Fragments => drop(self.fragments()),
+                Ask::Observed => drop(self.observed()),
+                Ask::Forces => drop(self.forces()),
                 Ask::LinearBody => drop(linear_of_all(&mut self.model)),
                 Ask::Modes(count) => drop(modes_of_all(&mut self.model, count)),
                 Ask::Hash => drop(self.state_hash()),
                 Ask::Measure => drop(self.model.measure()),
+                Ask::Watch(what) => self.model.watch(what),
+                Ask::Watched(what) => drop(self.watched(what)),
                 Ask::Columns => drop(self.columns()),
                 Ask::Column(name) => drop(self.column(name)),
                 Ask::Snapshot(fields, bonds) => drop(self.snapshot(&fields, bonds)),
@@ -349,12 +371,14 @@ impl<const D: usize> Steered for AllRanks<D> {
         not_shared("conditions from outside")
     }
 
-    fn watch(&mut self, _: Watched) {
-        not_shared("what forces see")
+    fn watch(&mut self, what: Watched) {
+        self.ask(&Ask::Watch(what));
+        self.own.model.watch(what);
     }
 
-    fn watched(&mut self, _: Watched) -> Option<Seen> {
-        not_shared("what forces see")
+    fn watched(&mut self, what: Watched) -> Option<Seen> {
+        self.ask(&Ask::Watched(what));
+        self.own.watched(what)
     }
 
     fn set_driven(&mut self, _: &[(Drive, Option<Vec<u32>>)]) {
@@ -384,11 +408,17 @@ impl<const D: usize> Examined for AllRanks<D> {
     }
 
     fn observed(&mut self) -> Observed {
-        not_shared("energies of points")
+        self.ask(&Ask::Observed);
+        self.own.observed().expect("this rank gathers")
     }
 
-    fn each_force(&mut self, _: &mut dyn FnMut(PointForce)) -> bool {
-        not_shared("forces of pairs")
+    fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool {
+        self.ask(&Ask::Forces);
+        let Some(all) = self.own.forces() else {
+            return false;
+        };
+        all.into_iter().for_each(visit);
+        true
     }
 
     fn relax(&mut self, _: f64) -> Result<Solved, RunError> {

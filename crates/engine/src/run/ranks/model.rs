@@ -5,10 +5,10 @@ use crate::body::{Body, Subdomain};
 use crate::columns::{Declaration, On};
 use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
-use crate::observe::{Column, Snapshot, StateHash, Values};
+use crate::observe::{Column, Observed, PointForce, Snapshot, StateHash, Values};
 use crate::run::build::made_among;
 use crate::run::state_hash::hashed;
-use crate::run::{Model, Options, Shelf, Simulation};
+use crate::run::{Examined, Model, Options, Seen, Shelf, Simulation, Steered, Watched};
 use crate::spec::Spec;
 use peridyne_comm::{Comm, Traffic};
 use std::sync::Arc;
@@ -163,6 +163,81 @@ impl<const D: usize> RankModel<D> {
             }
         }
         done
+    }
+
+    /// As [`Steered::watched`], of points of all ranks, on the first.
+    pub(super) fn watched(&mut self, what: Watched) -> Option<Seen> {
+        let own = self.model.watched(what);
+        // all ranks watched, or none
+        Some(match own? {
+            Seen::Virial(of_all) => Seen::Virial(of_all),
+            Seen::Virials(points) => Seen::Virials(self.body().whole(1, points)?),
+            Seen::Energies(own) => Seen::Energies(self.whole_observed(own)?),
+        })
+    }
+
+    fn whole_observed(&self, own: Observed) -> Option<Observed> {
+        let body = self.body();
+        let whole = |values: Vec<f64>| match body.exchange().any(!values.is_empty()) {
+            true => body.whole(1, values),
+            false => Some(vec![]),
+        };
+        let all = [own.strain, own.repulsion, own.dilatation, own.whole].map(whole);
+        let [strain, repulsion, dilatation, whole] = all;
+        Some(Observed {
+            strain: strain?,
+            repulsion: repulsion?,
+            dilatation: dilatation?,
+            whole: whole?,
+        })
+    }
+
+    /// As [`Examined::observed`], of points of all ranks, on the first.
+    pub(super) fn observed(&mut self) -> Option<Observed> {
+        let own = self.model.observed();
+        self.whole_observed(own)
+    }
+
+    /// Every force of a pair as [`Examined::each_force`] visits them, of points of all ranks, on the first; `None` there: a law has none.
+    pub(super) fn forces(&mut self) -> Option<Vec<PointForce>> {
+        let ids = self.ids().to_vec();
+        let order: Vec<u64> = {
+            let body = self.body();
+            body.by_id(|slot| body.order(slot))
+        };
+        let mut own: Vec<[u64; 13]> = vec![];
+        let known = self.model.each_force(&mut |bond| {
+            let state = bond.own.unwrap_or([0.0; 3]);
+            let numbers = [bond.y, bond.force, state].concat();
+            let mut said = [0; 13];
+            said[..4].copy_from_slice(&[
+                order[bond.id],
+                u64::from(ids[bond.id]),
+                bond.partner as u64,
+                u64::from(bond.own.is_some()),
+            ]);
+            let words = numbers.iter().map(|x| x.to_bits());
+            said[4..].iter_mut().zip(words).for_each(|(to, x)| *to = x);
+            own.push(said);
+        });
+        let unknown = self.body().exchange().any(!known);
+        let mut all = self.body().joined(own)?;
+        if unknown {
+            return None;
+        }
+        // of one point in the order in which its rank has them
+        all.sort_by_key(|said| said[0]);
+        let force = |said: &[u64; 13]| {
+            let vector = |n: usize| [0, 1, 2].map(|a| f64::from_bits(said[4 + 3 * n + a]));
+            PointForce {
+                id: said[1] as usize,
+                partner: said[2] as usize,
+                y: vector(0),
+                force: vector(1),
+                own: (said[3] == 1).then(|| vector(2)),
+            }
+        };
+        Some(all.iter().map(force).collect())
     }
 
     /// What this rank has sent so far, and copies that it has of others' points.

@@ -4,6 +4,7 @@ use super::model::RankModel;
 use crate::error::BuildError;
 use crate::run::build::made_among;
 use crate::run::ranks::shared;
+use crate::run::reference::current_neighbours;
 use crate::run::{Info, Options, Shelf, Simulation};
 use crate::spec::{Spec, Stepper};
 use peridyne_comm::on_threads;
@@ -46,7 +47,7 @@ impl Shares {
 /// What a step of a spec costs, by so many steps of one process and of two ranks, and how these numbers of ranks share its body.
 ///
 /// # Errors
-/// What ranks do not share yet; equations may be solved by a matrix, which one rank has; as of [`build`](crate::run::build); steps end with an error.
+/// What ranks do not share yet; equations may be solved by a matrix, which one rank has, and atoms be near to any others; as of [`build`](crate::run::build); steps end with an error.
 pub fn plan(
     spec: &Spec,
     options: Options,
@@ -63,6 +64,13 @@ pub fn plan(
         let message = "equations are solved on the first rank where they have a matrix, and what that takes does not shrink with the number of machines";
         return Err(BuildError::unsupported("run", message)
             .help("plan explicit steps, or statics with method = \"relaxation\""));
+    }
+    if current_neighbours(spec) {
+        let message =
+            "atoms may come near to any others in time: what ranks tell each other is not foreseen";
+        return Err(BuildError::unsupported("bonds.family", message).help(
+            "measure it by some steps on few ranks, or take family = \"stencil\" or \"reference\" where atoms stay",
+        ));
     }
     match spec.space.dimension {
         1 => planned::<1>(spec, options, steps, ranks),

@@ -1,7 +1,7 @@
 //! What ranks share of a spec so far.
 
 use crate::error::BuildError;
-use crate::spec::{ConditionKind, ConditionSpec, FamilyChoice, LawSpec, Measure, ProbeSpec, Spec};
+use crate::spec::{LawSpec, Measure, ProbeSpec, Spec};
 
 /// The one that is found of all ranks together.
 pub(super) const FRAGMENT: &str = "fragment";
@@ -17,62 +17,35 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         | LawSpec::LpsAsTyped { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_)
+        | LawSpec::Atoms(_)
         | LawSpec::Named(_) => true,
-        LawSpec::Micromoduli(_) | LawSpec::Atoms(_) => false,
+        LawSpec::Micromoduli(linear) => !linear.couples_masses() && !linear.has_carriers(),
     };
-    let named = |c: &ConditionSpec| matches!(c.kind, ConditionKind::Force(_));
     let probe = |p: &ProbeSpec| match &p.measure {
         Measure::Reaction | Measure::Moment { .. } | Measure::Energy | Measure::Indenter { .. } => {
             true
         }
         Measure::Over { of, .. } | Measure::Value { of, .. } => of != FRAGMENT,
-        // points that touch across ranks have no slot there
-        Measure::Contour(_) => spec.interactions.contact.is_none(),
+        Measure::Contour(_) => true,
     };
-    let in_reference = |family| match family {
-        FamilyChoice::Auto | FamilyChoice::Stencil | FamilyChoice::List => true,
-        FamilyChoice::Neighbours | FamilyChoice::Reference => false,
-    };
-    let (bonded, run, pieces) = (&spec.bonds, &spec.run, spec.body.pieces());
+    let run = &spec.run;
     let limits = [
-        (
-            "bonds.family",
-            "families of now and of atoms",
-            !{ std::iter::once(bonded.family) }
-                .chain(pieces.iter().filter_map(|p| p.family))
-                .all(in_reference),
-        ),
-        ("bonds", "fields on nodes", bonded.smooth.is_some()),
+        ("bonds", "fields on nodes", spec.bonds.smooth.is_some()),
         (
             "materials",
-            "potentials and micromoduli",
+            "coarsened bodies whose masses are coupled, or that carry loads of a finer one",
             !spec.materials.iter().all(|m| bonds(&m.law)),
         ),
         (
             "interactions",
-            "friction of contact, heat through contact, interfaces, potentials beside bonds and constants of pairs",
-            { spec.interactions.contact.as_ref() }
-                .is_some_and(|c| c.friction.is_some() || c.conductance.is_some())
+            "friction of contact, interfaces and constants of pairs",
+            { spec.interactions.contact.as_ref() }.is_some_and(|c| c.friction.is_some())
                 || !spec.interactions.interfaces.is_empty()
-                || !spec.interactions.potentials.is_empty()
-                || !spec.interactions.pairs.is_empty()
-                || spec.interactions.bonded.is_some(),
-        ),
-        (
-            "conditions",
-            "forces of the shelf",
-            { spec.loading.conditions.iter() }
-                .chain(run.preload.iter().flat_map(|p| &p.conditions))
-                .any(named),
-        ),
-        (
-            "loading.thermal",
-            "velocities by temperature",
-            spec.loading.thermal.is_some(),
+                || !spec.interactions.pairs.is_empty(),
         ),
         (
             "probes",
-            "probes of fragments, and contour integrals beside contact",
+            "probes of fragments",
             !run.probes.iter().all(probe),
         ),
     ];

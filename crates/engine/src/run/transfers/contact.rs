@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::run::system::System;
 use crate::space::lattice::LatticeKind;
 use crate::spec::{BodySpec, Quantity, Spec};
-use crate::transfer::Touching;
+use crate::transfer::{Met, Touching};
 
 /// Where faces are not those of cubic cells.
 const ROUGH: &str = "contact.conductance: the face of a point is taken as its volume over the spacing, which is that of chain, square and cubic lattices; faces of this body may be a third larger or smaller, and so is what they conduct: multiply the conductance by the true area of the faces over that";
@@ -74,17 +74,33 @@ impl<const D: usize> System<D> {
             // statics before motion that knows no contact
             return touching.share();
         };
+        let places = &self.transfers.places;
         if self.regime.implicit || self.regime.equilibrium {
             // trials went anywhere
             contact.central.look_again();
         }
         let body = &self.body;
         contact.find(body, &self.u, self.interaction.as_ref());
-        let places = &self.transfers.places;
+        if !body.exchange().is_shared() {
+            contact.central.each_near(&self.u, |ends, weight| {
+                let bodies = ends.map(|s| body.piece_of(s) as u32);
+                touching.add(ends.map(|s| places.at(s) as u32), bodies, weight);
+            });
+            return touching.share();
+        }
+        let mut met = vec![];
         contact.central.each_near(&self.u, |ends, weight| {
-            let bodies = ends.map(|s| body.piece_of(s) as u32);
-            touching.add(ends.map(|s| places.at(s) as u32), bodies, weight);
+            // of two ranks one counts a pair across their border
+            if ends[0] < body.len() {
+                let named = ends.map(|n| contact.central.named(body, n));
+                met.push(Met {
+                    order: named.map(|n| n.order),
+                    ids: named.map(|n| n.id),
+                    bodies: named.map(|n| n.piece),
+                    weight,
+                });
+            }
         });
-        touching.share();
+        touching.share_among(body, places, &met);
     }
 }

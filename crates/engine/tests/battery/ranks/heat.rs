@@ -133,3 +133,52 @@ fn heat_and_species_spread_on_any_number_of_ranks() {
         }
     }
 }
+
+/// Two plates, the faces of which ranks share; still, sliding on each other, and in implicit steps.
+#[test]
+fn heat_crosses_contact_on_any_number_of_ranks() {
+    let case = Case::of("pmb", place(LatticeKind::Square));
+    let plate = |x: f64, y: f64| BodySpec::Sites {
+        kind: LatticeKind::Square,
+        spacing: H,
+        origin: [x, y, 0.0],
+        quarters: (0..800).map(|n| [4 * (n % 20), 4 * (n / 20), 0]).collect(),
+        volume: None,
+    };
+    let methods = [
+        TransferMethod::Explicit { safety: 0.5 },
+        TransferMethod::Implicit {
+            theta: 0.5,
+            tolerance: 1e-9,
+        },
+    ];
+    for (n, method) in [methods[0], methods[1], methods[0]].into_iter().enumerate() {
+        let mut spec = case.spec();
+        spec.title = format!("contact {n} {method:?}");
+        spec.body = BodySpec::Several(vec![
+            PieceSpec::new("left", plate(0.0, 0.0)),
+            PieceSpec::new("right", plate(20.0 * H, 0.3 * H)),
+        ]);
+        spec.sets = vec![];
+        let mut heat = spreading(Quantity::Heat, method, 0.0);
+        heat.conditions.clear();
+        heat.initial = vec![("all".into(), e("1 + 0.3*sin(x) + 0.1*y"))];
+        spec.interactions.transfers = vec![heat];
+        spec.interactions.contact = Some(ContactSpec {
+            conductance: Some(0.8),
+            ..CONTACT
+        });
+        match n {
+            0 => spec.run.schedule.stepper = Stepper::Still,
+            _ => {
+                spec.loading.initial = vec![InitialSpec {
+                    set: "all".into(),
+                    displacement: [const { None }; 3],
+                    velocity: [None, Some(e("x > 9.9 ? 2 : -1")), None],
+                }];
+            }
+        }
+        spec.run.schedule.time_step = TimeStep::Fixed(0.02 * H);
+        same::<2>(&spec, &[2, 3], None);
+    }
+}

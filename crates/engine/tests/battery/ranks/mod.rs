@@ -1,5 +1,6 @@
 //! Ranks that share a body: the same bits as one that has all of it.
 
+mod atoms;
 mod heat;
 mod statics;
 mod tiles;

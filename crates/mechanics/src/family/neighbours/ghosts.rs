@@ -29,7 +29,7 @@ pub(crate) struct Ghost {
     /// Its displacement when the list was made, padded.
     displacement: [f64; 3],
     /// Among all points.
-    id: u64,
+    pub id: u64,
 }
 
 // SAFETY, both: numbers without gaps between them, and all bits are some
@@ -145,6 +145,20 @@ impl<const D: usize> Default for Ghosts<D> {
 }
 
 impl<const D: usize> Ghosts<D> {
+    /// Do other ranks have points, as far as [`find`](Self::find) saw?
+    pub fn is_shared(&self) -> bool {
+        self.ranks.is_some()
+    }
+
+    /// Is it so on any rank? All come here at once.
+    pub fn any(&self, here: bool) -> bool {
+        let Some(comm) = &self.ranks else {
+            return here;
+        };
+        let all = comm.all_as_long(&[u8::from(here)]);
+        all.unwrap_or_else(|failure| comm.end(failure)).contains(&1)
+    }
+
     /// Takes all of other ranks that may be within `reach` (length) of points that are here, at these displacements. All ranks come here at once.
     pub fn find(&mut self, body: &Body<D>, u: FieldView<D>, reach: f64) {
         let Some(of) = body.subdomain().filter(|of| of.comm().ranks() > 1) else {
@@ -321,6 +335,13 @@ impl<const D: usize> Ghosts<D> {
     #[inline]
     pub fn of(&self, body: &Body<D>, n: usize) -> Option<&Ghost> {
         n.checked_sub(body.len).map(|n| &self.all[n])
+    }
+
+    /// What who has a number in a list [is called](Body::id_of).
+    #[inline]
+    pub fn name(&self, body: &Body<D>, n: usize) -> usize {
+        self.of(body, n)
+            .map_or(n, |ghost| body.len + ghost.id as usize)
     }
 
     /// Reference position of who has a number in a list, padded to three components.

@@ -15,23 +15,30 @@
 //!
 //! An atom's neighbours are added in the order of its lines. That is a function of where atoms were when the list was made, and of ids alone, not of threads,
 //! lists before it, or how atoms lie in memory: neighbours come by cells (x first, then y, then z), in a cell the atoms of the box by id, then images by cell and
-//! id of what they copy; kind by kind where lines are. Tiles stand in the same order, and totals are added block by block.
+//! id of what they copy; kind by kind where lines are. Tiles stand in the same order.
 //!
 //! It is not the order of the cells of *now*. While the list holds, atoms pass from cell to cell; to sort every line again in every step would cost what the list
 //! saves. Nor would an order by ids alone free sums from the last list: which image of an atom stands in the box (`base`), and so how distances are
 //! rounded, is of then, too. So displacements of then are state: a checkpoint has them in place of the list, which is made of them again. Of a
 //! list that is held the bonds that are left are state.
 //!
-//! Atoms on many ranks have the same order if
+//! # Ranks
+//!
+//! Atoms on many ranks have the same order, since
 //! - all make their lists in the same step: the farthest of all atoms decides, not that of a rank;
 //! - cells are those of the whole body: the extent along free axes, and the number of atoms, are of all;
-//! - atoms that come from other ranks are numbered among the own ones, by cell and id, before images: what is an image says the box, not who keeps the atom;
-//! - fourth numbers are copied where [`NearList::copy_to_ghosts`] is called, between the passes of a potential, from those who computed them;
-//! - a rank has whole blocks of tiles, or what its atoms add to totals is added in the order of all tiles ([`Exchange`](crate::body::Exchange)).
+//! - atoms that come from other ranks ([`foreign`]) stand among the own ones, by cell and id, before images: what is an image says the box, not who keeps the atom;
+//! - fourth numbers are copied where [`NearList::copy_fourth`] is called, between the passes of a potential, from those who computed them;
+//! - totals are sums without rounding of what each atom says, whatever tiles and blocks it stands in.
+//!
+//! Where an atom feels what its neighbours feel of each other, the lists of these neighbours are made, too ([`NearList::wide`]), so that nothing is sent back.
+//! Atoms of other ranks that are near in the reference are called by the slots of their copies where families are held; else by their ids after all slots
+//! ([`Body::id_of`]).
 
 mod build;
 mod cells;
-mod ghosts;
+mod foreign;
+mod images;
 #[cfg(test)]
 mod tests;
 
@@ -41,13 +48,12 @@ use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::state::Archive;
 use build::Block;
-use ghosts::Ghost;
+use cells::NOBODY;
+use foreign::Foreign;
+use images::Image;
 
 /// Tiles per block of work.
 const BLOCK: usize = 32;
-
-/// In place of a slot where a tile has no atom.
-const NOBODY: u32 = u32::MAX;
 
 /// How far the pairs of kinds of atoms see each other.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,14 +147,19 @@ pub struct NearList<const D: usize> {
     then: Vec<[f64; 4]>,
     /// `[D][slots]`: displacements then, unless it is held.
     made_at: [Vec<f64>; D],
-    ghosts: Vec<Ghost<D>>,
-    /// `[own in whole tiles, ghosts, nowhere][4]`: positions; the fourth number is the user's, or the kind where lines are mixed.
+    foreign: Foreign<D>,
+    images: Vec<Image<D>>,
+    /// `[own in whole tiles, those of other ranks, images, nowhere][4]`: positions; the fourth number is the user's, or the kind where lines are mixed.
     position: Vec<[f64; 4]>,
     blocks: Vec<Block>,
     moved: PerBlock<f64>,
     valid: bool,
     /// Once made it stays, wherever atoms go.
     held: bool,
+    /// Of other ranks' atoms that are near the lists are made, too.
+    wide: bool,
+    /// Slots of the body.
+    slots: usize,
     builds: u64,
 }
 
@@ -187,12 +198,15 @@ impl<const D: usize> NearList<D> {
             base: vec![],
             then: vec![],
             made_at: crate::array::from_fn(|_| vec![]),
-            ghosts: vec![],
+            foreign: Foreign::default(),
+            images: vec![],
             position: vec![],
             blocks: vec![Block::default(); blocks],
             moved: PerBlock::new(blocks, 0.0),
             valid: false,
             held: false,
+            wide: false,
+            slots: body.len,
             builds: 0,
         }
     }
@@ -203,6 +217,11 @@ impl<const D: usize> NearList<D> {
             held: true,
             ..Self::of_kinds(body, reaches, 0.0, lines)
         }
+    }
+
+    /// Of other ranks' atoms that are near own ones the lists are made, too: [`lines`](Self::lines) of tiles without [`slots`](Self::slots).
+    pub fn wide(self) -> Self {
+        NearList { wide: true, ..self }
     }
 
     /// Positions at displacement `u`, and a list that holds for them. Returns whether it was made anew.
@@ -222,21 +241,35 @@ impl<const D: usize> NearList<D> {
         (self.valid && self.place(u, simd, &mut position)).then_some(position)
     }
 
-    /// Where atoms were when the list was made, of which it is made again, the same to the last bit; of families of the reference who is left.
+    /// Where atoms were when the list was made, of which it is made again, the same to the last bit, and where they are.
     pub fn archive(&mut self, body: &Body<D>, simd: Simd, archive: &mut Archive<'_>) {
-        if self.held {
-            let all = self.position.len();
-            for block in &mut self.blocks {
-                block.archive_lines(all, archive);
+        if !self.held {
+            for column in &mut self.made_at {
+                body.archive_points(archive, "made_at", (column, 1), |slot, _| slot);
             }
-        } else {
-            archive.columns("made_at", &mut self.made_at);
             if archive.loads() {
                 let then = self.made_at.clone();
                 self.build(body, view(&then), simd);
             }
         }
-        archive.all("positions", &mut self.position);
+        let own = self.by_slot();
+        let at = |slot: usize, n: usize| 4 * own[slot] as usize + n;
+        let position = self.position.as_flattened_mut();
+        body.archive_points(archive, "positions", (position, 4), at);
+        if archive.loads() {
+            let mut position = std::mem::take(&mut self.position);
+            self.fill(&mut position);
+            self.position = position;
+        }
+    }
+
+    /// By slot of the body: the listed atom.
+    pub fn by_slot(&self) -> Vec<u32> {
+        let mut own = vec![NOBODY; self.slots];
+        for (n, slot) in self.order.iter().enumerate().filter(|(_, s)| **s != NOBODY) {
+            own[*slot as usize] = n as u32;
+        }
+        own
     }
 
     /// Write positions; does the list hold for them?
@@ -249,18 +282,42 @@ impl<const D: usize> NearList<D> {
             position: Shared(position.as_mut_ptr()),
         };
         let far = self.moved.fold(simd, &kernel, |far, d| *far = far.max(d));
-        ghosts::refresh(&self.ghosts, self.first_ghost(), position);
-        self.held || far <= 0.25 * self.skin * self.skin
+        self.foreign.follow(position);
+        images::refresh(&self.images, self.first_image(), position);
+        // what is not a number is far
+        let is_far = !(far <= 0.25 * self.skin * self.skin);
+        self.held || !self.foreign.ghosts().any(is_far)
     }
 
-    /// Copy the fourth number of every atom to its ghosts.
-    pub fn copy_to_ghosts(&mut self) {
-        let first = self.first_ghost();
-        ghosts::refresh(&self.ghosts, first, &mut self.position);
+    /// Records of own atoms into those of all that copy them, moved as these are. All ranks come here at once.
+    pub fn fill(&self, all: &mut [[f64; 4]]) {
+        self.foreign.follow(all);
+        self.foreign.copy_fourth(all);
+        images::refresh(&self.images, self.first_image(), all);
     }
 
-    fn first_ghost(&self) -> usize {
-        self.order.len().div_ceil(TILE) * TILE
+    /// Copy the fourth number of every atom to those that are copies of it. All ranks come here at once.
+    pub fn copy_fourth(&mut self) {
+        let mut position = std::mem::take(&mut self.position);
+        self.fill_fourth(&mut position);
+        self.position = position;
+    }
+
+    /// The same in other records of all that are listed.
+    pub fn fill_fourth(&self, all: &mut [[f64; 4]]) {
+        self.foreign.copy_fourth(all);
+        let (atoms, copies) = all.split_at_mut(self.first_image());
+        for (copy, image) in copies.iter_mut().zip(&self.images) {
+            copy[3] = atoms[image.of as usize][3];
+        }
+    }
+
+    fn first_foreign(&self) -> usize {
+        self.order.len().next_multiple_of(TILE)
+    }
+
+    fn first_image(&self) -> usize {
+        self.first_foreign() + self.foreign.len()
     }
 
     /// Blocks of work: how many, and the tiles of one with their lines.
@@ -313,10 +370,11 @@ impl<const D: usize> NearList<D> {
         (self.position.len() - 1) as u32
     }
 
-    /// Slots of a tile's atoms.
+    /// Slots of a tile's own atoms.
     #[inline(always)]
     pub fn slots(&self, tile: usize) -> &[u32] {
-        let slots = &self.order[tile * TILE..((tile + 1) * TILE).min(self.order.len())];
+        let own = self.order.len();
+        let slots = &self.order[(tile * TILE).min(own)..((tile + 1) * TILE).min(own)];
         match slots.last() {
             Some(&NOBODY) => {
                 let end = slots.iter().position(|s| *s == NOBODY);
@@ -326,7 +384,7 @@ impl<const D: usize> NearList<D> {
         }
     }
 
-    /// Positions of all atoms, ghosts and nowhere.
+    /// Positions of all atoms, images and nowhere.
     #[inline(always)]
     pub fn positions(&self) -> &[[f64; 4]] {
         &self.position
@@ -337,20 +395,47 @@ impl<const D: usize> NearList<D> {
         &mut self.position
     }
 
-    /// The own atom that a listed one is or copies.
+    /// The atom of the box that a listed one is or copies.
     #[inline(always)]
     pub fn home(&self, atom: usize) -> Option<usize> {
-        let own = match atom.checked_sub(self.first_ghost()) {
+        let home = match atom.checked_sub(self.first_image()) {
             None => atom,
-            Some(ghost) => self.ghosts.get(ghost)?.of as usize,
+            Some(image) => self.images.get(image)?.of as usize,
         };
-        (own < self.order.len()).then_some(own)
+        let there = match home.checked_sub(self.first_foreign()) {
+            None => self.order.get(home).is_some_and(|slot| *slot != NOBODY),
+            Some(n) => self.foreign.ghost(n).is_some(),
+        };
+        there.then_some(home)
     }
 
-    /// Slot of the atom that a listed one is or copies.
+    /// Has an atom of the box a list?
+    #[inline(always)]
+    pub fn has_list(&self, home: usize) -> bool {
+        home < self.first_foreign() + self.foreign.centres()
+    }
+
+    /// Slot of the atom that a listed one is or copies; another rank's as [above](self).
     pub fn original(&self, atom: usize) -> Option<usize> {
-        let slot = self.order[self.home(atom)?];
-        (slot != NOBODY).then_some(slot as usize)
+        let home = self.home(atom)?;
+        let Some(n) = home.checked_sub(self.first_foreign()) else {
+            return Some(self.order[home] as usize);
+        };
+        let ghost = self.foreign.ghost(n)?;
+        let ghosts = self.foreign.ghosts();
+        let copy = if self.held { ghosts.copy(ghost) } else { None };
+        Some(copy.unwrap_or_else(|| self.slots + ghosts.all()[ghost].id as usize))
+    }
+
+    /// Atoms of a tile.
+    #[inline(always)]
+    pub fn lanes(&self, tile: usize) -> usize {
+        match tile * TILE < self.order.len() {
+            true => self.slots(tile).len(),
+            false => (0..TILE)
+                .filter(|l| self.home(tile * TILE + l).is_some())
+                .count(),
+        }
     }
 
     /// How often the list was made.
@@ -365,7 +450,8 @@ impl<const D: usize> NearList<D> {
             + 4 * self.order.capacity()
             + 8 * self.made_at.iter().map(Vec::capacity).sum::<usize>()
             + self.kind.capacity()
-            + size_of::<Ghost<D>>() * self.ghosts.capacity()
+            + size_of::<Image<D>>() * self.images.capacity()
+            + self.foreign.bytes()
     }
 }
 

@@ -25,6 +25,10 @@ use crate::interaction::{
 use crate::spec::{CrackKind, Release};
 use crate::state::Archive;
 use kernel::{Add, Test};
+use std::collections::HashMap;
+
+/// In place of an atom where a slot has none.
+const NOBODY: u32 = u32::MAX;
 
 /// What bonds of potentials break by.
 #[derive(Debug, Clone)]
@@ -116,24 +120,18 @@ impl<const D: usize> Breaking<D> {
     pub fn new(body: &Body<D>, mut inner: Box<dyn Held<D>>, breaks: Breaks, simd: Simd) -> Self {
         let list = inner.list();
         let (first, family) = lines_of(list);
-        let mut own = vec![u32::MAX; body.len];
-        for t in 0..first.len() {
-            for (l, slot) in list.slots(t).iter().enumerate() {
-                own[*slot as usize] = (t * TILE + l) as u32;
-            }
-        }
+        let own = list.by_slot();
         let mut reference = list.positions().to_vec();
         let limits = match &breaks.measure {
             Measure::Work(limits) => limits.as_slice(),
             // critical stretches are known after the first evaluation; other measures potentials do not have
             Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => &[],
         };
-        for (n, x) in reference.iter_mut().enumerate() {
-            let limit = list
-                .original(n)
-                .and_then(|s| limits.get(body.material_of(s)));
-            x[3] = limit.copied().unwrap_or(f64::INFINITY);
+        for (slot, own) in own.iter().enumerate().filter(|(_, own)| **own != NOBODY) {
+            let limit = limits.get(body.material_of(slot)).copied();
+            reference[*own as usize][3] = limit.unwrap_or(f64::INFINITY);
         }
+        list.fill_fourth(&mut reference);
         let (blocks, tiles) = (list.blocks(), first.len());
         let work = match breaks.measure {
             Measure::Work(_) => Some(Work::new(body, inner.as_mut(), &first, family.len())),
@@ -197,12 +195,11 @@ impl<const D: usize> Breaking<D> {
         if self.work.is_some() {
             return;
         }
-        let list = self.inner.list();
-        for (n, x) in self.reference.iter_mut().enumerate() {
-            if let Some(home) = list.home(n) {
-                x[3] = self.next[home];
-            }
+        for own in self.own.iter().filter(|own| **own != NOBODY) {
+            let own = *own as usize;
+            self.reference[own][3] = self.next[own];
         }
+        self.inner.list().fill_fourth(&mut self.reference);
     }
 
     /// Line and lane of a place in the list.
@@ -257,19 +254,80 @@ impl<const D: usize> Breaking<D> {
         })
     }
 
-    /// Takes these bonds out, from both ends. Directed ones that were whole.
-    fn tear(&mut self, places: &[usize]) -> u64 {
-        let nowhere = self.inner.list().nowhere();
-        let mut torn = 0;
-        for &place in places {
-            for end in [Some(place), self.opposite(place)].into_iter().flatten() {
-                let entry = self.entry(end);
-                torn += u64::from(*entry != nowhere);
-                *entry = nowhere;
-                self.inner.follow(end, false);
-            }
+    /// Places of these bonds from both of their ends, and of those that other ranks name: of atoms of others whose lists are here, too. All ranks come here
+    /// at once.
+    fn both_ends(&self, body: &Body<D>, places: &[usize]) -> Vec<usize> {
+        if !body.exchange.is_shared() {
+            let ends = |place: &usize| [Some(*place), self.opposite(*place)];
+            return places.iter().flat_map(ends).flatten().collect();
         }
-        torn
+        let (list, id) = (self.inner.list(), body.id_of());
+        let named = |n: usize| list.original(n).map(&id);
+        let said = places.iter().filter_map(|&place| {
+            let (tile, _) = self.line(place);
+            let own = tile * TILE + place % TILE;
+            let other = self.family[place / TILE][place % TILE] as usize;
+            let mut said = [0.0; 5];
+            said[0] = f64::from(named(own)?);
+            said[1] = f64::from(named(other)?);
+            said[2..2 + D].copy_from_slice(&self.xi(own, other));
+            Some(said)
+        });
+        let said = body.all_of(&said.collect::<Vec<_>>()).concat();
+        if said.is_empty() {
+            return vec![];
+        }
+        let listed = 0..TILE * self.first.len();
+        let known: HashMap<u32, usize> = listed.filter_map(|n| Some((named(n)?, n))).collect();
+        let turned = said.iter().map(|[i, j, x, y, z]| [*j, *i, -x, -y, -z]);
+        let find = |[i, j, xi @ ..]: [f64; 5]| {
+            let own = *known.get(&(i as u32))?;
+            self.bonds(own).find_map(|(place, other)| {
+                let of = self.xi(own, other);
+                let off = (0..D).map(|a| (of[a] - xi[a]).powi(2)).sum::<f64>();
+                let near = off < 1e-12 * of.iter().map(|c| c * c).sum::<f64>();
+                (near && named(other) == Some(j as u32)).then_some(place)
+            })
+        };
+        said.iter()
+            .copied()
+            .chain(turned)
+            .filter_map(find)
+            .collect()
+    }
+
+    /// Takes bonds out at these places, or puts them back. Directed ones of own atoms that were otherwise.
+    fn put(&mut self, places: &[usize], whole: bool) -> u64 {
+        let nowhere = self.inner.list().nowhere();
+        let mut changed = 0;
+        for &place in places {
+            let named = match whole {
+                true => self.family[place / TILE][place % TILE],
+                false => nowhere,
+            };
+            let (tile, _) = self.line(place);
+            let is_own = !self.inner.list().slots(tile).is_empty();
+            let entry = self.entry(place);
+            changed += u64::from(is_own && *entry != named);
+            *entry = named;
+            self.inner.follow(place, whole);
+        }
+        changed
+    }
+
+    /// Takes these bonds out, from both ends. Directed ones that were whole.
+    fn tear(&mut self, body: &Body<D>, places: &[usize]) -> u64 {
+        let places = self.both_ends(body, places);
+        self.put(&places, false)
+    }
+
+    /// These are broken, and no others.
+    fn break_only(&mut self, body: &Body<D>, broken: &[usize]) {
+        let all: Vec<usize> = (0..TILE * self.first.len())
+            .flat_map(|own| self.bonds(own).map(|(place, _)| place))
+            .collect();
+        self.put(&all, true);
+        self.tear(body, broken);
     }
 
     /// All directed bonds of the reference, in order of slots: slots, ξ and place.
@@ -302,9 +360,9 @@ impl<const D: usize> Breaking<D> {
         self.add_work(body);
         let found = self.test(body);
         let mut tally = Tally::default();
-        if !found.is_empty() {
+        if body.exchange.any(!found.is_empty()) {
             let [before, _] = self.inner.energy(body, u);
-            tally.broken = self.tear(&found);
+            tally.broken = self.tear(body, &found);
             let mut after = std::mem::replace(&mut self.after, zeros(0));
             let without = self
                 .inner
@@ -320,17 +378,18 @@ impl<const D: usize> Breaking<D> {
                 Release::AtOnce => 0.5 * motion.steps[0],
                 Release::AfterForce => -0.5 * motion.steps[1],
             };
-            let power: f64 = { body.slots.iter() }
-                .map(|&s| {
-                    let s = s as usize;
-                    let of = |a: usize| (f[a][s] - after[a][s]) * motion.v[a][s];
-                    body.volume.at(s) * (0..D).map(of).sum::<f64>()
-                })
-                .sum();
-            let mut released = Released::default();
-            released.book(before - left + half * power);
-            tally.lost.add(released.lost);
-            tally.made.add(released.made);
+            let power = body.sum(body.slots.iter().map(|&s| {
+                let s = s as usize;
+                let of = |a: usize| (f[a][s] - after[a][s]) * motion.v[a][s];
+                body.volume.at(s) * (0..D).map(of).sum::<f64>()
+            }));
+            // energies are those of all ranks
+            if body.is_first() {
+                let mut released = Released::default();
+                released.book(before - left + half * power);
+                tally.lost.add(released.lost);
+                tally.made.add(released.made);
+            }
             if motion.release == Release::AtOnce {
                 for a in 0..D {
                     f[a].swap_with_slice(&mut after[a]);
@@ -416,14 +475,21 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
-        self.each_place(body, |i, j, xi, place| {
-            if i < j {
-                let state = match self.is_whole(place) {
-                    true => BondStatus::Whole,
-                    false => BondStatus::Broken,
-                };
+        let id = body.id_of();
+        self.each_partner(body, &mut |i, j, xi, state| {
+            if id(i) < id(j) {
                 visit(i, j, xi, state);
             }
+        });
+    }
+
+    fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        self.each_place(body, |i, j, xi, place| {
+            let state = match self.is_whole(place) {
+                true => BondStatus::Whole,
+                false => BondStatus::Broken,
+            };
+            visit(i, j, xi, state);
         });
     }
 
@@ -443,16 +509,8 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
                 }
             }
         }
-        let mut whole = 0;
-        for place in places {
-            for end in [Some(place), self.opposite(place)].into_iter().flatten() {
-                whole += u64::from(!self.is_whole(end));
-                let named = self.family[end / TILE][end % TILE];
-                *self.entry(end) = named;
-                self.inner.follow(end, true);
-            }
-        }
-        Some(whole)
+        let places = self.both_ends(body, &places);
+        Some(self.put(&places, true))
     }
 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {
@@ -479,7 +537,8 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
                 places.push(place);
             }
         });
-        let cut = self.tear(&places);
+        let places = self.both_ends(body, &places);
+        let cut = self.put(&places, false);
         if kind == CrackKind::Absent {
             // they were never there
             let nowhere = self.inner.list().nowhere();
@@ -491,9 +550,9 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        let nowhere = self.inner.list().nowhere();
-        let named = |line: &[u32; TILE]| line.iter().filter(|n| **n != nowhere).count() as u64;
-        self.family.iter().map(named).sum()
+        let own = self.own.iter().filter(|own| **own != NOBODY);
+        own.map(|own| self.bonds(*own as usize).count() as u64)
+            .sum()
     }
 
     fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
@@ -545,12 +604,12 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         }
         match (name, &mut self.work) {
             (history::WHOLE, _) => {
-                for (place, whole) in places.into_iter().zip(values) {
-                    let named = self.family[place / TILE][place % TILE];
-                    let nowhere = self.inner.list().nowhere();
-                    *self.entry(place) = if *whole != 0.0 { named } else { nowhere };
-                    self.inner.follow(place, *whole != 0.0);
-                }
+                let broken = places
+                    .iter()
+                    .zip(values)
+                    .filter(|(_, whole)| **whole == 0.0);
+                let broken: Vec<usize> = broken.map(|(place, _)| *place).collect();
+                self.break_only(body, &broken);
             }
             (history::DONE, Some(work)) => {
                 for (place, value) in places.into_iter().zip(values) {
@@ -561,12 +620,10 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
                 if values.len() != body.len {
                     return false;
                 }
-                let list = self.inner.list();
-                for (n, x) in self.reference.iter_mut().enumerate() {
-                    if let Some(slot) = list.original(n) {
-                        x[3] = values[slot];
-                    }
+                for (own, value) in self.own.iter().zip(values).filter(|(o, _)| **o != NOBODY) {
+                    self.reference[*own as usize][3] = *value;
                 }
+                self.inner.list().fill_fourth(&mut self.reference);
             }
             _ => return false,
         }
@@ -575,12 +632,58 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
 
     fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
         self.inner.archive(body, archive);
-        archive.all("reference", &mut self.reference);
-        archive.given("work", &mut self.work, |work, archive| {
-            archive.all("done", &mut work.done);
-            archive.all("at", &mut work.at);
-            archive.all("pulls", &mut work.before);
+        let own = |slot: usize| self.own[slot] as usize;
+        let critical = self.reference.as_flattened_mut();
+        body.archive_points(archive, "critical", (critical, 1), |slot, _| {
+            4 * own(slot) + 3
         });
+        let rows: Vec<Vec<usize>> = { body.slots.iter() }
+            .map(|s| {
+                self.bonds(own(*s as usize))
+                    .map(|(place, _)| place)
+                    .collect()
+            })
+            .collect();
+        let counts = rows.iter().map(|row| row.len() as u32).collect();
+        let bonds = archive.bonds("bonds", body.whose(), counts);
+        let bits = |row: &Vec<usize>| {
+            let mut bytes = vec![0; row.len().div_ceil(8)];
+            for (n, place) in row.iter().enumerate() {
+                bytes[n / 8] |= u8::from(self.is_whole(*place)) << (n % 8);
+            }
+            bytes
+        };
+        let mut bytes: Vec<u8> = rows.iter().flat_map(bits).collect();
+        archive.bits("whole", body.whose(), &bonds, &mut bytes);
+        let list = self.inner.list();
+        archive.given("work", &mut self.work, |work, archive| {
+            let places = || rows.iter().flatten().copied();
+            archive.rows(
+                "done",
+                body.whose(),
+                (&bonds, 1),
+                (&mut work.done, places()),
+            );
+            let pulls = work.before.as_flattened_mut();
+            let numbers = places().flat_map(|place| D * place..D * place + D);
+            archive.rows("pulls", body.whose(), (&bonds, D), (pulls, numbers));
+            let at = |slot: usize, n: usize| 4 * own(slot) + n;
+            body.archive_points(archive, "at", (work.at.as_flattened_mut(), 4), at);
+            if archive.loads() {
+                list.fill(&mut work.at);
+            }
+        });
+        if archive.loads() {
+            list.fill_fourth(&mut self.reference);
+            let mut broken = vec![];
+            let mut next = 0;
+            for row in &rows {
+                let is_broken = |n: &usize| bytes[next + n / 8] >> (n % 8) & 1 == 0;
+                broken.extend((0..row.len()).filter(is_broken).map(|n| row[n]));
+                next += row.len().div_ceil(8);
+            }
+            self.break_only(body, &broken);
+        }
     }
 
     fn bytes(&self) -> usize {

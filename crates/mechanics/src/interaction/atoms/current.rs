@@ -4,8 +4,8 @@ mod kernel;
 
 use super::breaking::Held;
 use super::line::Table;
-use super::{Curvatures, Faults, find_fault};
-use crate::body::{Body, FieldView, FieldViewMut, Identity, Values, view};
+use super::{Curvatures, Faults, Said, find_fault};
+use crate::body::{Body, FieldView, FieldViewMut, Identity, view};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -39,7 +39,6 @@ pub struct CurrentAtoms<const D: usize, P> {
     table: Option<Table>,
     list: NearList<D>,
     faults: Faults,
-    sums: PerBlock<[f64; 7]>,
     /// Neighbours of every slot in the reference.
     family: Vec<u16>,
     curvatures: Curvatures,
@@ -73,7 +72,6 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             table,
             list,
             faults: PerBlock::new(blocks, None),
-            sums: PerBlock::sums(blocks),
             family: vec![],
             curvatures: Curvatures::default(),
         };
@@ -135,7 +133,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             slope: Shared(position.cast()),
         };
         let tally = find_fault(&self.faults, self.simd, &kernel);
-        self.list.copy_to_ghosts();
+        self.list.copy_fourth();
         tally
     }
 
@@ -150,22 +148,21 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
         }
     }
 
-    /// Energy, the virial where asked for (of [ready](Self::ready) positions), and energies per slot where asked for.
-    fn sums(
+    /// What each point of a list says (of [ready](Self::ready) positions).
+    fn said(
         &self,
+        body: &Body<D>,
         virial: bool,
         list: &NearList<D>,
         position: &[[f64; 4]],
-        out: Shared,
-        volume: &Values,
-    ) -> [f64; 7] {
+    ) -> Said {
+        let mut said = Said::new(body, virial);
         let kernel = Energies {
-            virial,
             view: self.view(list, position.as_ptr()),
-            out,
-            volume,
+            said: said.places(),
         };
-        self.sums.sum(self.simd, &kernel)
+        run_blocks(self.simd, &kernel, list.blocks());
+        said
     }
 
     /// Energies of all points, of the list as it is.
@@ -176,9 +173,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
         position: &[[f64; 4]],
         out: &mut PointEnergiesMut,
     ) {
-        out.zeros(body.len);
-        let strain = Shared(out.strain.as_mut_ptr());
-        self.sums(false, list, position, strain, &body.volume);
+        self.said(body, false, list, position).see(body, out);
     }
 }
 
@@ -289,8 +284,10 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         self.list.update(body, u, self.simd);
         let list = &self.list;
-        let sums = self.sums(false, list, list.positions(), Shared::NULL, &body.volume);
-        [sums[0], 0.0]
+        [
+            self.said(body, false, list, list.positions()).energy(body),
+            0.0,
+        ]
     }
 
     unsafe fn observe_unchecked(
@@ -364,20 +361,24 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     }
 
     /// Pairs of the current list that are within the cut-off now.
-    fn each_bond(&self, _: &Body<D>, visit: &mut EachBond<D>) {
+    fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        let id = body.id_of();
         self.each_near(|near| {
-            if near.slot < near.other {
+            if id(near.slot) < id(near.other) {
                 visit(near.slot, near.other, near.y, BondStatus::Whole);
             }
         });
+    }
+
+    fn each_partner(&self, _: &Body<D>, visit: &mut EachBond<D>) {
+        self.each_near(|near| visit(near.slot, near.other, near.y, BondStatus::Whole));
     }
 
     fn virial(&mut self, body: &Body<D>, u: FieldView<D>) -> Option<[f64; 6]> {
         self.check(body, &[u]);
         self.ready(body, u);
         let list = &self.list;
-        let sums = self.sums(true, list, list.positions(), Shared::NULL, &body.volume);
-        Some(crate::array::from_fn(|n| sums[n + 1]))
+        Some(self.said(body, true, list, list.positions()).virial(body))
     }
 
     fn directed_bonds(&self) -> u64 {

@@ -13,10 +13,11 @@ mod gather;
 mod kernel;
 
 use super::breaking::Held;
+use super::{Places, Said};
 use crate::body::{Body, FieldView, FieldViewMut, Identity, Values, view};
-use crate::execute::blocks::{PerBlock, Shared, run_blocks};
+use crate::execute::blocks::{Shared, run_blocks};
 use crate::execute::lane::TILE;
-use crate::execute::simd::{Kernel, Simd};
+use crate::execute::simd::Simd;
 use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
@@ -44,7 +45,6 @@ pub struct FanAtoms<F> {
     back: Back,
     /// Kind per slot.
     kinds: Vec<u8>,
-    sums: PerBlock<[f64; 7]>,
     /// Neighbours of every slot in the reference.
     family: Vec<u16>,
 }
@@ -88,14 +88,15 @@ impl<F: Fan> FanAtoms<F> {
             simd,
             family: vec![0; body.len],
             back: Back::of(&list, simd),
-            sums: PerBlock::sums(list.blocks()),
             fan,
             held,
             list,
             kinds,
         };
         let mut family = vec![0u16; body.len];
-        made.each_near(&mut |slot, near, _| family[slot] = near.len() as u16);
+        made.each_near(false, &mut |own, near, _| {
+            family[own.slot] = near.len() as u16
+        });
         made.family = family;
         made
     }
@@ -108,16 +109,16 @@ impl<F: Fan> FanAtoms<F> {
         }
     }
 
-    /// Energy and virial, and what else is asked for.
+    /// What fans say, where it is asked for.
     fn centres(
         &self,
         list: &NearList<3>,
         position: &[[f64; 4]],
         ends: Option<Ends>,
         f: [Shared; 3],
-        energy: Shared,
+        said: Option<Places>,
         volume: &Values,
-    ) -> [f64; 7] {
+    ) {
         let view = View {
             list,
             position: position.as_ptr().cast(),
@@ -126,28 +127,34 @@ impl<F: Fan> FanAtoms<F> {
             ends,
             back: &self.back,
             f,
-            energy,
+            said,
             volume,
         };
         match self.fan.table().kinds() {
-            1 => self.run(&Centres::<F, false>(view)),
-            _ => self.run(&Centres::<F, true>(view)),
+            1 => run_blocks(self.simd, &Centres::<F, false>(view), list.blocks()),
+            _ => run_blocks(self.simd, &Centres::<F, true>(view), list.blocks()),
         }
     }
 
-    fn run<K: Kernel<Out = [f64; 7]>>(&self, kernel: &K) -> [f64; 7] {
-        self.sums.sum(self.simd, kernel)
-    }
-
-    /// Energy and virial alone, and energies of points where asked for.
-    fn energies(
+    /// What each point of a list says.
+    fn said(
         &self,
+        body: &Body<3>,
+        virial: bool,
         list: &NearList<3>,
         position: &[[f64; 4]],
-        out: Shared,
-        volume: &Values,
-    ) -> [f64; 7] {
-        self.centres(list, position, None, [Shared::NULL; 3], out, volume)
+    ) -> Said {
+        let mut said = Said::new(body, virial);
+        let places = Some(said.places());
+        self.centres(
+            list,
+            position,
+            None,
+            [Shared::NULL; 3],
+            places,
+            &body.volume,
+        );
+        said
     }
 
     /// Energies of all points, of a list as it is.
@@ -158,36 +165,46 @@ impl<F: Fan> FanAtoms<F> {
         position: &[[f64; 4]],
         out: &mut PointEnergiesMut,
     ) {
-        out.zeros(body.len);
-        let strain = Shared(out.strain.as_mut_ptr());
-        self.energies(list, position, strain, &body.volume);
+        self.said(body, false, list, position).see(body, out);
     }
 
-    /// Every slot with its neighbours within the cut-off now, and their slots.
-    fn each_near(&self, visit: &mut dyn FnMut(usize, &[Near], &[usize])) {
+    /// Every own atom, or every one whose neighbours are known, with those within the cut-off now, and what they are called.
+    fn each_near(&self, known: bool, visit: &mut dyn FnMut(Centre, &[Near], &[usize])) {
         let at = self.list.positions();
         let limit = self.fan.cutoff() * self.fan.cutoff();
         let (mut near, mut slots) = (vec![], vec![]);
         for (t, lines) in (0..self.list.blocks()).flat_map(|b| self.list.tiles(b)) {
-            for (l, &slot) in self.list.slots(t).iter().enumerate() {
+            let own = self.list.slots(t).len();
+            for l in 0..if known { self.list.lanes(t) } else { own } {
                 near.clear();
                 slots.clear();
-                let x = at[t * TILE + l];
+                let n = t * TILE + l;
+                let Some(slot) = self.list.original(n) else {
+                    continue;
+                };
+                let x = at[n];
                 for line in lines {
                     let z = at[line[l] as usize];
                     let y: [f64; 3] = crate::array::from_fn(|a| z[a] - x[a]);
                     let square = y.iter().map(|c| c * c).sum::<f64>();
                     let j = self.list.original(line[l] as usize);
                     if let Some(j) = j.filter(|_| square < limit) {
-                        let kind = u32::from(self.kinds[j]);
+                        let kind = z[3] as u32;
                         near.push(Near { kind, y });
                         slots.push(j);
                     }
                 }
-                visit(slot as usize, &near, &slots);
+                let kind = x[3] as u32;
+                visit(Centre { slot, kind }, &near, &slots);
             }
         }
     }
+}
+
+/// Whose fan it is.
+struct Centre {
+    slot: usize,
+    kind: u32,
 }
 
 /// A list for the displacements `u`, with kinds; held where there is a horizon.
@@ -205,7 +222,8 @@ fn list_at(
             NearList::of_reference(body, reaches, Lines::ByKind)
         }
         None => NearList::new(body, cutoff, SKIN * cutoff),
-    };
+    }
+    .wide();
     list.update(body, u, simd);
     put_kinds(&mut list, kinds);
     list
@@ -213,12 +231,14 @@ fn list_at(
 
 /// Kinds into the fourth numbers of all atoms.
 fn put_kinds(list: &mut NearList<3>, kinds: &[u8]) {
-    let of: Vec<f64> = (0..list.positions().len())
-        .map(|n| list.original(n).map_or(0.0, |s| f64::from(kinds[s])))
-        .collect();
-    for (x, kind) in list.positions_mut().iter_mut().zip(of) {
-        x[3] = kind;
+    let own = list.by_slot();
+    let at = list.positions_mut();
+    // nobody is of the first
+    at.iter_mut().for_each(|x| x[3] = 0.0);
+    for (n, kind) in own.iter().zip(kinds).filter(|(n, _)| **n != u32::MAX) {
+        at[*n as usize][3] = f64::from(*kind);
     }
+    list.copy_fourth();
 }
 
 impl<F: Fan> Held<3> for FanAtoms<F> {
@@ -263,17 +283,15 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         self.ready(body, u);
-        let energy = match seen {
-            Some(seen) => {
-                seen.zeros(body.len);
-                Shared(seen.strain.as_mut_ptr())
-            }
-            None => Shared::NULL,
-        };
+        let mut said = seen.is_some().then(|| Said::new(body, false));
+        let places = said.as_mut().map(Said::places);
         let f: [Shared; 3] = crate::array::from_fn(|a| Shared(f[a].as_mut_ptr()));
         let ends = self.back.ends();
         let (list, volume) = (&self.list, &body.volume);
-        self.centres(list, list.positions(), Some(ends), f, energy, volume);
+        self.centres(list, list.positions(), Some(ends), f, places, volume);
+        if let (Some(said), Some(seen)) = (said, seen) {
+            said.see(body, seen);
+        }
         let gather = Gather {
             list,
             back: &self.back,
@@ -287,8 +305,10 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     unsafe fn energy_unchecked(&mut self, body: &Body<3>, u: FieldView<3>) -> [f64; 2] {
         self.ready(body, u);
         let list = &self.list;
-        let sums = self.energies(list, list.positions(), Shared::NULL, &body.volume);
-        [sums[0], 0.0]
+        [
+            self.said(body, false, list, list.positions()).energy(body),
+            0.0,
+        ]
     }
 
     unsafe fn observe_unchecked(
@@ -347,30 +367,43 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         visit: &mut EachTangent<3>,
     ) {
         self.ready(body, u);
-        let mut all: Vec<BondTangent<3>> = vec![];
-        self.each_near(&mut |slot, near, slots| {
+        let (id, own) = (body.id_of(), self.list.by_slot());
+        let is_own = |slot: &usize| own.get(*slot).is_some_and(|n| *n != u32::MAX);
+        let volume = |slot| Some(slot).filter(is_own).map(|slot| body.volume.at(slot));
+        // what several fans say of a pair stays apart, in order of their atoms
+        let mut all: Vec<([u32; 3], BondTangent<3>)> = vec![];
+        self.each_near(true, &mut |Centre { slot, kind }, near, others| {
             let of = |n: u32| match n {
                 0 => slot,
-                n => slots[n as usize - 1],
+                n => others[n as usize - 1],
             };
-            let kind = u32::from(self.kinds[slot]);
             tangents(&self.fan, kind, near, &mut |pair| {
                 let ends = [pair.a, pair.b].map(of);
-                all.extend(BondTangent::both(body, ends, &pair));
+                for bond in BondTangent::both(volume, ends, &pair) {
+                    all.push(([bond.i as u32, id(bond.j), id(slot)], bond));
+                }
             });
         });
-        // in order of slots; what several fans say of a pair stays apart
-        all.sort_by_key(|bond| (bond.i, bond.j));
-        all.into_iter().for_each(visit);
+        all.sort_by_key(|(order, _)| *order);
+        all.into_iter().for_each(|(_, bond)| visit(bond));
     }
 
     /// Pairs of the current list that are within the cut-off now.
-    fn each_bond(&self, _: &Body<3>, visit: &mut EachBond<3>) {
-        self.each_near(&mut |slot, near, slots| {
+    fn each_bond(&self, body: &Body<3>, visit: &mut EachBond<3>) {
+        let id = body.id_of();
+        self.each_near(false, &mut |Centre { slot, .. }, near, slots| {
             for (near, &j) in near.iter().zip(slots) {
-                if slot < j {
+                if id(slot) < id(j) {
                     visit(slot, j, near.y, BondStatus::Whole);
                 }
+            }
+        });
+    }
+
+    fn each_partner(&self, _: &Body<3>, visit: &mut EachBond<3>) {
+        self.each_near(false, &mut |Centre { slot, .. }, near, slots| {
+            for (near, &j) in near.iter().zip(slots) {
+                visit(slot, j, near.y, BondStatus::Whole);
             }
         });
     }
@@ -379,8 +412,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
         self.check(body, &[u]);
         self.ready(body, u);
         let list = &self.list;
-        let sums = self.energies(list, list.positions(), Shared::NULL, &body.volume);
-        Some(crate::array::from_fn(|n| sums[n + 1]))
+        Some(self.said(body, true, list, list.positions()).virial(body))
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -394,6 +426,7 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
     fn archive(&mut self, body: &Body<3>, archive: &mut Archive<'_>) {
         self.list.archive(body, self.simd, archive);
         if archive.loads() {
+            put_kinds(&mut self.list, &self.kinds);
             self.back = Back::of(&self.list, self.simd);
         }
     }

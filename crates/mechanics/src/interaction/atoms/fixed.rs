@@ -4,7 +4,7 @@
 mod kernel;
 
 use super::{Curvatures, Faults, find_fault};
-use crate::body::{Body, Column, FAR, FieldView, FieldViewMut, Identity, field};
+use crate::body::{Body, Column, FAR, FieldView, FieldViewMut, Identity, Subdomain, field};
 use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::simd::Simd;
 use crate::family::links::{Links, Tiles};
@@ -58,7 +58,7 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
             potential,
             next: next_of_chain(&links),
             faults: PerBlock::new(links.blocks(), None),
-            sums: PerBlock::sums(links.blocks()),
+            sums: PerBlock::sums(links.blocks()).among(body.subdomain().map(Subdomain::comm)),
             links,
         }
     }
@@ -233,6 +233,13 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
         self.links
             .each(body, &mut |i, j, xi| visit(i, j, xi, BondStatus::Whole));
+    }
+
+    fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        self.links.each_directed(body.grid(), |i, j, sub, k| {
+            let j = body.exchange.original(j);
+            visit(i, j, self.links.links[sub][k].xi, BondStatus::Whole);
+        });
     }
 
     fn directed_bonds(&self) -> u64 {

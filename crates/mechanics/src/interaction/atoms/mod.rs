@@ -13,9 +13,11 @@ pub mod smoothed;
 pub mod together;
 mod union;
 
+use super::bond::sum_of_virials;
 use super::tangent::curvature;
-use super::{Fault, Tally};
-use crate::execute::blocks::PerBlock;
+use super::{Fault, PointEnergiesMut, Tally};
+use crate::body::Body;
+use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::law::number::Dual;
@@ -65,6 +67,83 @@ impl Curvatures {
 
     fn at(&self, slot: usize) -> f64 {
         self.0.get(slot).copied().unwrap_or(0.0)
+    }
+}
+
+/// What each atom says of itself: its energy and, where asked for, its virial, by slot. Totals are sums without rounding, so that it does not show who stands
+/// beside whom.
+struct Said {
+    energy: Vec<f64>,
+    virial: Vec<[f64; 6]>,
+}
+
+/// Where it goes.
+#[derive(Clone, Copy)]
+struct Places {
+    energy: Shared,
+    /// Null: nobody asks.
+    virial: Shared<[f64; 6]>,
+}
+
+impl Said {
+    fn new<const D: usize>(body: &Body<D>, virial: bool) -> Said {
+        Said {
+            energy: vec![0.0; body.len],
+            virial: vec![[0.0; 6]; if virial { body.len } else { 0 }],
+        }
+    }
+
+    fn places(&mut self) -> Places {
+        Places {
+            energy: Shared(self.energy.as_mut_ptr()),
+            virial: Shared(match self.virial.is_empty() {
+                true => std::ptr::null_mut(),
+                false => self.virial.as_mut_ptr(),
+            }),
+        }
+    }
+
+    /// Of all atoms, of all ranks.
+    fn energy<const D: usize>(&self, body: &Body<D>) -> f64 {
+        body.sum(body.slots.iter().map(|s| self.energy[*s as usize]))
+    }
+
+    fn virial<const D: usize>(&self, body: &Body<D>) -> [f64; 6] {
+        sum_of_virials(body, &self.virial)
+    }
+
+    /// Energies per volume.
+    fn see<const D: usize>(&self, body: &Body<D>, out: &mut PointEnergiesMut) {
+        out.zeros(body.len);
+        for s in body.slots.iter().map(|s| *s as usize) {
+            out.strain[s] = self.energy[s] / body.volume.at(s);
+        }
+    }
+}
+
+impl Places {
+    #[inline(always)]
+    fn asks_virial(&self) -> bool {
+        !self.virial.0.is_null()
+    }
+
+    /// What the own atoms of a tile say, the virial times a sign.
+    ///
+    /// # Safety
+    /// They are nobody else's.
+    #[inline(always)]
+    unsafe fn put<L: Lane>(&self, slots: &[u32], energy: L, virial: [L; 6], sign: f64) {
+        for (e, &slot) in energy.to_array().iter().zip(slots) {
+            // SAFETY, both: promised
+            unsafe { *self.energy.at(slot as usize) = *e };
+        }
+        if self.asks_virial() {
+            let virial = virial.map(|v| v.to_array());
+            for (l, &slot) in slots.iter().enumerate() {
+                let of = crate::array::from_fn(|n| sign * virial[n][l]);
+                unsafe { *self.virial.at(slot as usize) = of };
+            }
+        }
     }
 }
 

@@ -79,12 +79,28 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Together<D, P> {
             broken: 0,
         };
         let mut family = vec![0u16; body.len];
-        made.each_bond(body, &mut |i, j, _, _| {
-            family[i] += 1;
-            family[j] += 1;
-        });
+        made.each_partner(body, &mut |i, _, _, _| family[i] += 1);
         made.family = family;
         made
+    }
+
+    /// What parts visit, a pair once.
+    fn each_once(
+        &self,
+        body: &Body<D>,
+        each: &dyn Fn(&P, &mut EachBond<D>),
+        visit: &mut EachBond<D>,
+    ) {
+        let (id, mut all) = (body.id_of(), vec![]);
+        for part in &self.parts {
+            each(part, &mut |i, j, xi, state| all.push((i, j, xi, state)));
+        }
+        let pair = |&(i, j, _, _): &(usize, usize, [f64; D], BondStatus)| (i, id(j));
+        all.sort_by_key(pair);
+        all.dedup_by_key(|bond| pair(bond));
+        for (i, j, xi, state) in all {
+            visit(i, j, xi, state);
+        }
     }
 
     /// Broken bonds, of which a part may know each, since the last time that they were counted.
@@ -205,15 +221,11 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
 
     /// A pair is one bond, however many potentials it has.
     fn each_bond(&self, body: &Body<D>, visit: &mut EachBond<D>) {
-        let mut all = vec![];
-        for part in &self.parts {
-            part.each_bond(body, &mut |i, j, xi, state| all.push((i, j, xi, state)));
-        }
-        all.sort_by_key(|&(i, j, _, _)| (i, j));
-        all.dedup_by_key(|&mut (i, j, _, _)| (i, j));
-        for (i, j, xi, state) in all {
-            visit(i, j, xi, state);
-        }
+        self.each_once(body, &|part, visit| part.each_bond(body, visit), visit);
+    }
+
+    fn each_partner(&self, body: &Body<D>, visit: &mut EachBond<D>) {
+        self.each_once(body, &|part, visit| part.each_partner(body, visit), visit);
     }
 
     fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
@@ -227,16 +239,15 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {
         let mut family = vec![0.0; body.len];
         out.fill(0.0);
-        self.each_bond(body, &mut |i, j, _, state| {
-            for [i, j] in [[i, j], [j, i]] {
-                let volume = body.volume.at(j);
-                family[i] += volume;
-                out[i] += if state == BondStatus::Whole {
-                    volume
-                } else {
-                    0.0
-                };
-            }
+        self.each_partner(body, &mut |i, j, _, state| {
+            // bonds with who is no slot here are of now, and never broken
+            let volume = if j < body.len { body.volume.at(j) } else { 1.0 };
+            family[i] += volume;
+            out[i] += if state == BondStatus::Whole {
+                volume
+            } else {
+                0.0
+            };
         });
         for (out, family) in out.iter_mut().zip(family) {
             *out = damage(*out, family);

@@ -6,6 +6,8 @@ use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::neighbours::near::{Lines, NearList, Reaches};
 
+use std::collections::HashMap;
+
 /// In place of a place where a potential does not know the bond.
 const NOWHERE: u32 = u32::MAX;
 
@@ -30,10 +32,10 @@ impl<const D: usize> Union<D> {
     /// Of potentials that hold families of this `horizon` (length).
     pub fn new(body: &Body<D>, parts: &[Box<dyn Held<D>>], horizon: f64, simd: Simd) -> Self {
         let reaches = Reaches::new(1, |_, _| horizon);
-        let mut list = NearList::of_reference(body, reaches, Lines::ByKind);
+        let mut list = NearList::of_reference(body, reaches, Lines::ByKind).wide();
         list.update(body, view(&body.at_rest()), simd);
         let all = lines_of(&list);
-        let parts = { parts.iter() }.map(|p| Part::of(p.list(), (&list, &all), body.len));
+        let parts = { parts.iter() }.map(|p| Part::of(p.list(), (&list, &all)));
         let parts: Vec<Part> = parts.collect();
         // who is near to somebody and feels nothing of it has no bond with it
         let nowhere = list.nowhere();
@@ -89,18 +91,19 @@ impl<const D: usize> Union<D> {
 }
 
 impl Part {
-    /// A body of so many `slots`.
     fn of<const D: usize>(
         list: &NearList<D>,
         (all, lines): (&NearList<D>, &(Vec<u32>, Vec<[u32; TILE]>)),
-        slots: usize,
     ) -> Part {
         let own = lines_of(list);
-        let mut near = vec![vec![]; slots];
-        each_bond(list, &own, |i, j, xi, place| near[i].push((j, xi, place)));
+        let mut near: HashMap<usize, Vec<_>> = HashMap::new();
+        each_bond(list, &own, |i, j, xi, place| {
+            near.entry(i).or_default().push((j, xi, place));
+        });
         let mut places = vec![NOWHERE; lines.1.len() * TILE];
         each_bond(all, lines, |i, j, xi, place| {
-            let found = near[i].iter().find(|(k, of, _)| *k == j && alike(of, &xi));
+            let near = near.get(&i).into_iter().flatten();
+            let found = { near }.find(|(k, of, _)| *k == j && alike(of, &xi));
             if let Some((_, _, own)) = found {
                 places[place] = *own as u32;
             }
@@ -124,13 +127,17 @@ fn each_bond<const D: usize>(
     for tile in 0..first.len() {
         let begin = first[tile] as usize;
         let end = first.get(tile + 1).map_or(family.len(), |f| *f as usize);
-        for (lane, slot) in list.slots(tile).iter().enumerate() {
-            let x = at[tile * TILE + lane];
+        for lane in 0..list.lanes(tile) {
+            let own = tile * TILE + lane;
+            let Some(i) = list.original(own) else {
+                continue;
+            };
+            let x = at[own];
             for (line, others) in family[begin..end].iter().enumerate() {
                 let other = others[lane] as usize;
                 if let Some(j) = list.original(other) {
                     let xi = crate::array::from_fn(|a| at[other][a] - x[a]);
-                    visit(*slot as usize, j, xi, (begin + line) * TILE + lane);
+                    visit(i, j, xi, (begin + line) * TILE + lane);
                 }
             }
         }

@@ -1,15 +1,12 @@
 //! Making the list anew: atoms wrapped into the box, in order of cells, with their ghosts, and who is near to whom.
 
-use super::cells::{Cells, Extent, Sorted};
-use super::{BLOCK, Lines, NOBODY, NearList, Reaches, Tile, atoms_of, ghosts, position};
+use super::cells::{Cells, Extent, NOBODY, NOWHERE, Sorted};
+use super::foreign::Sort;
+use super::{BLOCK, Lines, NearList, Tile, atoms_of, images, position};
 use crate::body::{Body, FieldView};
 use crate::execute::blocks::{PerBlock, Shared, for_each_piece, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
-use crate::state::Archive;
-
-/// Where atoms that are not there are (in reaches), so that no pair with them counts.
-const NOWHERE: f64 = 1e30;
 
 /// Lists of a block of tiles.
 #[derive(Debug, Clone, Default)]
@@ -64,15 +61,6 @@ impl Block {
         first..self.ends[(n + 1) * groups - 1] as usize
     }
 
-    /// Its lines, as many as it has, which name some of `all` atoms: kernels look at nothing again.
-    pub fn archive_lines(&mut self, all: usize, archive: &mut Archive<'_>) {
-        archive.all("lines", &mut self.lines);
-        let mut named = self.lines.as_flattened().iter();
-        if archive.loads() && named.any(|n| *n as usize >= all) {
-            archive.refuse("lines");
-        }
-    }
-
     pub fn bytes(&self) -> usize {
         4 * TILE * self.lines.capacity() + 4 * self.ends.capacity()
     }
@@ -88,42 +76,56 @@ impl<const D: usize> NearList<D> {
             base: Shared(base.as_mut_ptr()),
         };
         let extent = PerBlock::new(self.blocks.len(), Extent::EMPTY);
-        let extent = extent.fold(simd, &wrap, Extent::add);
-        let cells = Cells::new(base.len(), &extent, self.reach, &self.period);
+        let extent = extent.fold(simd, &wrap, Extent::add).of_all(body);
+        let cells = Cells::new(body.all_points(), &extent, self.reach, &self.period);
         self.arrange(&cells, &base, body, u);
 
-        // ghosts, and what is nowhere
-        let own = self.order.len();
+        // atoms of other ranks, images, and what is nowhere
+        let nowhere = [NOWHERE * self.reach; 4];
         self.position.clear();
         self.position.extend_from_slice(&self.then);
-        self.position
-            .resize(self.first_ghost(), [NOWHERE * self.reach; 4]);
+        self.position.resize(self.first_foreign(), nowhere);
+        if self.reaches.kinds > 1 {
+            self.kind.resize(self.first_foreign(), 0);
+        }
+        let sort = Sort {
+            cells: &cells,
+            period: &self.period,
+            reach: self.reach,
+            groups: self.groups(),
+            wide: self.wide,
+        };
+        let met = (&mut self.position, &mut self.kind);
+        let boxed = self.foreign.meet(body, u, &sort, &self.order, met);
         if self.lines == Lines::Mixed {
             for (x, kind) in self.position.iter_mut().zip(&self.kind) {
                 x[3] = f64::from(*kind);
             }
         }
-        self.ghosts = ghosts::find(&self.then, &self.period, self.reach);
-        let all = self.first_ghost() + self.ghosts.len();
-        self.position.resize(all + 1, [NOWHERE * self.reach; 4]);
-        ghosts::refresh(&self.ghosts, self.first_ghost(), &mut self.position);
-
+        let own = boxed.as_ref().map_or(self.order.len(), Vec::len);
+        let listed = |n: usize| boxed.as_ref().map_or(n as u32, |boxed| boxed[n]);
+        let at = |n: usize| (listed(n), self.position[listed(n) as usize]);
+        self.images = images::find(own, at, &self.period, self.reach);
+        let first = self.first_image();
+        self.position.resize(first + self.images.len() + 1, nowhere);
+        images::refresh(&self.images, first, &mut self.position);
         if self.reaches.kinds > 1 {
-            // ghosts are of the kind of what they copy, what is nowhere of any
-            self.kind.resize(self.first_ghost(), 0);
-            let ghosts = self.ghosts.iter().map(|g| self.kind[g.of as usize]);
-            let ghosts: Vec<u8> = ghosts.collect();
-            self.kind.extend(ghosts);
+            // images are of the kind of what they copy, what is nowhere of any
+            let images = self.images.iter().map(|g| self.kind[g.of as usize]);
+            let images: Vec<u8> = images.collect();
+            self.kind.extend(images);
             self.kind.push(0);
         }
-        let gap = self.first_ghost() - own;
-        let atom = |n: usize| if n < own { n } else { n + gap };
+        let atom = |n: usize| match n.checked_sub(own) {
+            None => listed(n) as usize,
+            Some(image) => first + image,
+        };
         let at = |n: usize| self.position[atom(n)];
         let group = |n: usize| match self.lines {
             Lines::ByKind => self.kind(atom(n)),
             Lines::Mixed => 0,
         };
-        let mut sorted = cells.sort(own + self.ghosts.len(), self.groups(), group, at);
+        let mut sorted = cells.sort(own + self.images.len(), self.groups(), group, at);
         for_each_piece(&mut sorted.item, |_, piece| {
             piece.iter_mut().for_each(|n| *n = atom(*n as usize) as u32);
         });
@@ -146,17 +148,16 @@ impl<const D: usize> NearList<D> {
             });
         }
         let mut blocks = std::mem::take(&mut self.blocks);
+        let tiles = (self.first_foreign() + self.foreign.centres()) / TILE;
+        blocks.resize(tiles.div_ceil(BLOCK), Block::default());
         let kernel = Find {
+            list: self,
+            tiles,
             groups: self.groups(),
             of: &of,
             cells: &cells,
             sorted: &sorted,
             at: &at,
-            position: &self.position,
-            order: &self.order,
-            kind: &self.kind,
-            reaches: &self.reaches,
-            skin: self.skin,
             blocks: Shared(blocks.as_mut_ptr()),
         };
         run_blocks(simd, &kernel, blocks.len());
@@ -265,19 +266,17 @@ impl<const D: usize> Kernel for Wrap<'_, D> {
 
 /// Makes the lists of a block of tiles.
 struct Find<'a, const D: usize> {
+    list: &'a NearList<D>,
+    /// How many have lists.
+    tiles: usize,
     cells: &'a Cells<D>,
     sorted: &'a Sorted,
     /// `[D][sorted]`, with room to read a whole tile at the end.
     at: &'a [Vec<f64>; D],
-    position: &'a [[f64; 4]],
-    order: &'a [u32],
-    kind: &'a [u8],
     /// Groups in which neighbours are found.
     groups: usize,
     /// Kinds of the sorted, with room as above; empty where they are known, or do not matter.
     of: &'a [f64],
-    reaches: &'a Reaches,
-    skin: f64,
     blocks: Shared<Block>,
 }
 
@@ -285,10 +284,10 @@ impl<const D: usize> Find<'_, D> {
     /// How far atom `i` is listed with atoms of a kind, squared; 0: not at all.
     #[inline(always)]
     fn square(&self, i: usize, kind: usize) -> f64 {
-        let own = self.kind.get(i).copied().unwrap_or(0);
-        match self.reaches.between(own, kind as u8) {
+        let own = self.list.kind.get(i).copied().unwrap_or(0);
+        match self.list.reaches.between(own, kind as u8) {
             0.0 => 0.0,
-            reach => (reach + self.skin) * (reach + self.skin),
+            reach => (reach + self.list.skin) * (reach + self.list.skin),
         }
     }
 
@@ -297,7 +296,7 @@ impl<const D: usize> Find<'_, D> {
     fn squares<L: Lane>(&self, i: usize, k: usize) -> L {
         // SAFETY: there is room for a tile after the last atom
         let of = unsafe { L::load(self.of.as_ptr().add(k)) };
-        let last = self.reaches.kinds - 1;
+        let last = self.list.reaches.kinds - 1;
         let mut found = L::splat(self.square(i, last));
         for kind in (0..last).rev() {
             let up_to = of.lt(L::splat(kind as f64 + 0.5));
@@ -316,7 +315,7 @@ impl<const D: usize> Find<'_, D> {
         }
         let mut square = L::splat(square);
         let start = self.sorted.starts(group, self.groups);
-        let x = &self.position[i];
+        let x = &self.list.position[i];
         let mut center = [L::splat(0.0); D];
         for a in 0..D {
             center[a] = L::splat(x[a]);
@@ -362,15 +361,14 @@ impl<const D: usize> Kernel for Find<'_, D> {
         let block = unsafe { &mut *self.blocks.at(b) };
         block.lines.clear();
         block.ends.clear();
-        let nowhere = (self.position.len() - 1) as u32;
+        let nowhere = self.list.nowhere();
         let mut rows: [Vec<u32>; TILE] = Default::default();
-        let own = self.order.len();
-        for t in b * BLOCK..((b + 1) * BLOCK).min(own.div_ceil(TILE)) {
+        for t in b * BLOCK..((b + 1) * BLOCK).min(self.tiles) {
             for group in 0..self.groups {
                 for (l, row) in rows.iter_mut().enumerate() {
                     row.clear();
                     let i = t * TILE + l;
-                    if i < own && self.order[i] != NOBODY {
+                    if self.list.home(i) == Some(i) {
                         self.row::<L>(i, group, row);
                     }
                 }

@@ -1,7 +1,12 @@
 //! Small cells over the box and its margin, or over the extent of free atoms.
 
+use crate::body::Body;
 use crate::execute::blocks::for_each_piece;
 
+/// In place of an atom where a tile has none.
+pub(super) const NOBODY: u32 = u32::MAX;
+/// Where atoms that are not there are (in reaches), so that no pair with them counts.
+pub(super) const NOWHERE: f64 = 1e30;
 /// Cells per reach and axis.
 const PER: usize = 2;
 
@@ -33,6 +38,16 @@ impl<const D: usize> Extent<D> {
         self
     }
 
+    /// That of the atoms of all ranks that have some.
+    pub fn of_all(mut self, body: &Body<D>) -> Self {
+        for a in 0..D {
+            self.low[a] = body.least(self.low[a]);
+            self.high[a] = body.most(self.high[a]);
+        }
+        self.finite = body.count(u64::from(!self.finite)) == 0;
+        self
+    }
+
     /// And what another holds.
     pub fn add(&mut self, o: Self) {
         for a in 0..D {
@@ -61,6 +76,31 @@ impl Sorted {
     #[inline(always)]
     pub fn starts(&self, kind: usize, kinds: usize) -> &[u32] {
         &self.start[kind * ((self.start.len() - 1) / kinds)..]
+    }
+}
+
+/// Some of the cells, a bit each.
+pub(super) struct Marked(Vec<u64>);
+
+impl Marked {
+    pub fn none<const D: usize>(cells: &Cells<D>) -> Marked {
+        Marked(vec![0; cells.count.iter().product::<usize>().div_ceil(64)])
+    }
+
+    /// The cell of `y` is one.
+    pub fn mark<const D: usize>(&mut self, cells: &Cells<D>, y: &[f64; 4]) {
+        let cell = cells.of(y);
+        self.0[cell / 64] |= 1 << (cell % 64);
+    }
+
+    /// Is any within so many reaches of `y`?
+    pub fn is_near<const D: usize>(&self, cells: &Cells<D>, y: &[f64; 4], reaches: usize) -> bool {
+        let (low, high) = cells.within(y, reaches);
+        let has = |cell: usize| self.0[cell / 64] >> (cell % 64) & 1 == 1;
+        (0..Cells::rows(&low, &high)).any(|n| {
+            let row = cells.row(n, &low, &high);
+            (row + low[0]..=row + high[0]).any(has)
+        })
     }
 }
 
@@ -102,7 +142,7 @@ impl<const D: usize> Cells<D> {
         c.clamp(0.0, self.count[a] as f64 - 1.0) as usize
     }
 
-    fn of(&self, y: &[f64; 4]) -> usize {
+    pub fn of(&self, y: &[f64; 4]) -> usize {
         (0..D)
             .rev()
             .fold(0, |c, a| c * self.count[a] + self.along(y, a))
@@ -144,10 +184,16 @@ impl<const D: usize> Cells<D> {
     /// The lowest and highest cells that are within reach of `y`.
     #[inline(always)]
     pub fn around(&self, y: &[f64; 4]) -> ([usize; D], [usize; D]) {
+        self.within(y, 1)
+    }
+
+    /// Within so many reaches.
+    #[inline(always)]
+    fn within(&self, y: &[f64; 4], reaches: usize) -> ([usize; D], [usize; D]) {
         let (mut low, mut high) = ([0; D], [0; D]);
         for a in 0..D {
-            let c = self.along(y, a);
-            (low[a], high[a]) = (c.saturating_sub(PER), (c + PER).min(self.count[a] - 1));
+            let (c, by) = (self.along(y, a), reaches * PER);
+            (low[a], high[a]) = (c.saturating_sub(by), (c + by).min(self.count[a] - 1));
         }
         (low, high)
     }
@@ -162,15 +208,9 @@ impl<const D: usize> Cells<D> {
         rows
     }
 
-    /// Items of row `n` of a box of cells.
+    /// The cell before the first of row `n` of a box of cells, by `low[0]`.
     #[inline(always)]
-    pub fn run(
-        &self,
-        n: usize,
-        low: &[usize; D],
-        high: &[usize; D],
-        start: &[u32],
-    ) -> (usize, usize) {
+    fn row(&self, n: usize, low: &[usize; D], high: &[usize; D]) -> usize {
         let (mut rest, mut row) = (n, 0);
         let mut at = [0; D];
         for a in 1..D {
@@ -181,6 +221,19 @@ impl<const D: usize> Cells<D> {
         for a in (1..D).rev() {
             row = (row + at[a]) * self.count[a - 1];
         }
+        row
+    }
+
+    /// Items of row `n` of a box of cells.
+    #[inline(always)]
+    pub fn run(
+        &self,
+        n: usize,
+        low: &[usize; D],
+        high: &[usize; D],
+        start: &[u32],
+    ) -> (usize, usize) {
+        let row = self.row(n, low, high);
         (
             start[row + low[0]] as usize,
             start[row + high[0] + 1] as usize,

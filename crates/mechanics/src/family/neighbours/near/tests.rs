@@ -109,7 +109,7 @@ fn trace(threads: usize, kinds: usize, lines: Lines) -> Vec<u64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(|| {
         let mut random = Random(2);
-        // many more atoms, and ghosts, than a thread takes at a time
+        // many more atoms, and images, than a thread takes at a time
         let mut body = gas::<3>(20_000, 20.0, true, &mut random);
         mix(&mut body, kinds, &mut random);
         let mut u = body.at_rest();
@@ -122,7 +122,7 @@ fn trace(threads: usize, kinds: usize, lines: Lines) -> Vec<u64> {
                 }
             }
             assert_eq!(list.update(&body, view(&u), Simd::detect()), anew);
-            assert!(list.ghosts.len() > 8000);
+            assert!(list.images.len() > 8000);
             assert!(
                 list.positions_at(view(&u), Simd::detect()).as_deref() == Some(list.positions())
             );
@@ -239,7 +239,7 @@ fn seen<const D: usize>(list: &NearList<D>) -> Vec<u64> {
             bits.extend(lines.iter().flatten().map(|n| u64::from(*n)));
         }
     }
-    let all = list.first_ghost() + list.ghosts.len();
+    let all = list.first_image() + list.images.len();
     bits.extend((0..all).map(|n| list.original(n).map_or(u64::MAX, |s| s as u64)));
     bits
 }
@@ -339,36 +339,127 @@ fn a_list_is_made_again_of_where_atoms_were() {
 }
 
 #[test]
-fn a_list_that_is_held_remembers_who_is_left() {
+fn a_list_that_is_held_stays() {
     let body = gas::<3>(300, 6.0, true, &mut Random(10));
-    let new = || {
-        let mut list = NearList::of_reference(&body, reaches(1), Lines::ByKind);
-        list.update(&body, view(&body.at_rest()), Simd::detect());
-        list
+    let mut list = NearList::of_reference(&body, reaches(1), Lines::ByKind);
+    list.update(&body, view(&body.at_rest()), Simd::detect());
+    let lines = |list: &NearList<3>| -> Vec<_> {
+        let tiles = (0..list.blocks()).flat_map(|b| list.tiles(b));
+        tiles.map(|(_, lines)| lines.to_vec()).collect()
     };
-    let (mut list, mut other) = (new(), new());
-    let nowhere = list.nowhere();
-    let full = seen(&list);
-    for tile in 0..list.order.len() / TILE {
-        list.lines_mut(tile)[0][tile % TILE] = nowhere;
-    }
+    let before = lines(&list);
     let mut u = body.at_rest();
     wander(&body, &mut u, 3.0, 11);
     assert!(!list.update(&body, view(&u), Simd::detect()));
-    let bytes = saved(&mut list, &body);
-    let mut from = &*bytes;
-    let mut archive = Archive::load(&mut from);
-    other.archive(&body, Simd::detect(), &mut archive);
-    archive.done().unwrap();
-    assert!(from.is_empty() && seen(&other) == seen(&list) && seen(&list) != full);
+    assert!(lines(&list) == before && list.builds() == 1);
+}
 
-    // who is not there is no neighbour
-    let some = bytes.windows(4).position(|w| w == nowhere.to_le_bytes());
-    let mut damaged = bytes.clone();
-    damaged[some.unwrap()..][..4].copy_from_slice(&(nowhere + 1).to_le_bytes());
-    let mut from = &*damaged;
-    let mut archive = Archive::load(&mut from);
-    other.archive(&body, Simd::detect(), &mut archive);
-    let why = archive.done().unwrap_err().to_string();
-    assert!(why.contains("names what is not there"), "{why}");
+/// By id of each atom that is here, or whose list is: ids and places of its neighbours, in their order, as bits.
+type Met = Vec<(u32, Vec<(u32, [u64; 3])>)>;
+
+/// Those of atoms that are here, and those of others.
+fn met<const D: usize>(
+    body: &Body<D>,
+    moves: &[Vec<[f64; D]>],
+    (kinds, lines, wide): (usize, Lines, bool),
+) -> [Met; 2] {
+    let list = NearList::of_kinds(body, reaches(kinds), 0.2, lines);
+    let mut list = if wide { list.wide() } else { list };
+    let ids = body.ids_of_all();
+    let mut u = body.at_rest();
+    let mut all = [vec![], vec![]];
+    for (n, moved) in moves.iter().enumerate() {
+        body.set_vectors(&mut u, |_, slot| moved[ids[slot] as usize]);
+        assert_eq!(list.update(body, view(&u), Simd::detect()), n != 1);
+        assert!(list.positions_at(view(&u), Simd::detect()).as_deref() == Some(list.positions()));
+        // who copies an atom has its fourth number
+        let own = list.by_slot();
+        let fourth = |id: u32| f64::from(7 * id + n as u32);
+        let mut records = list.positions().to_vec();
+        for (slot, own) in own.iter().enumerate().filter(|(_, own)| **own != NOBODY) {
+            records[*own as usize][3] = fourth(ids[slot]);
+        }
+        list.fill(&mut records);
+        let id = body.id_of();
+        for tile in (0..list.blocks()).flat_map(|b| list.tiles_of_kinds(b)) {
+            for l in 0..list.lanes(tile.number) {
+                let atom = tile.number * TILE + l;
+                let near = tile.lines().iter().map(|line| line[l] as usize);
+                let near = near.filter_map(|other| {
+                    let of = id(list.original(other)?);
+                    assert_eq!(records[other][3], fourth(of));
+                    let at = list.positions()[other];
+                    assert!(records[other][..3] == at[..3]);
+                    Some((of, [0, 1, 2].map(|a| at[a].to_bits())))
+                });
+                let is_own = l < list.slots(tile.number).len();
+                let atom = id(list.original(atom).unwrap());
+                all[usize::from(!is_own)].push((atom, near.collect()));
+            }
+        }
+        all[0].push((u32::MAX, vec![]));
+    }
+    all
+}
+
+fn check_ranks<const D: usize>(periodic: bool, kinds: usize, lines: Lines, wide: bool) {
+    let mut random = Random(12);
+    let mut body = gas::<D>(1100, 11.0, periodic, &mut random);
+    mix(&mut body, kinds, &mut random);
+    let mut moves = vec![vec![[0.0; D]; body.points()]];
+    // so far that the list holds, and anywhere
+    for far in [0.04, 9.0] {
+        let last = moves[moves.len() - 1].clone();
+        let step = |x: [f64; D]| x.map(|x| x + far * random.next());
+        moves.push(last.into_iter().map(step).collect());
+    }
+    let how = (kinds, lines, wide);
+    let [one, _] = met(&body, &moves, how);
+    let one: Vec<_> = one
+        .split(|(id, _)| *id == u32::MAX)
+        .map(<[_]>::to_vec)
+        .collect();
+    for ranks in [2, 5] {
+        let parts = peridyne_comm::on_threads(ranks, |comm| {
+            let part = body.subdomain_of(&std::sync::Arc::new(comm), 0.0);
+            met(&part, &moves, how)
+        });
+        let mut all = vec![vec![]; one.len()];
+        let mut others = 0;
+        for [own, wide] in parts {
+            let rounds = own.split(|(id, _)| *id == u32::MAX);
+            all.iter_mut()
+                .zip(rounds)
+                .for_each(|(all, own)| all.extend_from_slice(own));
+            others += wide.len();
+            // theirs are the same lists, at some time
+            assert!(
+                wide.iter()
+                    .all(|row| one.iter().any(|all| all.contains(row)))
+            );
+        }
+        assert_eq!(others > 0, wide);
+        for (all, one) in all.iter_mut().zip(&one) {
+            let mut one = one.clone();
+            all.sort_unstable();
+            one.sort_unstable();
+            assert!(
+                *all == one,
+                "{D}-D, {kinds} kinds, {lines:?}, {ranks} ranks"
+            );
+        }
+    }
+}
+
+#[test]
+fn atoms_have_the_same_neighbours_in_the_same_order_whoever_has_them() {
+    for periodic in [false, true] {
+        check_ranks::<1>(periodic, 1, Lines::ByKind, true);
+        for wide in [false, true] {
+            check_ranks::<2>(periodic, 3, Lines::ByKind, wide);
+            check_ranks::<3>(periodic, 1, Lines::ByKind, wide);
+        }
+        check_ranks::<3>(periodic, 3, Lines::ByKind, false);
+        check_ranks::<3>(periodic, 3, Lines::Mixed, false);
+    }
 }

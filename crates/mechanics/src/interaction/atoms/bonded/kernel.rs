@@ -28,6 +28,8 @@ pub(super) struct Term {
     pub count: usize,
     pub slots: [u32; 4],
     pub says: Says,
+    /// Is its first particle this rank's? It counts there.
+    pub first: bool,
 }
 
 impl Term {
@@ -54,7 +56,11 @@ pub(super) fn places<const D: usize>(
 ) -> ([[f64; D]; 4], [f64; 6]) {
     let mut at = [[0.0; D]; 4];
     let place = |slot: u32| -> [f64; D] {
-        let x = body.position(slot as usize);
+        // of a part of a lattice a copy may stand a period away
+        let x = match body.subdomain() {
+            None => body.position(slot as usize),
+            Some(_) => body.home(slot as usize),
+        };
         crate::array::from_fn(|a| x[a] + u[a][slot as usize])
     };
     for n in 1..term.count {
@@ -111,8 +117,8 @@ pub(super) struct Evaluate<'a, const D: usize> {
     pub terms: &'a [Term],
     /// Where forces on the particles go, if anywhere.
     pub force: Shared<[[f64; D]; 4]>,
-    /// Where energies of terms go, if anywhere.
-    pub energy: Shared,
+    /// Where energies and virials of terms go, if anywhere.
+    pub said: Shared<[f64; 7]>,
 }
 
 impl<const D: usize> Evaluate<'_, D> {
@@ -130,8 +136,7 @@ impl<const D: usize> Evaluate<'_, D> {
         }
     }
 
-    fn work(&self, block: usize) -> [f64; 7] {
-        let mut sum = [0.0; 7];
+    fn work(&self, block: usize) {
         let first = block * BLOCK;
         for t in first..(first + BLOCK).min(self.terms.len()) {
             let term = &self.terms[t];
@@ -149,32 +154,31 @@ impl<const D: usize> Evaluate<'_, D> {
                     p += 1;
                 }
             }
-            sum[0] += found.energy;
-            for (sum, (m, n)) in sum[1..].iter_mut().zip(VIRIAL) {
-                if n < D {
-                    *sum += (0..term.count).map(|b| at[b][m] * force[b][n]).sum::<f64>();
-                }
-            }
             // SAFETY, both: every term has its own place
             if !self.force.0.is_null() {
                 unsafe { *self.force.at(t) = force };
             }
-            if !self.energy.0.is_null() {
-                unsafe { *self.energy.at(t) = found.energy };
+            if self.said.0.is_null() {
+                continue;
             }
+            let mut said = [found.energy, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            for (said, (m, n)) in said[1..].iter_mut().zip(VIRIAL) {
+                if n < D {
+                    *said = (0..term.count).map(|b| at[b][m] * force[b][n]).sum();
+                }
+            }
+            unsafe { *self.said.at(t) = said };
         }
-        sum
     }
 }
 
 impl<const D: usize> Kernel for Evaluate<'_, D> {
-    /// Energy and virial.
-    type Out = [f64; 7];
+    type Out = ();
     type Home = Self;
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
+    fn block<L: Lane>(&self, block: usize) {
         // one by one: the same code for every instruction set
-        self.work(block)
+        self.work(block);
     }
 }
 

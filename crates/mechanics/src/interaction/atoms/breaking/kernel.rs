@@ -41,6 +41,10 @@ impl<const D: usize> Kernel for Test<'_, D> {
         // SAFETY: listed atoms have positions and a reference, and there are whole tiles of both
         let at = |of: *const f64, index: &[u32; TILE]| unsafe { L::gather4(of, index.as_ptr()) };
         for (t, lines) in self.list.tiles(block) {
+            // whose own atoms are here
+            if self.list.slots(t).is_empty() {
+                continue;
+            }
             let own = crate::array::from_fn(|l| (t * TILE + l) as u32);
             let (y, x) = (at(now, &own), at(then, &own));
             let mut lowest = L::splat(f64::INFINITY);

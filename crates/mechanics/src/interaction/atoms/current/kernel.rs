@@ -8,7 +8,7 @@ use crate::execute::simd::Kernel;
 use crate::family::neighbours::near::{NearList, Tile};
 use crate::interaction::Fault;
 use crate::interaction::atoms::line::{Alike, Line, Mixed, Pulls, Sum, Sums, Table};
-use crate::interaction::atoms::{density_fault, embed};
+use crate::interaction::atoms::{Places, density_fault, embed};
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::{FEW, Mixture};
@@ -183,24 +183,19 @@ impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
 
 pub(super) struct Energies<'a, const D: usize, P> {
     pub view: View<'a, D, P>,
-    pub virial: bool,
-    /// Energy density per slot, if asked for.
-    pub out: Shared,
-    pub volume: &'a Values,
+    pub said: Places,
 }
 
 impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
-    /// Energy and, where asked for, virial.
-    type Out = [f64; 7];
+    type Out = ();
     type Home = P;
     const SELDOM: bool = true;
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
+    fn block<L: Lane>(&self, block: usize) {
         let view = &self.view;
-        let mut sum = [0.0; 7];
         for tile in view.list.tiles_of_kinds(block) {
             let i = view.here::<L>(tile.number);
-            let mut sums = Sums::zero(self.virial);
+            let mut sums = Sums::zero(self.said.asks_virial());
             view.visit(&tile, &i, &mut sums);
             let Sums {
                 mut energy, virial, ..
@@ -213,18 +208,8 @@ impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
                 energy = energy + f;
             }
             let slots = view.list.slots(tile.number);
-            for (e, &slot) in energy.to_array().iter().zip(slots) {
-                if !self.out.0.is_null() {
-                    let slot = slot as usize;
-                    // SAFETY: every slot belongs to one atom
-                    unsafe { *self.out.at(slot) = e / self.volume.at(slot) };
-                }
-                sum[0] += e;
-            }
-            for (sum, v) in sum[1..].iter_mut().zip(virial) {
-                *sum -= v.to_array()[..slots.len()].iter().sum::<f64>();
-            }
+            // SAFETY: every slot belongs to one atom
+            unsafe { self.said.put(slots, energy, virial, -1.0) };
         }
-        sum
     }
 }

@@ -120,9 +120,10 @@ impl Kernel for Find<'_> {
         let at = self.list.positions();
         for (t, lines) in self.list.tiles(block) {
             for (n, line) in lines.iter().enumerate() {
-                for l in 0..self.list.slots(t).len() {
+                for l in 0..self.list.lanes(t) {
                     let i = t * TILE + l;
-                    let Some(j) = self.list.home(line[l] as usize) else {
+                    let home = self.list.home(line[l] as usize);
+                    let Some(j) = home.filter(|j| self.list.has_list(*j)) else {
                         continue;
                     };
                     let y: [f64; 3] = crate::array::from_fn(|a| at[line[l] as usize][a] - at[i][a]);

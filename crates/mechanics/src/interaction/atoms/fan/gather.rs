@@ -22,6 +22,9 @@ impl Kernel for Gather<'_> {
     fn block<L: Lane>(&self, block: usize) {
         let (before, force) = (self.back.before(), self.back.forces());
         for (t, lines) in self.list.tiles(block) {
+            if self.list.slots(t).is_empty() {
+                continue;
+            }
             let mut sum = [L::splat(0.0); 3];
             let first = self.back.place(t);
             for n in 0..lines.len() {

@@ -6,6 +6,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::family::neighbours::near::NearList;
+use crate::interaction::atoms::Places;
 use crate::interaction::bond::VIRIAL;
 use crate::law::fan::{Arm, Fan, Row};
 use crate::law::number::{Dual, Over};
@@ -22,8 +23,8 @@ pub(super) struct View<'a, F> {
     pub ends: Option<Ends>,
     pub back: &'a Back,
     pub f: [Shared; 3],
-    /// Energy density per slot, if asked for.
-    pub energy: Shared,
+    /// What own atoms say, if it is asked for.
+    pub said: Option<Places>,
     pub volume: &'a Values,
 }
 
@@ -87,7 +88,7 @@ impl<F: Fan> View<'_, F> {
     ) {
         let nowhere = self.list.nowhere();
         // lanes without an atom have neighbours at no distance
-        let own_lanes = (1u32 << self.list.slots(tile).len()) - 1;
+        let own_lanes = (1u32 << self.list.lanes(tile)) - 1;
         let mut count = [0usize; TILE];
         near.clear();
         for (n, line) in lines.iter().enumerate() {
@@ -281,14 +282,12 @@ fn pull<L: Lane>(first: &mut Bond<L>, second: &mut Bond<L>, along: L, slope: [L;
 }
 
 impl<F: Fan, const MANY: bool> Kernel for Centres<'_, F, MANY> {
-    /// Energy and virial.
-    type Out = [f64; 7];
+    type Out = ();
     type Home = F;
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
+    fn block<L: Lane>(&self, block: usize) {
         let view = &self.0;
         let zero = L::splat(0.0);
-        let mut sum = [0.0; 7];
         let mut room = Room::<L> {
             bonds: vec![],
             shares: vec![],
@@ -328,7 +327,13 @@ impl<F: Fan, const MANY: bool> Kernel for Centres<'_, F, MANY> {
                 }
             }
             let slots = view.list.slots(t);
-            let energy = energy.to_array();
+            if let Some(said) = view.said {
+                // SAFETY: every slot belongs to one atom
+                unsafe { said.put(slots, energy, virial, 1.0) };
+            }
+            if view.ends.is_none() {
+                continue;
+            }
             let centre = [
                 centre[0].to_array(),
                 centre[1].to_array(),
@@ -337,21 +342,11 @@ impl<F: Fan, const MANY: bool> Kernel for Centres<'_, F, MANY> {
             for (l, &slot) in slots.iter().enumerate() {
                 let slot = slot as usize;
                 let scale = 1.0 / view.volume.at(slot);
-                // SAFETY, both: every slot belongs to one atom
-                if !view.energy.0.is_null() {
-                    unsafe { *view.energy.at(slot) = scale * energy[l] };
+                for a in 0..3 {
+                    // SAFETY: as above
+                    unsafe { *view.f[a].at(slot) = scale * centre[a][l] };
                 }
-                if view.ends.is_some() {
-                    for a in 0..3 {
-                        unsafe { *view.f[a].at(slot) = scale * centre[a][l] };
-                    }
-                }
-                sum[0] += energy[l];
-            }
-            for (sum, v) in sum[1..].iter_mut().zip(virial) {
-                *sum += v.to_array()[..slots.len()].iter().sum::<f64>();
             }
         }
-        sum
     }
 }
