@@ -32,6 +32,8 @@ ASKED = {
     "snap_back": ([], 5, 10),
     "dragged_disk": (["statics.increments=6"], 3, 0),
     "implicit_crack": (["run.duration=\"12 us\""], 5, 1),
+    "lennard_jones_liquid": ([], 120, 0),
+    "silicon_torn": (["run.steps=600"], 350, 10),
 }
 # a run that is killed: as the first one, with a state every fifth of a second
 KILLED = ["--set", "body.spacing=1 mm", "--set", "run.steps=400", "--set", "output.every=150", "--set", 'output.checkpoint={ every = "0.2 s", keep = 2 }']

@@ -1074,17 +1074,18 @@ fn what_ranks_do_not_share_is_named() {
         });
     };
     assert_eq!(refused(&rubs), of("interactions"));
-    assert_eq!(
-        refused(&|s| s.bonds.family = FamilyChoice::Reference),
-        of("bonds.family")
-    );
-    let named = |s: &mut Spec| {
-        s.loading.conditions = vec![ConditionSpec {
+    let pieces = |s: &mut Spec| {
+        s.run.probes = vec![ProbeSpec {
+            name: "pieces".into(),
             set: "all".into(),
-            kind: ConditionKind::Force(ForceSpec::default()),
+            measure: Measure::Value {
+                of: "fragment".into(),
+                at: [1.0, 1.0, 0.0],
+                part: Part::All,
+            },
         }];
     };
-    assert_eq!(refused(&named), of("conditions"));
+    assert_eq!(refused(&pieces), of("probes"));
 }
 
 #[test]

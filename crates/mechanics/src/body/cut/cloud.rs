@@ -59,6 +59,9 @@ pub(super) fn near<const D: usize>(
     reach: f64,
 ) -> Vec<u32> {
     let points = body.points();
+    if !(reach > 0.0) {
+        return vec![];
+    }
     let mut is_near = vec![false; points];
     // around a period that is no longer, everybody is near: the list says that it is too short
     match body.period.iter().flatten().any(|p| *p <= 2.0 * reach) {

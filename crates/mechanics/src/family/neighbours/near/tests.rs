@@ -1,6 +1,7 @@
 use super::*;
 use crate::body::view;
 use crate::samples::Random;
+use std::collections::HashSet;
 
 /// So many atoms anywhere in a box.
 fn gas<const D: usize>(n: usize, length: f64, periodic: bool, random: &mut Random) -> Body<D> {
@@ -321,6 +322,7 @@ fn a_list_is_made_again_of_where_atoms_were() {
         wander(&body, &mut u, 0.08, 8);
         assert!(!list.update(&body, view(&u), Simd::detect()));
         list.positions_mut()[3][3] = 0.25;
+        list.copy_fourth();
         let bytes = saved(&mut list, &body);
         let mut from = &*bytes;
         let mut archive = Archive::load(&mut from);
@@ -368,6 +370,7 @@ fn met<const D: usize>(
     let ids = body.ids_of_all();
     let mut u = body.at_rest();
     let mut all = [vec![], vec![]];
+    let mut wide_ones: Met = vec![];
     for (n, moved) in moves.iter().enumerate() {
         body.set_vectors(&mut u, |_, slot| moved[ids[slot] as usize]);
         assert_eq!(list.update(body, view(&u), Simd::detect()), n != 1);
@@ -394,9 +397,20 @@ fn met<const D: usize>(
                 });
                 let is_own = l < list.slots(tile.number).len();
                 let atom = id(list.original(atom).unwrap());
-                all[usize::from(!is_own)].push((atom, near.collect()));
+                let row = (atom, near.collect());
+                if is_own { &mut all[0] } else { &mut wide_ones }.push(row);
             }
         }
+        // lists of others are whole where own atoms are near
+        let begun = all[0].iter().rposition(|(id, _)| *id == u32::MAX);
+        let rows = &all[0][begun.map_or(0, |n| n + 1)..];
+        let near: HashSet<u32> = rows
+            .iter()
+            .flat_map(|(_, near)| near)
+            .map(|n| n.0)
+            .collect();
+        let others = std::mem::take(&mut wide_ones);
+        all[1].extend(others.into_iter().filter(|(id, _)| near.contains(id)));
         all[0].push((u32::MAX, vec![]));
     }
     all
