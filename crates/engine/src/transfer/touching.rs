@@ -123,7 +123,7 @@ impl Touching {
             .map(|id| place(id).unwrap_or(ELSEWHERE))
             .collect();
         let numbers = (0..here.len()).filter(|n| here[*n] != ELSEWHERE);
-        let own: Vec<u32> = numbers.clone().map(|n| here[n] as u32).collect();
+        let own: Vec<u32> = numbers.clone().map(|n| here[n]).collect();
         let each = numbers
             .zip(&own)
             .map(|(n, place)| [n as f64, self.face[*place as usize]]);
