@@ -284,6 +284,13 @@ impl<const D: usize> System<D> {
         }
         let body = &self.body;
         let known = self.interaction.each_force(body, view(&self.u), visit);
+        self.each_contact_force(visit);
+        known
+    }
+
+    /// Those of contact among them, which come after all others.
+    pub(super) fn each_contact_force(&mut self, visit: &mut dyn FnMut(BondForce<D>)) {
+        let body = &self.body;
         if let Some(contact) = &mut self.contact {
             contact.find(body, &self.u, self.interaction.as_ref());
             let mut ends = vec![];
@@ -303,7 +310,6 @@ impl<const D: usize> System<D> {
                 });
             }
         }
-        known
     }
 
     /// Directed bonds of the family that are broken.

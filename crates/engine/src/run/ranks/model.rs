@@ -220,14 +220,28 @@ impl<const D: usize> RankModel<D> {
             said[4..].iter_mut().zip(words).for_each(|(to, x)| *to = x);
             own.push(said);
         });
+        // contact comes after all bonds, also of those of other ranks
+        let mut touching = 0;
+        if !self.model.system.is_linear() {
+            self.model.system.each_contact_force(&mut |_| touching += 1);
+        }
+        let bonds = own.len() - touching;
+        let own: Vec<[u64; 14]> = { own.iter().enumerate() }
+            .map(|(n, said)| {
+                let mut tagged = [u64::from(n >= bonds); 14];
+                tagged[1..].copy_from_slice(said);
+                tagged
+            })
+            .collect();
         let unknown = self.body().exchange().any(!known);
         let mut all = self.body().joined(own)?;
         if unknown {
             return None;
         }
         // of one point in the order in which its rank has them
-        all.sort_by_key(|said| said[0]);
-        let force = |said: &[u64; 13]| {
+        all.sort_by_key(|said| [said[0], said[1]]);
+        let force = |said: &[u64; 14]| {
+            let said = &said[1..];
             let vector = |n: usize| [0, 1, 2].map(|a| f64::from_bits(said[4 + 3 * n + a]));
             PointForce {
                 id: said[1] as usize,
