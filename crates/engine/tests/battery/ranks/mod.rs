@@ -795,6 +795,37 @@ fn what_meets_repels_whichever_rank_has_it() {
     }
 }
 
+/// Pairs come in the same order, too: continuum fields are sums of them.
+#[test]
+fn forces_of_pairs_beside_contact_come_in_one_order() {
+    let spec = meeting(&Case::of("lps", place(LatticeKind::Square)), false);
+    let told = |sim: &mut dyn Simulation| {
+        sim.start(true);
+        let mut all = vec![];
+        assert!(sim.each_force(&mut |f| {
+            let numbers = [f.y, f.force, f.own.unwrap_or([0.0; 3])];
+            all.push(([f.id, f.partner], numbers.map(|x| x.map(f64::to_bits))));
+        }));
+        all
+    };
+    let mut one = build_in::<2>(&spec, options(None), &shelf()).unwrap();
+    let one = told(&mut one);
+    let all = on_threads(3, |comm| {
+        let comm = Arc::new(comm);
+        let own = RankModel::<2>::new(&spec, options(None), &shelf(), &comm).unwrap();
+        match comm.rank() {
+            0 => Some(told(&mut AllRanks::new(own))),
+            _ => {
+                own.follow();
+                None
+            }
+        }
+    });
+    let all = all.into_iter().flatten().next().unwrap();
+    let off = one.iter().zip(&all).position(|(a, b)| a != b);
+    assert_eq!((off, one.len()), (None, all.len()));
+}
+
 /// A lattice, a smaller one that comes down on it, a cloud that comes from the side, and loose points, some of which have neighbours of other ranks alone.
 fn colliding(case: &Case) -> Spec {
     let mut spec = case.spec();
