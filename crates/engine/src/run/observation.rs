@@ -282,34 +282,12 @@ impl<const D: usize> System<D> {
                     });
                 });
         }
-        let body = &self.body;
-        let known = self.interaction.each_force(body, view(&self.u), visit);
-        self.each_contact_force(visit);
-        known
-    }
-
-    /// Those of contact among them, which come after all others.
-    pub(super) fn each_contact_force(&mut self, visit: &mut dyn FnMut(BondForce<D>)) {
-        let body = &self.body;
+        let bonds = &mut self.interaction;
+        let known = bonds.each_force(&self.body, view(&self.u), visit);
         if let Some(contact) = &mut self.contact {
-            contact.find(body, &self.u, self.interaction.as_ref());
-            let mut ends = vec![];
-            contact
-                .central
-                .each_end(body, &self.u, |end| ends.push(end));
-            // as a point's are on any number of ranks
-            ends.sort_by_key(|end| body.order(end.at));
-            for end in ends {
-                let force = end.y.map(|y| end.pull * end.volume * y);
-                visit(BondForce {
-                    i: end.at,
-                    j: end.other,
-                    y: end.y,
-                    force,
-                    own: Some(force.map(|f| 0.5 * f)),
-                });
-            }
+            contact.each_force(bonds.as_ref(), &self.body, &self.u, visit);
         }
+        known
     }
 
     /// Directed bonds of the family that are broken.

@@ -3,7 +3,7 @@
 
 use super::contact::Contact;
 use super::friction::{Friction, Pressed};
-use super::{EachTangent, Evaluation, Interaction, PointEnergies};
+use super::{BondForce, EachTangent, Evaluation, Interaction, PointEnergies};
 use crate::body::{Body, Field};
 use crate::state::{Archive, Owner};
 
@@ -45,6 +45,30 @@ impl<const D: usize> ContactForces<D> {
         }
         if let Some(friction) = &mut self.friction {
             friction.add(central, bonds, body, state, f, (t, at));
+        }
+    }
+
+    /// Visit every central force now from each of its ends, a point's as they come on any number of ranks.
+    pub fn each_force(
+        &mut self,
+        bonds: &dyn Interaction<D>,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) {
+        self.find(body, u, bonds);
+        let mut ends = vec![];
+        self.central.each_end(body, u, |end| ends.push(end));
+        ends.sort_by_key(|end| body.order(end.at));
+        for end in ends {
+            let force = end.y.map(|y| end.pull * end.volume * y);
+            visit(BondForce {
+                i: end.at,
+                j: end.other,
+                y: end.y,
+                force,
+                own: Some(force.map(|f| 0.5 * f)),
+            });
         }
     }
 

@@ -222,8 +222,11 @@ impl<const D: usize> RankModel<D> {
         });
         // contact comes after all bonds, also of those of other ranks
         let mut touching = 0;
-        if !self.model.system.is_linear() {
-            self.model.system.each_contact_force(&mut |_| touching += 1);
+        let system = &mut self.model.system;
+        let linear = system.is_linear();
+        if let Some(contact) = system.contact.as_mut().filter(|_| !linear) {
+            let bonds = system.interaction.as_ref();
+            contact.each_force(bonds, &system.body, &system.u, &mut |_| touching += 1);
         }
         let bonds = own.len() - touching;
         let own: Vec<[u64; 14]> = { own.iter().enumerate() }
