@@ -48,6 +48,11 @@ impl<const D: usize> System<D> {
                 Driven::Load(l) => conditions.merge(&l.work),
             }
         }
+        let mut friction = [Exact::ZERO; 2];
+        if let Some(of) = self.contact.as_ref().and_then(|c| c.friction.as_ref()) {
+            friction = [&of.work, &of.energy].map(Exact::clone);
+        }
+        let [rubbed, stored] = friction;
         let swept = [&swept.lost, &swept.made, &swept.dissipated].map(Exact::clone);
         let [lost, made, dissipated] = swept;
         let sums = [
@@ -59,6 +64,8 @@ impl<const D: usize> System<D> {
             conditions,
             indenters,
             touching,
+            rubbed,
+            stored,
         ];
         let sums = self.body.sums(sums);
         let [
@@ -70,6 +77,8 @@ impl<const D: usize> System<D> {
             conditions,
             indenters,
             touching,
+            rubbed,
+            stored,
         ] = sums;
         ledger.kinetic = self.coupled_kinetic().unwrap_or(kinetic);
         ledger.contact += touching;
@@ -78,10 +87,8 @@ impl<const D: usize> System<D> {
         ledger.dissipated += dissipated - damping;
         ledger.work_conditions += conditions;
         ledger.work_indenter += indenters;
-        if let Some(friction) = self.contact.as_ref().and_then(|c| c.friction.as_ref()) {
-            ledger.contact += friction.energy;
-            ledger.dissipated -= friction.work + friction.energy;
-        }
+        ledger.contact += stored;
+        ledger.dissipated -= rubbed + stored;
         ledger
     }
 

@@ -335,6 +335,20 @@ impl<const D: usize> Contact<D> {
         }
     }
 
+    /// A pair of [`each_contact`](Contact::each_contact) with its ends as they [are called](Body::id_of).
+    pub fn called(&self, body: &Body<D>, touch: Touch<D>) -> Touch<D> {
+        Touch {
+            i: self.called_end(body, touch.i),
+            j: self.called_end(body, touch.j),
+            ..touch
+        }
+    }
+
+    /// The same of an end.
+    pub fn called_end(&self, body: &Body<D>, n: usize) -> usize {
+        self.ghosts.name(body, n)
+    }
+
     /// Who an end of a [near](Contact::each_near) pair is among the points of all ranks.
     pub fn named(&self, body: &Body<D>, n: usize) -> Named {
         let (order, id) = match self.ghosts.of(body, n) {

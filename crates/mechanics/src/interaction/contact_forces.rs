@@ -5,7 +5,7 @@ use super::contact::Contact;
 use super::friction::{Friction, Pressed};
 use super::{BondForce, EachTangent, Evaluation, Interaction, PointEnergies};
 use crate::body::{Body, Field};
-use crate::state::{Archive, Owner};
+use crate::state::Archive;
 
 #[derive(Debug, Clone)]
 pub struct ContactForces<const D: usize> {
@@ -15,13 +15,12 @@ pub struct ContactForces<const D: usize> {
     pub friction: Option<Friction<D>>,
 }
 
-impl<const D: usize> Owner for ContactForces<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.given("friction", &mut self.friction, |f, a| f.archive(a));
-    }
-}
-
 impl<const D: usize> ContactForces<D> {
+    /// Passes what it remembers through an archive.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        archive.given("friction", &mut self.friction, |f, a| f.archive(body, a));
+    }
+
     /// Finds who may touch at `u`, of points that these bonds have in no common family.
     pub fn find(&mut self, body: &Body<D>, u: &Field<D>, bonds: &dyn Interaction<D>) {
         let in_family = |i, j| bonds.in_family(body, i, j);
@@ -88,9 +87,9 @@ impl<const D: usize> ContactForces<D> {
     }
 
     /// An increment of statics or an implicit step begins, from these displacements.
-    pub fn depart(&mut self, u: &Field<D>, pressed: Pressed) {
+    pub fn depart(&mut self, body: &Body<D>, u: &Field<D>, pressed: Pressed) {
         if let Some(friction) = &mut self.friction {
-            friction.depart(u, pressed);
+            friction.depart(body, u, pressed);
         }
     }
 

@@ -202,12 +202,13 @@ pub trait Interaction<const D: usize>: Send + Sync {
         }
     }
 
-    /// Of [`each_bond`](Interaction::each_bond) those that are not whole and whose points repel inside the family: not those of interfaces.
+    /// Of [`each_partner`](Interaction::each_partner) those that are not whole and whose points repel inside the family: not those of interfaces. One from a point to its
+    /// own image may be visited once.
     fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>) {
         if let Some(bonds) = self.bonds() {
             return bonds.each_broken(body, visit);
         }
-        self.each_bond(body, &mut |i, j, xi, state| {
+        self.each_partner(body, &mut |i, j, xi, state| {
             if state != BondStatus::Whole {
                 visit(i, j, xi);
             }

@@ -13,27 +13,66 @@
 
 use super::contact::{Contact, Touch};
 use super::coulomb::{Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped};
-use super::spin::Families;
+use super::spin::{Families, Spin};
 use super::{BondTangent, EachTangent, Evaluation, Interaction};
 use crate::body::{Body, Field, zeros};
+use crate::execute::exact::Exact;
 use crate::space::{cross, full};
 use crate::spec::FrictionSpec;
-use crate::state::{Archive, Owner, words};
+use crate::state::{Archive, words};
+use bytemuck::{Pod, Zeroable};
+use std::collections::HashMap;
 use std::iter::Peekable;
 use std::slice::Iter;
 
 /// The elastic path ξ of two that touch.
 #[derive(Debug, Clone, Copy)]
 struct Spring<const D: usize> {
+    /// Ids, the lower first.
     ends: [u32; 2],
     way: [f64; D],
     /// `d − r` (length).
     depth: f64,
     /// ξ over what it would be if nothing slipped: 1 of what sticks.
     kept: f64,
+    volumes: [f64; 2],
 }
 
-words!([const D: usize] Spring<D> { ends: [u32; 2], way: [f64; D], depth: f64, kept: f64 });
+words!([const D: usize] Spring<D> { ends: [u32; 2], way: [f64; D], depth: f64, kept: f64, volumes: [f64; 2] });
+
+/// Two that touch, from the one with the lower id to the other.
+#[derive(Debug, Clone, Copy)]
+struct Pair<const D: usize> {
+    ids: [u32; 2],
+    /// [What they are called](Body::id_of).
+    touch: Touch<D>,
+}
+
+/// What friction sees of a point.
+#[derive(Debug, Clone, Copy)]
+struct End<const D: usize> {
+    volume: f64,
+    /// Displacement, that where the step began, and velocity.
+    u: [f64; D],
+    from: [f64; D],
+    v: [f64; D],
+    spin: Spin,
+}
+
+/// The same, as ranks tell each other.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+struct Told {
+    id: u64,
+    volume: f64,
+    moved: [[f64; 3]; 3],
+    takes: [[f64; 3]; 3],
+    turns: [[f64; 3]; 2],
+}
+
+// SAFETY, both: numbers without gaps between them, and all bits are some
+unsafe impl Zeroable for Told {}
+unsafe impl Pod for Told {}
 
 /// By what those that touch are pressed while an increment or an implicit step looks for its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,45 +105,41 @@ pub struct Friction<const D: usize> {
     now: Vec<Spring<D>>,
     /// How deep they were at the last [`Friction::press`], in statics.
     pressed: Vec<Spring<D>>,
-    /// Work done on the bodies (energy), and what it was when the step began.
-    pub work: f64,
-    kept: f64,
-    /// Who touches now.
-    touching: Vec<Touch<D>>,
+    /// Work done on the points of this rank (energy), and what it was when the step began.
+    pub work: Exact,
+    kept: Exact,
+    /// Who touches now, of pairs with a point of this rank.
+    touching: Vec<Pair<D>>,
     families: Families<D>,
     /// How often the contact had found its pairs when families were found.
     found: u64,
-    /// What springs hold (energy): `−work − energy` is dissipated.
-    pub energy: f64,
+    /// What springs hold (energy), of those that this rank counts: `−work − energy` is dissipated.
+    pub energy: Exact,
 }
 
-impl<const D: usize> Owner for Friction<D> {
-    fn archive(&mut self, archive: &mut Archive<'_>) {
-        archive.columns("force", &mut self.force);
-        archive.list("before", &mut self.before);
-        archive.list("springs", &mut self.now);
-        archive.list("pressed", &mut self.pressed);
-        archive.one("work", &mut self.work);
-        archive.one("stored", &mut self.energy);
-        let slots = self.force[0].len();
-        let departure = || Departure {
-            u: zeros(slots),
-            force: zeros(slots),
-            pressed: Pressed::Now,
-        };
-        archive.option("departure", &mut self.from, departure, |from, archive| {
-            archive.columns("displacement", &mut from.u);
-            archive.columns("force", &mut from.force);
-            let mut held = from.pressed == Pressed::Held;
-            archive.one("held", &mut held);
-            from.pressed = if held { Pressed::Held } else { Pressed::Now };
-        });
-        if archive.loads() {
-            // found again with the pairs of the contact
-            self.touching.clear();
-            self.families = Families::default();
-            self.found = 0;
-        }
+/// Passes springs through an archive, those of two ranks once.
+fn archive_springs<const D: usize>(
+    body: &Body<D>,
+    archive: &mut Archive<'_>,
+    name: &str,
+    all: &mut Vec<Spring<D>>,
+) {
+    let whose = body.whose();
+    let is_here = |id: u32| whose.place(id).is_some();
+    let of = |n: usize| -> Vec<(u32, Spring<D>)> {
+        let own = all.iter().filter(|s| is_here(s.ends[n]));
+        own.map(|s| (s.ends[n], *s)).collect()
+    };
+    // either end goes on from it
+    let [mut first, mut second] = [0, 1].map(of);
+    archive.within(name, |archive| {
+        archive.entries("first", whose, &mut first);
+        archive.entries("second", whose, &mut second);
+    });
+    if archive.loads() {
+        second.retain(|(_, s)| !is_here(s.ends[0]));
+        *all = first.into_iter().chain(second).map(|(_, s)| s).collect();
+        all.sort_by_key(|s| s.ends);
     }
 }
 
@@ -126,28 +161,62 @@ impl<const D: usize> Friction<D> {
             before: vec![],
             now: vec![],
             pressed: vec![],
-            work: 0.0,
-            kept: 0.0,
+            work: Exact::ZERO,
+            kept: Exact::ZERO,
             touching: vec![],
             families: Families::default(),
             found: 0,
-            energy: 0.0,
+            energy: Exact::ZERO,
+        }
+    }
+
+    /// Passes what it remembers through an archive.
+    pub fn archive(&mut self, body: &Body<D>, archive: &mut Archive<'_>) {
+        body.archive_field(archive, "force", &mut self.force);
+        archive_springs(body, archive, "before", &mut self.before);
+        archive_springs(body, archive, "springs", &mut self.now);
+        archive_springs(body, archive, "pressed", &mut self.pressed);
+        archive.part("work", &mut self.work);
+        archive.part("stored", &mut self.energy);
+        let slots = body.len;
+        let departure = || Departure {
+            u: zeros(slots),
+            force: zeros(slots),
+            pressed: Pressed::Now,
+        };
+        archive.option("departure", &mut self.from, departure, |from, archive| {
+            body.archive_field(archive, "displacement", &mut from.u);
+            body.archive_field(archive, "force", &mut from.force);
+            let mut held = from.pressed == Pressed::Held;
+            archive.one("held", &mut held);
+            from.pressed = if held { Pressed::Held } else { Pressed::Now };
+        });
+        if archive.loads() {
+            if let Some(from) = &mut self.from {
+                body.exchange.fill_field(&mut from.u);
+            }
+            // found again with the pairs of the contact
+            self.touching.clear();
+            self.families = Families::default();
+            self.found = 0;
         }
     }
 
     /// A step begins from what is now. Half of the work of the old force; `v` is the velocity of the middle of the step that ends now.
     pub fn begin(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
         std::mem::swap(&mut self.before, &mut self.now);
-        self.kept = self.work;
+        self.kept.clone_from(&self.work);
         self.half_path(body, v, dt);
     }
 
     /// An increment of statics or an implicit step begins, from these displacements.
-    pub fn depart(&mut self, u: &Field<D>, pressed: Pressed) {
+    pub fn depart(&mut self, body: &Body<D>, u: &Field<D>, pressed: Pressed) {
         std::mem::swap(&mut self.before, &mut self.now);
-        self.kept = self.work;
+        self.kept.clone_from(&self.work);
+        let mut u = u.clone();
+        body.exchange.fill_field(&mut u);
         self.from = Some(Departure {
-            u: u.clone(),
+            u,
             force: self.force.clone(),
             pressed,
         });
@@ -158,7 +227,7 @@ impl<const D: usize> Friction<D> {
         self.pressed.clone_from(&self.now);
     }
 
-    /// Does anything touch?
+    /// Does anything touch a point of this rank?
     pub fn rubs(&self) -> bool {
         !self.now.is_empty()
     }
@@ -172,14 +241,20 @@ impl<const D: usize> Friction<D> {
             let i = s as usize;
             let force = |a: usize| from.force[a][i] + self.force[a][i];
             let work = (0..D).map(|a| force(a) * (u[a][i] - from.u[a][i]));
-            self.work += 0.5 * body.volume.at(i) * work.sum::<f64>();
+            self.work.add(0.5 * body.volume.at(i) * work.sum::<f64>());
         }
     }
 
     /// Back to before the last [`Friction::begin`] or [`Friction::depart`].
     pub fn retreat(&mut self) {
         std::mem::swap(&mut self.before, &mut self.now);
-        self.work = self.kept;
+        self.work.clone_from(&self.kept);
+    }
+
+    /// What it took so far is in the past: nothing is dissipated from here on.
+    pub fn forget(&mut self) {
+        self.work = Exact::ZERO;
+        self.energy.parts().iter().for_each(|x| self.work.take(*x));
     }
 
     /// Adds the force density at time `t`, at the displacements of the contact's last update, to `f`.
@@ -198,41 +273,32 @@ impl<const D: usize> Friction<D> {
             std::mem::swap(&mut self.before, &mut self.now);
         }
         self.now.clear();
-        self.energy = 0.0;
+        self.energy = Exact::ZERO;
         self.force.iter_mut().for_each(|c| c.fill(0.0));
-        self.touching.clear();
-        contact.each_contact(u, |touch| self.touching.push(touch));
-        let outside = self.touching.len();
-        self.families.begin();
-        interaction.each_broken(body, &mut |i, j, xi| {
-            self.touching
-                .extend(contact.touch_inside(body, u, [i, j], xi));
-            self.families.tear(i, j, &xi);
-        });
-        if self.touching.len() > outside {
-            self.touching.sort_unstable_by_key(|t| [t.i, t.j]);
-        }
-        self.find_families(contact, interaction, body);
-        let from = at.since(&self.from);
+        self.look(contact, interaction, body, u);
+        let departed = self.from.take();
+        let from = at.since(&departed);
+        let ends = self.ends(body, [u, v], from.map(|from| &from.u));
+        let whose = body.whose();
+        let is_here = |id: u32| whose.place(id).is_some();
         // all in order of their ends
         let mut before = self.before.iter().peekable();
         let mut pressed = self.pressed.iter().peekable();
-        for touch in &self.touching {
-            let &Touch { i, j, y, r, d, .. } = touch;
+        for pair in &self.touching {
+            let Touch { i, j, y, r, d, .. } = pair.touch;
             if r == 0.0 {
                 continue;
             }
-            let ends = [i as u32, j as u32];
-            let before = find(&mut before, ends);
+            let before = find(&mut before, pair.ids);
             let depth = match from {
                 Some(from) if from.pressed == Pressed::Held => {
-                    find(&mut pressed, ends).map_or(0.0, |s| s.depth)
+                    find(&mut pressed, pair.ids).map_or(0.0, |s| s.depth)
                 }
                 Some(_) | None => d - r,
             };
             let normal = y.map(|c| c / r);
-            let then = from.map(|from| &from.u);
-            let together = self.families.together(body, [u, v], then, [i, j]);
+            let [one, other] = pair.ids.map(|id| &ends[&id]);
+            let together = Spin::together([&one.spin, &other.spin]);
             // what both turn by together is no sliding
             let [turn, turned] = together.map_or([[0.0; D]; 2], |t| {
                 t.turns.map(|omega| {
@@ -240,9 +306,9 @@ impl<const D: usize> Friction<D> {
                     crate::array::from_fn(|a| moved[a])
                 })
             });
-            let straight: [f64; D] = crate::array::from_fn(|a| v[a][j] - v[a][i]);
+            let straight: [f64; D] = crate::array::from_fn(|a| other.v[a] - one.v[a]);
             let relative = crate::array::from_fn(|a| straight[a] - turn[a]);
-            let speeds = length(&turn) + length::<D>(&crate::array::from_fn(|a| v[a][i]));
+            let speeds = length(&turn) + length(&one.v);
             let w = sliding(&normal, &relative, speeds);
             let most = law.at(length(&w)) * depth / TANGENTIAL;
             let sticks = before.is_some_and(|s| s.way != [0.0; D]);
@@ -251,38 +317,45 @@ impl<const D: usize> Friction<D> {
                 Evaluation::Start { .. }
                 | Evaluation::StepEnd { .. }
                 | Evaluation::Trial { .. } => {
-                    let path = match then {
-                        Some(from) => crate::array::from_fn(|a| {
-                            (u[a][j] - from[a][j]) - (u[a][i] - from[a][i]) - turned[a]
+                    let path = match from {
+                        Some(_) => crate::array::from_fn(|a| {
+                            (other.u[a] - other.from[a]) - (one.u[a] - one.from[a]) - turned[a]
                         }),
                         None => w.map(|c| at.ended() * c),
                     };
                     slipped(before.map_or(&[0.0; D], |s| &s.way), &normal, &path, most)
                 }
             };
-            let stiffness = TANGENTIAL * touch.stiffness;
-            let [vi, vj] = [i, j].map(|s| body.volume.at(s));
+            let stiffness = TANGENTIAL * pair.touch.stiffness;
+            let [vi, vj] = [one.volume, other.volume];
             for a in 0..D {
-                self.force[a][i] += stiffness * vj * way[a];
-                self.force[a][j] -= stiffness * vi * way[a];
+                if is_here(pair.ids[0]) {
+                    self.force[a][i] += stiffness * vj * way[a];
+                }
+                if is_here(pair.ids[1]) {
+                    self.force[a][j] -= stiffness * vi * way[a];
+                }
             }
             if let Some(together) = &together {
                 let couple = cross(&full(&y), &full(&way));
                 let couple = couple.map(|c| stiffness * vi * vj * c);
-                self.families.turn(together, [i, j], &couple);
+                self.families.turn(together, pair.ids, &couple);
             }
-            let square: f64 = way.iter().map(|c| c * c).sum();
-            self.energy += 0.5 * stiffness * square * vi * vj;
+            // of two ranks one counts a pair across their border
+            if is_here(pair.ids[0]) {
+                let square: f64 = way.iter().map(|c| c * c).sum();
+                self.energy.add(0.5 * stiffness * square * vi * vj);
+            }
             self.now.push(Spring {
-                ends,
+                ends: pair.ids,
                 way,
                 depth: d - r,
                 kept,
+                volumes: [vi, vj],
             });
         }
-        if !self.now.is_empty() {
-            self.families.add(body, u, &mut self.force);
-        }
+        self.from = departed;
+        self.families.add(body, u, &mut self.force);
         for a in 0..D {
             for (f, own) in f[a].iter_mut().zip(self.force[a].iter()) {
                 *f += own;
@@ -293,6 +366,98 @@ impl<const D: usize> Friction<D> {
         }
     }
 
+    /// Who touches now, in order of ids, and which bonds are broken.
+    fn look(
+        &mut self,
+        contact: &Contact<D>,
+        interaction: &dyn Interaction<D>,
+        body: &Body<D>,
+        u: &Field<D>,
+    ) {
+        let (id, whose) = (body.id_of(), body.whose());
+        let touching = &mut self.touching;
+        touching.clear();
+        let mut push = |mut touch: Touch<D>| {
+            let mut ids = [touch.i, touch.j].map(&id);
+            if ids[0] > ids[1] {
+                ids.swap(0, 1);
+                std::mem::swap(&mut touch.i, &mut touch.j);
+                touch.y = touch.y.map(|c| -c);
+            }
+            touching.push(Pair { ids, touch });
+        };
+        contact.each_contact(u, |touch| push(contact.called(body, touch)));
+        self.families.begin();
+        let families = &mut self.families;
+        interaction.each_broken(body, &mut |i, j, xi| {
+            let ids = [i, j].map(&id);
+            families.tear((i, ids[0]), ids[1], &xi);
+            // the other end says it, too, where it is here
+            if ids[0] <= ids[1] || whose.place(ids[1]).is_none() {
+                contact
+                    .touch_inside(body, u, [i, j], xi)
+                    .into_iter()
+                    .for_each(&mut push);
+            }
+        });
+        self.touching.sort_by_key(|pair| pair.ids);
+        self.find_families(contact, interaction, body);
+    }
+
+    /// What there is to see of all that touch, by id. All ranks come here at once.
+    fn ends(
+        &mut self,
+        body: &Body<D>,
+        [u, v]: [&Field<D>; 2],
+        from: Option<&Field<D>>,
+    ) -> HashMap<u32, End<D>> {
+        let whose = body.whose();
+        let mut ids: Vec<u32> = self.touching.iter().flat_map(|pair| pair.ids).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let mut ends = HashMap::with_capacity(ids.len());
+        let mut own = vec![];
+        for id in ids {
+            let Some(n) = whose.place(id) else {
+                continue;
+            };
+            let slot = body.slots[n] as usize;
+            let of = |field: &Field<D>| crate::array::from_fn(|a| field[a][slot]);
+            let end = End {
+                volume: body.volume.at(slot),
+                u: of(u),
+                from: from.map_or([0.0; D], of),
+                v: of(v),
+                spin: self.families.spin(body, [u, v], from, id),
+            };
+            own.push(Told {
+                id: u64::from(id),
+                volume: end.volume,
+                moved: [end.u, end.from, end.v].map(|x| full(&x)),
+                takes: end.spin.takes,
+                turns: end.spin.turns,
+            });
+            ends.insert(id, end);
+        }
+        if !body.exchange.is_shared() {
+            return ends;
+        }
+        for told in body.all_of(&own).concat() {
+            let of = |n: usize| crate::array::from_fn(|a| told.moved[n][a]);
+            ends.entry(told.id as u32).or_insert_with(|| End {
+                volume: told.volume,
+                u: of(0),
+                from: of(1),
+                v: of(2),
+                spin: Spin {
+                    takes: told.takes,
+                    turns: told.turns,
+                },
+            });
+        }
+        ends
+    }
+
     /// Finds the families of all that may touch before pairs are found anew, where one is missing.
     fn find_families(
         &mut self,
@@ -300,31 +465,43 @@ impl<const D: usize> Friction<D> {
         interaction: &dyn Interaction<D>,
         body: &Body<D>,
     ) {
-        let missing = |t: &Touch<D>| [t.i, t.j].iter().any(|s| !self.families.knows(*s));
-        if !self.touching.iter().any(missing) {
+        let touching = self.touching.iter().flat_map(|pair| pair.ids);
+        let mut ids: Vec<u32> = touching.collect();
+        // those of other ranks may have points of this one in their families
+        if body.exchange.is_shared() {
+            ids = body.all_of(&ids).concat();
+        }
+        if ids.iter().all(|id| self.families.knows(*id)) {
             return;
         }
-        let touching = self.touching.iter().flat_map(|t| [t.i, t.j]);
-        let mut slots: Vec<u32> = touching.map(|s| s as u32).collect();
-        contact.each_listed(|ends| slots.extend(ends.map(|s| s as u32)));
+        let id = body.id_of();
+        contact.each_listed(|ends| {
+            ids.extend(ends.map(|n| id(contact.called_end(body, n))));
+        });
         // faces of a crack are not listed
         if self.found == contact.builds() {
-            slots.extend(self.families.slots());
+            ids.extend(self.families.ids());
         }
         self.found = contact.builds();
-        self.families.learn(interaction, body, slots);
+        self.families.learn(interaction, body, ids);
     }
 
     /// The tangents of the last evaluation. What pressure and couples do to them is left out: a couple reaches whole families, and is small beside
     /// what presses. Newton's steps are shorter by that, not wrong.
     pub fn tangents(&self, body: &Body<D>, visit: &mut EachTangent<D>) {
-        let touching = self.touching.iter().filter(|t| t.r > 0.0);
-        for (touch, spring) in touching.zip(&self.now) {
+        let whose = body.whose();
+        let touching = self.touching.iter().filter(|pair| pair.touch.r > 0.0);
+        for (pair, spring) in touching.zip(&self.now) {
+            let touch = &pair.touch;
             let normal = touch.y.map(|c| c / touch.r);
             let block = follows(&normal, &spring.way, spring.kept);
             let stiffness = TANGENTIAL * touch.stiffness;
-            for (i, j, way) in [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)] {
-                let per = stiffness * body.volume.at(j);
+            let ends = [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)];
+            for (n, (i, j, way)) in ends.into_iter().enumerate() {
+                if whose.place(pair.ids[n]).is_none() {
+                    continue;
+                }
+                let per = stiffness * spring.volumes[1 - n];
                 let block = block.map(|row| row.map(|c| per * c));
                 visit(BondTangent::direct(i, j, touch.y.map(|c| way * c), block));
             }
@@ -335,7 +512,7 @@ impl<const D: usize> Friction<D> {
         for &s in &body.slots {
             let i = s as usize;
             let power: f64 = (0..D).map(|a| self.force[a][i] * v[a][i]).sum();
-            self.work += 0.5 * dt * power * body.volume.at(i);
+            self.work.add(0.5 * dt * power * body.volume.at(i));
         }
     }
 
@@ -345,7 +522,7 @@ impl<const D: usize> Friction<D> {
         let fields = if self.from.is_some() { 3 } else { 1 };
         8 * D * fields * self.force[0].len()
             + size_of::<Spring<D>>() * springs
-            + size_of::<Touch<D>>() * self.touching.capacity()
+            + size_of::<Pair<D>>() * self.touching.capacity()
             + self.families.bytes()
     }
 }

@@ -12,6 +12,8 @@ use super::{BondStatus, Interaction};
 use crate::body::{Body, Field};
 use crate::law::material::tensor::{Matrix, inverse_within, product, times};
 use crate::space::{Point, cross, dot, full};
+use bytemuck::{Pod, Zeroable};
+use std::collections::BTreeMap;
 
 /// The part of the largest moment of inertia below which a family is a row: forces with shorter arms would be great, and stiff.
 const ROW: f64 = 0.02;
@@ -19,6 +21,7 @@ const ROW: f64 = 0.02;
 /// The other end of a bond.
 #[derive(Debug, Clone)]
 struct Partner<const D: usize> {
+    id: u32,
     slot: u32,
     /// ξ
     xi: [f64; D],
@@ -29,8 +32,9 @@ struct Partner<const D: usize> {
 /// A point with its family.
 #[derive(Debug, Clone)]
 struct Known<const D: usize> {
+    id: u32,
     slot: u32,
-    /// In order of slots.
+    /// In order of ids.
     partners: Vec<Partner<D>>,
     /// The evaluation that all below is of.
     seen: u64,
@@ -45,6 +49,13 @@ struct Known<const D: usize> {
     couple: Point,
 }
 
+/// What a point takes of couples, and how it turns: of velocities, and of displacements since the step began.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Spin {
+    pub takes: Matrix<f64, 3>,
+    pub turns: [Point; 2],
+}
+
 /// How two points turn together.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Together {
@@ -53,20 +64,35 @@ pub(super) struct Together {
     pub turns: [Point; 2],
 }
 
-/// Families of points that touch.
+/// Families of points that touch: of those of this rank, and which of its points are in those of others.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Families<const D: usize> {
-    /// `[slots]`: place in `known` and one more; 0: none.
-    place: Vec<u32>,
-    /// In order of slots.
+    /// By id, in their order.
     known: Vec<Known<D>>,
+    /// Of points of other ranks by id: this rank's points in their families, ξ from there.
+    others: BTreeMap<u32, Vec<Partner<D>>>,
     /// Number of this evaluation.
     now: u64,
 }
 
+/// A couple on a point, as its family has it: where the point and its centre are, and what it turns all by.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+struct Turned {
+    id: u64,
+    u: [f64; 3],
+    centre: [f64; 3],
+    rate: [f64; 3],
+}
+
+// SAFETY, both: numbers without gaps between them, and all bits are some
+unsafe impl Zeroable for Turned {}
+unsafe impl Pod for Turned {}
+
 impl<const D: usize> Known<D> {
-    fn new(slot: u32) -> Self {
+    fn new(id: u32, slot: u32) -> Self {
         Known {
+            id,
             slot,
             partners: vec![],
             seen: 0,
@@ -128,144 +154,192 @@ impl<const D: usize> Known<D> {
     }
 }
 
+impl Spin {
+    /// How two points turn together; `None`: neither has a whole bond.
+    pub fn together([a, b]: [&Spin; 2]) -> Option<Together> {
+        let none = [[0.0; 3]; 3];
+        if a.takes == none && b.takes == none {
+            return None;
+        }
+        let takes = std::array::from_fn(|m| std::array::from_fn(|n| a.takes[m][n] + b.takes[m][n]));
+        let (share, _) = inverse_within(takes, ROW);
+        let turns =
+            [0, 1].map(|n| times(&share, &[0, 1, 2].map(|m| a.turns[n][m] + b.turns[n][m])));
+        Some(Together { share, turns })
+    }
+}
+
+/// Of such partners that nearest to ξ is not bonded now: a point may be a partner more than once, by its images.
+fn mark<const D: usize>(
+    partners: &mut [Partner<D>],
+    such: impl Fn(&Partner<D>) -> bool,
+    xi: &[f64; D],
+    now: u64,
+) {
+    let apart = |p: &Partner<D>| -> f64 { (0..D).map(|a| (p.xi[a] - xi[a]).powi(2)).sum() };
+    let same = partners.iter_mut().filter(|p| such(p));
+    if let Some(partner) = same.min_by(|p, q| apart(p).total_cmp(&apart(q))) {
+        partner.torn = now;
+    }
+}
+
 impl<const D: usize> Families<D> {
     /// Another evaluation begins: all bonds count as whole that [`Families::tear`] is not told of.
     pub fn begin(&mut self) {
         self.now += 1;
     }
 
-    /// The bond ξ from i to j is broken now.
-    pub fn tear(&mut self, i: usize, j: usize, xi: &[f64; D]) {
-        for (from, to, way) in [(i, j, 1.0), (j, i, -1.0)] {
-            let Some(known) = self.place(from) else {
-                continue;
-            };
-            let partners = &mut self.known[known].partners;
-            let first = partners.partition_point(|p| (p.slot as usize) < to);
-            let same = partners[first..]
-                .iter_mut()
-                .take_while(|p| p.slot as usize == to);
-            // a point may be a partner more than once, by its images
-            let apart = |p: &Partner<D>| -> f64 {
-                let square = |c: f64| c * c;
-                (0..D).map(|a| square(p.xi[a] - way * xi[a])).sum()
-            };
-            if let Some(partner) = same.min_by(|p, q| apart(p).total_cmp(&apart(q))) {
-                partner.torn = self.now;
+    /// The bond ξ from a point of this rank to another is broken now: slot and id of the first, id of the second.
+    pub fn tear(&mut self, (slot, id): (usize, u32), other: u32, xi: &[f64; D]) {
+        let now = self.now;
+        if let Some(known) = self.place(id) {
+            mark(&mut self.known[known].partners, |p| p.id == other, xi, now);
+        }
+        if let Some(members) = self.others.get_mut(&other) {
+            let back = xi.map(|x| -x);
+            mark(members, |p| p.slot as usize == slot, &back, now);
+        }
+    }
+
+    fn place(&self, id: u32) -> Option<usize> {
+        self.known.binary_search_by_key(&id, |k| k.id).ok()
+    }
+
+    /// Are families of a point known, or who here is in that of one of another rank?
+    pub fn knows(&self, id: u32) -> bool {
+        self.place(id).is_some() || self.others.contains_key(&id)
+    }
+
+    /// Points of which it knows (ids).
+    pub fn ids(&self) -> impl Iterator<Item = u32> {
+        let known = self.known.iter().map(|k| k.id);
+        known.chain(self.others.keys().copied())
+    }
+
+    /// Finds the families of these points (ids) in place of those that it knew.
+    pub fn learn(&mut self, interaction: &dyn Interaction<D>, body: &Body<D>, mut ids: Vec<u32>) {
+        ids.sort_unstable();
+        ids.dedup();
+        let (whose, id) = (body.whose(), body.id_of());
+        self.known.clear();
+        self.others.clear();
+        for wanted in ids {
+            match whose.place(wanted) {
+                Some(n) => self.known.push(Known::new(wanted, body.slots[n])),
+                None => drop(self.others.insert(wanted, vec![])),
             }
         }
-    }
-
-    fn place(&self, slot: usize) -> Option<usize> {
-        let place = self.place.get(slot).copied().unwrap_or(0);
-        (place as usize).checked_sub(1)
-    }
-
-    pub fn knows(&self, slot: usize) -> bool {
-        self.place(slot).is_some()
-    }
-
-    /// Points whose families are known (slots).
-    pub fn slots(&self) -> impl Iterator<Item = u32> {
-        self.known.iter().map(|k| k.slot)
-    }
-
-    /// Finds the families of these points (slots) in place of those that it knew.
-    pub fn learn(&mut self, interaction: &dyn Interaction<D>, body: &Body<D>, mut slots: Vec<u32>) {
-        slots.sort_unstable();
-        slots.dedup();
-        self.place.clear();
-        self.place.resize(body.len, 0);
-        for (n, &slot) in slots.iter().enumerate() {
-            self.place[slot as usize] = n as u32 + 1;
-        }
-        self.known = slots.into_iter().map(Known::new).collect();
         // atoms have neighbours, not families
         if interaction.is_potential() {
             return;
         }
-        let (place, known, now) = (&self.place, &mut self.known, self.now);
-        interaction.each_bond(body, &mut |i, j, xi, state| {
-            let wanted = place[i] > 0 || place[j] > 0;
+        let mut place = vec![0u32; body.len];
+        for (n, known) in self.known.iter().enumerate() {
+            place[known.slot as usize] = n as u32 + 1;
+        }
+        let (known, others, now) = (&mut self.known, &mut self.others, self.now);
+        interaction.each_partner(body, &mut |i, j, xi, state| {
             // what an interface holds is another body
-            if !wanted || i == j || body.piece_of(i) != body.piece_of(j) {
+            if i == j || body.piece_of(i) != body.piece_of(j) {
                 return;
             }
             let torn = if state == BondStatus::Whole { 0 } else { now };
-            for (from, to, way) in [(i, j, 1.0), (j, i, -1.0)] {
-                if let Some(own) = (place[from] as usize).checked_sub(1) {
-                    known[own].partners.push(Partner {
-                        slot: to as u32,
-                        xi: xi.map(|c| way * c),
-                        torn,
-                    });
-                }
+            let partner = |slot: usize, xi| Partner {
+                id: id(slot),
+                slot: slot as u32,
+                xi,
+                torn,
+            };
+            if let Some(own) = (place[i] as usize).checked_sub(1) {
+                known[own].partners.push(partner(j, xi));
+            }
+            if let Some(members) = others.get_mut(&id(j)) {
+                members.push(partner(i, xi.map(|x| -x)));
             }
         });
-        for known in &mut self.known {
-            known.partners.sort_by_key(|p| p.slot);
-        }
+        let all = known.iter_mut().map(|k| &mut k.partners);
+        all.chain(others.values_mut())
+            .for_each(|partners| partners.sort_by_key(|p| p.id));
     }
 
-    /// How two points turn together at displacements u and velocities v, and since displacements `from`; `None`: neither has a whole bond.
-    pub fn together(
+    /// The spin of a point of this rank at displacements u and velocities v, and since displacements `from`.
+    pub fn spin(
         &mut self,
         body: &Body<D>,
         state: [&Field<D>; 2],
         from: Option<&Field<D>>,
-        ends: [usize; 2],
-    ) -> Option<Together> {
-        let mut takes = [[0.0; 3]; 3];
-        let mut turns = [[0.0; 3]; 2];
-        let mut any = false;
-        for slot in ends {
-            let Some(place) = self.place(slot) else {
-                continue;
-            };
-            let known = &mut self.known[place];
-            if known.seen != self.now {
-                known.measure(self.now, body, state, from);
-            }
-            any |= known.takes != [[0.0; 3]; 3];
-            for a in 0..3 {
-                (0..3).for_each(|b| takes[a][b] += known.takes[a][b]);
-                (0..2).for_each(|n| turns[n][a] += known.turns[n][a]);
-            }
+        id: u32,
+    ) -> Spin {
+        let Some(place) = self.place(id) else {
+            return Spin::default();
+        };
+        let known = &mut self.known[place];
+        if known.seen != self.now {
+            known.measure(self.now, body, state, from);
         }
-        let (share, _) = any.then(|| inverse_within(takes, ROW))?;
-        Some(Together {
-            share,
-            turns: turns.map(|turn| times(&share, &turn)),
-        })
+        Spin {
+            takes: known.takes,
+            turns: known.turns,
+        }
     }
 
-    /// A couple on two points of which [`Families::together`] said how they turn.
-    pub fn turn(&mut self, together: &Together, ends: [usize; 2], couple: &Point) {
+    /// A couple on two points of which [`Spin::together`] said how they turn, of those of this rank.
+    pub fn turn(&mut self, together: &Together, ends: [u32; 2], couple: &Point) {
         let couple = times(&together.share, couple);
-        for slot in ends {
-            if let Some(place) = self.place(slot) {
+        for id in ends {
+            if let Some(place) = self.place(id) {
                 let sum = &mut self.known[place].couple;
                 (0..3).for_each(|a| sum[a] += couple[a]);
             }
         }
     }
 
-    /// Adds the force densities that the couples of this evaluation are.
+    /// Adds the force densities that the couples of this evaluation are, of those on points of all ranks. All come here at once.
     pub fn add(&self, body: &Body<D>, u: &Field<D>, force: &mut Field<D>) {
-        for known in self.known.iter().filter(|k| k.seen == self.now) {
-            let rate = times(&known.inverse, &known.couple);
-            known.each_whole(self.now, u, |k, d| {
-                let push = cross(&rate, &full(&d));
+        let turned = self
+            .known
+            .iter()
+            .filter(|k| k.seen == self.now && k.couple != [0.0; 3]);
+        let turned = turned.map(|known| Turned {
+            id: u64::from(known.id),
+            u: full::<D>(&crate::array::from_fn(|a| u[a][known.slot as usize])),
+            centre: full(&known.centre),
+            rate: times(&known.inverse, &known.couple),
+        });
+        let mut all = body.all_of(&turned.collect::<Vec<_>>()).concat();
+        all.sort_unstable_by_key(|t| t.id);
+        let whose = body.whose();
+        for t in &all {
+            let id = t.id as u32;
+            let mut push = |k: usize, xi: &[f64; D]| {
+                let d: [f64; D] =
+                    crate::array::from_fn(|a| xi[a] + (u[a][k] - t.u[a]) - t.centre[a]);
+                let push = cross(&t.rate, &full(&d));
                 (0..D).for_each(|a| force[a][k] += body.density.at(k) * push[a]);
-            });
+            };
+            let members = match self.place(id) {
+                Some(known) => {
+                    let known = &self.known[known];
+                    push(known.slot as usize, &[0.0; D]);
+                    &known.partners
+                }
+                None => match self.others.get(&id) {
+                    Some(members) => members,
+                    None => continue,
+                },
+            };
+            let whole = members.iter().filter(|p| p.torn != self.now);
+            for p in whole.filter(|p| whose.place(p.id).is_some()) {
+                push(p.slot as usize, &p.xi);
+            }
         }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let partners: usize = self.known.iter().map(|k| k.partners.capacity()).sum();
-        size_of::<u32>() * self.place.capacity()
-            + size_of::<Known<D>>() * self.known.capacity()
-            + size_of::<Partner<D>>() * partners
+        let partners = self.known.iter().map(|k| &k.partners);
+        let partners = partners.chain(self.others.values()).map(Vec::capacity);
+        size_of::<Known<D>>() * self.known.capacity()
+            + size_of::<Partner<D>>() * partners.sum::<usize>()
     }
 }

@@ -38,10 +38,8 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         ),
         (
             "interactions",
-            "friction of contact, interfaces and constants of pairs",
-            { spec.interactions.contact.as_ref() }.is_some_and(|c| c.friction.is_some())
-                || !spec.interactions.interfaces.is_empty()
-                || !spec.interactions.pairs.is_empty(),
+            "interfaces and constants of pairs",
+            !spec.interactions.interfaces.is_empty() || !spec.interactions.pairs.is_empty(),
         ),
         (
             "probes",

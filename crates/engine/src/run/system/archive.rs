@@ -22,7 +22,9 @@ impl<const D: usize> Owner for System<D> {
         archive.given("toughness", &mut self.toughness, |t, a| {
             t.archive(body, a);
         });
-        archive.given("contact", &mut self.contact, |c, a| c.archive(a));
+        archive.given("contact", &mut self.contact, |c, a| {
+            c.archive(&self.body, a)
+        });
         self.applied.archive(body, archive);
         self.prescribed.archive(body, archive);
         archive.part("accounts", &mut self.accounts);

@@ -80,6 +80,9 @@ impl<const D: usize> System<D> {
     pub fn other_forces(&mut self, at: Evaluation) {
         let t = self.clock.time();
         if let Some(contact) = &mut self.contact {
+            if contact.friction.is_some() {
+                self.body.exchange().fill_field(&mut self.v);
+            }
             let (bonds, seen) = (self.interaction.as_ref(), self.watch.energies.as_mut());
             let state = [&self.u, &self.v];
             contact.add(bonds, &self.body, state, &mut self.f, seen, (t, at));
@@ -120,7 +123,7 @@ impl<const D: usize> System<D> {
     pub fn acting_depart(&mut self, pressed: Pressed) {
         self.applied.all().for_each(|x| x.depart(&self.u, pressed));
         if let Some(contact) = &mut self.contact {
-            contact.depart(&self.u, pressed);
+            contact.depart(&self.body, &self.u, pressed);
         }
     }
 

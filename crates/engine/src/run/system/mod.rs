@@ -120,7 +120,8 @@ impl<const D: usize> System<D> {
         // who keeps track of what is near is told of every trial
         let path = square.sqrt();
         if let Some(contact) = &mut self.contact {
-            contact.central.moved(path);
+            // ranks look again at once
+            contact.central.moved(self.body.most(path));
         }
         self.applied.all().for_each(|x| x.moved(path));
     }
@@ -131,7 +132,7 @@ impl<const D: usize> System<D> {
         self.accounts.pass(&now);
         // it goes on; what it took is in the past now
         if let Some(friction) = self.contact.as_mut().and_then(|c| c.friction.as_mut()) {
-            friction.work = -friction.energy;
+            friction.forget();
         }
         self.applied = forces;
         self.prescribed.constraints = constraints;

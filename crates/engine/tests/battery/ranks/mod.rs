@@ -1,6 +1,7 @@
 //! Ranks that share a body: the same bits as one that has all of it.
 
 mod atoms;
+mod friction;
 mod heat;
 mod statics;
 mod tiles;
@@ -1098,13 +1099,17 @@ fn what_ranks_do_not_share_is_named() {
     };
     assert_eq!(refused(&|_| ()), None);
     let of = |path: &str| Some(path.to_string());
-    let rubs = |s: &mut Spec| {
-        s.interactions.contact = Some(ContactSpec {
-            friction: Some(FrictionSpec::constant(0.3)),
-            ..CONTACT
-        });
+    let glued = |s: &mut Spec| {
+        s.interactions.interfaces = vec![InterfaceSpec {
+            name: "glue".into(),
+            bodies: ["one", "other"].map(String::from),
+            law: s.materials[0].law.clone(),
+            horizon: s.bonds.horizon,
+            influence: s.bonds.influence,
+            fracture: None,
+        }];
     };
-    assert_eq!(refused(&rubs), of("interactions"));
+    assert_eq!(refused(&glued), of("interactions"));
     let pieces = |s: &mut Spec| {
         s.run.probes = vec![ProbeSpec {
             name: "pieces".into(),

@@ -73,16 +73,21 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         }
     }
 
-    /// Of those groups alone that may have lost a bond.
+    /// Of those groups alone that may have lost a bond, from each of their points; one from a point to its own copy once.
     pub fn each_broken_of(
         &self,
         body: &Body<D>,
         torn: impl Fn(usize) -> bool,
         visit: &mut EachPair<D>,
     ) {
-        self.each_half(self.lost(torn), body, &mut |[group, k, l], [i, j]| {
-            visit(i, j, self.family.bond(group, k, l).0);
-        });
+        for (group, k, l) in self.lost(torn) {
+            let i = self.family.rows(group).slot(l);
+            let end = self.family.ends(group, k).slot(l);
+            let j = body.exchange.original(end);
+            if i != j || end > i {
+                visit(i, j, self.family.bond(group, k, l).0);
+            }
+        }
     }
 
     /// Of directed bonds one of each pair: group, bond and place, and both ends.
