@@ -30,14 +30,8 @@ pub(super) fn interfaces<const D: usize>(
 ) -> Result<Vec<Joined<D>>, BuildError> {
     let mut made: Vec<Joined<D>> = vec![];
     for (n, written) in spec.interactions.interfaces.iter().enumerate() {
-        let joined = join(spec, pieces, all, shelf, simd, written).map_err(|e| {
-            let path = e.path.strip_prefix("materials[0].").unwrap_or(&e.path);
-            BuildError {
-                path: format!("interface[{n}].{path}"),
-                message: message![format!("interface `{}`: ", written.name), e.message],
-                ..e
-            }
-        })?;
+        let joined = join(spec, pieces, all, shelf, simd, written);
+        let joined = joined.map_err(|e| named(n, written, e))?;
         let [a, b] = joined.bodies;
         if made
             .iter()
@@ -65,36 +59,9 @@ fn join<const D: usize>(
     simd: Simd,
     written: &InterfaceSpec,
 ) -> Result<Joined<D>, BuildError> {
-    let mut bodies = [0; 2];
-    for (place, name) in bodies.iter_mut().zip(&written.bodies) {
-        let Some(found) = pieces.iter().position(|p| p.name == *name) else {
-            return Err(BuildError::unknown(
-                "bodies",
-                name,
-                format!("there is no body `{name}`"),
-            ));
-        };
-        *place = found;
-    }
-    if bodies[0] == bodies[1] {
-        return Err(
-            BuildError::invalid("bodies", "it joins a body with itself").help("name two bodies")
-        );
-    }
+    let bodies = joined_by(pieces, written)?;
     // its law on a full family of the first body
-    let first = &pieces[bodies[0]];
-    let mut own = Spec {
-        body: first.body.clone(),
-        materials: vec![written.material()],
-        ..spec.clone()
-    };
-    own.bonds.horizon = written.horizon;
-    own.bonds.influence = written.influence;
-    own.bonds.own_horizon = None;
-    own.interactions.pairs = vec![];
-    own.interactions.contact = None;
-    own.interactions.interfaces = vec![];
-    own.damage.precracks = vec![];
+    let mut own = of_first(spec, &pieces[bodies[0]], written);
     shelf.resolve(&mut own)?;
     let full = reference::<D>(&own)?;
     let spacings = bodies.map(|b| {
@@ -131,7 +98,7 @@ fn join<const D: usize>(
         )
         .help("a longer horizon, or bodies that are nearer to each other"));
     }
-    let position: Vec<[f64; 3]> = slots.iter().map(|s| all.position(*s as usize)).collect();
+    let position: Vec<[f64; 3]> = slots.iter().map(|s| all.home(*s as usize)).collect();
     let volume: Vec<f64> = slots.iter().map(|s| all.volume().at(*s as usize)).collect();
     let cloud = Body::from_cloud(&position, &volume, &[], spacing, all.period())?;
     let mut side = vec![0; cloud.len()];
@@ -146,17 +113,80 @@ fn join<const D: usize>(
     })
 }
 
-/// Slots of the points of two bodies that are within `reach` (length) of the other, in order of ids.
+fn named(n: usize, written: &InterfaceSpec, e: BuildError) -> BuildError {
+    let path = e.path.strip_prefix("materials[0].").unwrap_or(&e.path);
+    BuildError {
+        path: format!("interface[{n}].{path}"),
+        message: message![format!("interface `{}`: ", written.name), e.message],
+        ..e
+    }
+}
+
+/// The two bodies that an interface joins.
+fn joined_by(pieces: &[PieceSpec], written: &InterfaceSpec) -> Result<[usize; 2], BuildError> {
+    let mut bodies = [0; 2];
+    for (place, name) in bodies.iter_mut().zip(&written.bodies) {
+        let Some(found) = pieces.iter().position(|p| p.name == *name) else {
+            return Err(BuildError::unknown(
+                "bodies",
+                name,
+                format!("there is no body `{name}`"),
+            ));
+        };
+        *place = found;
+    }
+    if bodies[0] == bodies[1] {
+        return Err(
+            BuildError::invalid("bodies", "it joins a body with itself").help("name two bodies")
+        );
+    }
+    Ok(bodies)
+}
+
+/// The first body as if it were made of what the bonds of an interface are.
+fn of_first(spec: &Spec, first: &PieceSpec, written: &InterfaceSpec) -> Spec {
+    let mut own = Spec {
+        body: first.body.clone(),
+        materials: vec![written.material()],
+        ..spec.clone()
+    };
+    own.bonds.horizon = written.horizon;
+    own.bonds.influence = written.influence;
+    own.bonds.own_horizon = None;
+    own.interactions.pairs = vec![];
+    own.interactions.contact = None;
+    own.interactions.interfaces = vec![];
+    own.damage.precracks = vec![];
+    own
+}
+
+/// Points (ids in their order) that bonds of interfaces may have, of bodies that are still whole: ranks have copies of them.
+pub(super) fn ends<const D: usize>(spec: &Spec, all: &Body<D>) -> Result<Vec<u32>, BuildError> {
+    let (pieces, mut ends) = (spec.body.pieces(), vec![]);
+    let ids = all.ids_by_slot();
+    for (n, written) in spec.interactions.interfaces.iter().enumerate() {
+        let named = |e| named(n, written, e);
+        let bodies = joined_by(pieces, written).map_err(named)?;
+        let own = of_first(spec, &pieces[bodies[0]], written);
+        // none that is as near as its law says is left out by round-off
+        let reach = 1.001 * reference::<D>(&own).map_err(named)?.horizon;
+        ends.extend(near(all, bodies, reach).iter().map(|s| ids[*s as usize]));
+    }
+    ends.sort_unstable();
+    ends.dedup();
+    Ok(ends)
+}
+
+/// Slots of the points of two bodies that are within `reach` (length) of the other, in order of ids; of a part of them slots of copies, too.
 fn near<const D: usize>(all: &Body<D>, bodies: [usize; 2], reach: f64) -> Vec<u32> {
-    let of: Vec<(u32, usize)> = (all.slots().iter())
-        .map(|s| (*s, all.piece_of(*s as usize)))
+    let of: Vec<(u32, usize)> = all
+        .slots_by_id()
+        .into_iter()
+        .map(|s| (s, all.piece_of(s as usize)))
         .filter(|(_, piece)| bodies.contains(piece))
         .collect();
-    let x: [Vec<f64>; D] = crate::array::from_fn(|a| {
-        of.iter()
-            .map(|(s, _)| all.position(*s as usize)[a])
-            .collect()
-    });
+    let x: [Vec<f64>; D] =
+        crate::array::from_fn(|a| of.iter().map(|(s, _)| all.home(*s as usize)[a]).collect());
     let slots: Vec<u32> = (0..of.len() as u32).collect();
     let cells = Cells::new(
         crate::array::from_fn(|a| x[a].as_slice()),

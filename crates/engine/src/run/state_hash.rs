@@ -159,7 +159,7 @@ fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
         sums: vec![0; system.body.all_points().div_ceil(BLOCK)],
         words: Words::default(),
     };
-    let whole = hash_of_name(history::WHOLE);
+    let (whole, whose) = (hash_of_name(history::WHOLE), system.body.whose());
     system
         .interaction
         .each_bond(&system.body, &mut |i, j, xi, state| {
@@ -176,7 +176,10 @@ fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
             .interaction
             .each_directed(&system.body, &name, &mut |i, j, xi| {
                 let row = rows.next().expect("a value of each bond");
-                bonds.add(hash, [i, j], xi, row);
+                // those of an interface are known to all ranks
+                if whose.place(bonds.id[i]).is_some() {
+                    bonds.add(hash, [i, j], xi, row);
+                }
             });
         assert!(rows.next().is_none(), "a bond of each value");
     }

@@ -113,6 +113,7 @@ impl<const D: usize> Body<D> {
             mark: vec![],
             exchange,
             subdomain: None,
+            beside: vec![],
         })
     }
 
@@ -178,6 +179,7 @@ impl<const D: usize> Body<D> {
             mark: mark.to_vec(),
             exchange: Exchange::default(),
             subdomain: None,
+            beside: vec![],
         })
     }
 }

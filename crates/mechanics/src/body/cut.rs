@@ -89,8 +89,16 @@ impl<const D: usize> Body<D> {
     /// The part of this body that a rank has. A cloud has copies of all within `reach` (length), a lattice those that its stencil reaches. All ranks ask at
     /// once, with the same body. Where there are fewer blocks of 256 cells with points (of 256 points of a cloud) than ranks the last ranks have no points.
     pub fn subdomain_of(&self, comm: &Arc<Comm>, reach: f64) -> Body<D> {
+        self.subdomain_beside(comm, reach, &[])
+    }
+
+    /// The same, with copies of these points of several bodies besides (ids in their order), whoever has them.
+    pub fn subdomain_beside(&self, comm: &Arc<Comm>, reach: f64, beside: &[u32]) -> Body<D> {
         let blocks = by_ranks(&self.points_of_blocks(), comm.ranks());
-        self.part(&blocks, comm, reach)
+        match &self.layout {
+            Layout::Several(_) => self.part_of_several(&blocks, comm, reach, beside),
+            Layout::Grid(_) | Layout::Cloud(_) => self.part(&blocks, comm, reach),
+        }
     }
 
     /// How so many ranks would share this body: the most points that one has; the most copies of others' points, of the first rank, the one in the middle and
@@ -141,7 +149,7 @@ impl<const D: usize> Body<D> {
         match &self.layout {
             Layout::Grid(grid) => self.part_of_lattice(grid, blocks, comm),
             Layout::Cloud(x) => self.part_of_cloud(x, blocks, comm, reach),
-            Layout::Several(_) => self.part_of_several(blocks, comm, reach),
+            Layout::Several(_) => self.part_of_several(blocks, comm, reach, &[]),
         }
     }
 
@@ -186,6 +194,7 @@ impl<const D: usize> Body<D> {
             mark,
             exchange,
             subdomain: Some(Arc::new(subdomain)),
+            beside: vec![],
             slots,
             layout: Layout::Grid(grid),
         }

@@ -65,6 +65,8 @@ pub struct Body<const D: usize> {
     pub(crate) exchange: Exchange,
     /// What it is a part of; `None`: it is whole.
     pub(crate) subdomain: Option<Arc<Subdomain>>,
+    /// Of each of several bodies copies of points that are bonded to another one; empty: there are none.
+    beside: Vec<Piece<D>>,
 }
 
 /// Which body it is: the number of slots and who is in them. Copies of a body are the same one.
@@ -240,8 +242,8 @@ impl<const D: usize> Body<D> {
         match &self.layout {
             Layout::Grid(g) => g.position(slot),
             Layout::Cloud(x) => crate::array::from_fn(|a| if a < D { x[a][slot] } else { 0.0 }),
-            Layout::Several(pieces) => {
-                let p = &pieces[several::piece_of(pieces, slot)];
+            Layout::Several(_) => {
+                let p = self.piece_at(slot);
                 p.body.position(slot - p.first)
             }
         }

@@ -93,6 +93,7 @@ impl<const D: usize> Body<D> {
             exchange: Exchange::joined(pieces.iter().map(|p| (p.first, &p.body.exchange))),
             layout: Layout::Several(pieces),
             subdomain: None,
+            beside: vec![],
         }
     }
 
@@ -106,14 +107,26 @@ impl<const D: usize> Body<D> {
 
     /// Which of the bodies a slot belongs to; 0 where there is one.
     pub fn piece_of(&self, slot: usize) -> usize {
-        piece_of(self.pieces(), slot)
+        piece_of(self.row_of(slot), slot)
+    }
+
+    /// The piece that a slot lies in, or the copies of points of one.
+    pub(super) fn piece_at(&self, slot: usize) -> &Piece<D> {
+        &self.row_of(slot)[self.piece_of(slot)]
+    }
+
+    fn row_of(&self, slot: usize) -> &[Piece<D>] {
+        match self.beside.first() {
+            Some(first) if slot >= first.first => &self.beside,
+            _ => self.pieces(),
+        }
     }
 
     /// Typical distance of nearest points around a slot (length): that of its body.
     pub fn spacing_at(&self, slot: usize) -> f64 {
         match self.pieces() {
             [] => self.spacing,
-            pieces => pieces[piece_of(pieces, slot)].body.spacing,
+            pieces => pieces[self.piece_of(slot)].body.spacing,
         }
     }
 
@@ -164,7 +177,7 @@ impl<const D: usize> Body<D> {
 }
 
 /// The piece that has this slot.
-pub(super) fn piece_of<const D: usize>(pieces: &[Piece<D>], slot: usize) -> usize {
+fn piece_of<const D: usize>(pieces: &[Piece<D>], slot: usize) -> usize {
     pieces
         .partition_point(|p| p.first <= slot)
         .saturating_sub(1)

@@ -213,9 +213,9 @@ impl<const D: usize> Body<D> {
                 (sublattice as u64) << 40 | (cell / cut::CELLS) as u64
             }
             Layout::Cloud(_) => self.order(slot) / cut::CELLS as u64,
-            Layout::Several(pieces) => {
-                let n = self.piece_of(slot);
-                (n as u64) << 52 | pieces[n].body.block(slot - pieces[n].first)
+            Layout::Several(_) => {
+                let (n, piece) = (self.piece_of(slot), self.piece_at(slot));
+                (n as u64) << 52 | piece.body.block(slot - piece.first)
             }
         }
     }
@@ -263,8 +263,8 @@ impl<const D: usize> Body<D> {
     pub fn home(&self, slot: usize) -> Point {
         match (&self.layout, self.subdomain()) {
             (Layout::Grid(grid), Some(_)) => grid.home(slot),
-            (Layout::Several(pieces), Some(_)) => {
-                let piece = &pieces[self.piece_of(slot)];
+            (Layout::Several(_), Some(_)) => {
+                let piece = self.piece_at(slot);
                 piece.body.home(slot - piece.first)
             }
             _ => self.position(self.exchange.original(slot)),
@@ -284,9 +284,9 @@ impl<const D: usize> Body<D> {
                 (sublattice as u64) << 40 | cell as u64
             }
             (Layout::Cloud(_), Some(of)) => of.slot_of_all(slot) as u64,
-            (Layout::Several(pieces), Some(_)) => {
-                let n = self.piece_of(slot);
-                (n as u64) << 52 | pieces[n].body.order(slot - pieces[n].first)
+            (Layout::Several(_), Some(_)) => {
+                let (n, piece) = (self.piece_of(slot), self.piece_at(slot));
+                (n as u64) << 52 | piece.body.order(slot - piece.first)
             }
             (_, None) => slot as u64,
         }
@@ -312,6 +312,18 @@ impl<const D: usize> Body<D> {
             slots[ids[slot] as usize] = slot as u32;
         }
         slots
+    }
+
+    /// Slots of all points that are here, their own or those of copies, in the order of ids among all.
+    pub fn slots_by_id(&self) -> Vec<u32> {
+        match self.subdomain() {
+            None => self.slots.clone(),
+            Some(_) => {
+                let mut here = self.slots_of_ids();
+                here.retain(|slot| *slot != Self::NOWHERE);
+                here
+            }
+        }
     }
 
     /// No slot.

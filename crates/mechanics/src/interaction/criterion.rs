@@ -52,6 +52,8 @@ pub struct Wearing {
     pub life: f64,
     /// Per cycle.
     pub rate: f64,
+    /// Of those that ranks share one counts it; the others wear it, too.
+    pub counts: bool,
 }
 
 impl Wearing {
@@ -67,7 +69,7 @@ impl Wearing {
 
 /// Cycles after which the first of these directed bonds are worn out, as many as end an increment; in any order.
 pub fn first_to_wear(bonds: &[Wearing], options: &Cycles) -> Vec<f64> {
-    let last = |b: &Wearing| (b.rate > 0.0 && b.life > 0.0).then(|| b.life / b.rate);
+    let last = |b: &Wearing| (b.counts && b.rate > 0.0 && b.life > 0.0).then(|| b.life / b.rate);
     let mut all: Vec<f64> = bonds.iter().filter_map(last).collect();
     // each bond is there from both ends
     let most = 2 * options.bonds.max(1);
@@ -97,7 +99,11 @@ mod tests {
 
     #[test]
     fn an_increment_ends_with_the_nth_bond() {
-        let of = |life: f64, rate: f64| Wearing { life, rate };
+        let of = |life: f64, rate: f64| Wearing {
+            life,
+            rate,
+            counts: true,
+        };
         let bonds = [
             of(1.0, 0.5),
             of(1.0, 0.5),

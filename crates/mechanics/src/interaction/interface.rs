@@ -1,4 +1,7 @@
 //! Bonds between two of several bodies: an interaction on the points of both that are near to the other, as a cloud of its own.
+//!
+//! Ranks that share the bodies all have the whole cloud, with copies of who is somebody else's, and sweep over all of it: each finds the same, takes the
+//! forces on its own points, and the first one reports. So an interface is as many points on each rank as it has in one process.
 
 use super::{
     BondForce, BondTangent, Crosses, EachBond, EachForce, EachPair, EachTangent, FactorsOf,
@@ -23,6 +26,10 @@ struct Points<const D: usize> {
     place: Vec<u32>,
     /// `[slots of the cloud]`: slots in the body of all.
     whole: Vec<u32>,
+    /// `[slots of the cloud]`, where ranks share the bodies: ids among all points, and which are of this rank.
+    shared: Option<(Vec<u32>, Vec<bool>)>,
+    /// Is it this rank that reports?
+    first: bool,
 }
 
 impl<const D: usize> Points<D> {
@@ -35,9 +42,28 @@ impl<const D: usize> Points<D> {
     }
 
     fn add(&self, from: &[f64], to: &mut [f64]) {
-        for (all, own) in self.slots.iter().zip(&self.cloud.slots) {
+        let all = self.slots.iter().zip(&self.cloud.slots);
+        for (all, own) in all.filter(|(_, own)| self.is_here(**own as usize)) {
             to[*all as usize] += from[*own as usize];
         }
+    }
+
+    /// Is the point in a slot of the cloud of this rank?
+    fn is_here(&self, own: usize) -> bool {
+        self.shared.as_ref().is_none_or(|(_, here)| here[own])
+    }
+
+    /// Does one end of a bond come before the other?
+    fn is_before(&self, i: usize, j: usize) -> bool {
+        match &self.shared {
+            Some((ids, _)) => ids[i] < ids[j],
+            None => self.whole[i] < self.whole[j],
+        }
+    }
+
+    /// A count of all of it, once of all ranks.
+    fn counted(&self, count: u64) -> u64 {
+        if self.first { count } else { 0 }
     }
 
     /// Adds the energies; dilatations are those of the bodies alone.
@@ -68,7 +94,7 @@ pub struct Interface<const D: usize> {
 }
 
 impl<const D: usize> Interface<D> {
-    /// `cloud` has the points of `slots`, in this order, and `bonds` are on it.
+    /// `cloud` has the points of `slots`, in this order, and `bonds` are on it. Ranks that share `body` all have the same cloud; slots may be those of copies.
     pub fn new(
         body: &Body<D>,
         cloud: Body<D>,
@@ -81,6 +107,14 @@ impl<const D: usize> Interface<D> {
             place[*all as usize] = *own;
             whole[*own as usize] = *all;
         }
+        let shared = body.subdomain().map(|of| {
+            let ids: Vec<u32> = { whole.iter() }
+                .map(|all| of.of_slots().get(*all as usize).copied().unwrap_or(0))
+                .collect();
+            let here = ids.iter().map(|id| of.ids().binary_search(id).is_ok());
+            let here = here.collect();
+            (ids, here)
+        });
         Interface {
             bonds,
             u: cloud.at_rest(),
@@ -92,6 +126,8 @@ impl<const D: usize> Interface<D> {
                 slots,
                 place,
                 whole,
+                shared,
+                first: body.is_first(),
             },
         }
     }
@@ -147,6 +183,13 @@ impl<const D: usize> Interface<D> {
             watch.as_mut(),
         );
         tally.fault = tally.fault.map(|fault| fault.at(|s| points.whole(s)));
+        if !points.first {
+            // they are those of the first rank, too
+            tally = Tally {
+                fault: tally.fault,
+                ..Tally::default()
+            };
+        }
         for a in 0..D {
             points.add(&self.f[a], f[a]);
         }
@@ -188,11 +231,13 @@ impl<const D: usize> Interface<D> {
         points.take(u, view_mut(&mut self.u));
         self.bonds
             .tangents(&points.cloud, view(&self.u), &mut |bond| {
-                visit(BondTangent {
-                    i: points.whole(bond.i),
-                    j: points.whole(bond.j),
-                    ..bond
-                });
+                if points.is_here(bond.i) {
+                    visit(BondTangent {
+                        i: points.whole(bond.i),
+                        j: points.whole(bond.j),
+                        ..bond
+                    });
+                }
             });
     }
 
@@ -201,15 +246,17 @@ impl<const D: usize> Interface<D> {
         points.take(u, view_mut(&mut self.u));
         self.bonds
             .each_force(&points.cloud, view(&self.u), &mut |bond| {
-                visit(BondForce {
-                    i: points.whole(bond.i),
-                    j: points.whole(bond.j),
-                    ..bond
-                });
+                if points.is_here(bond.i) {
+                    visit(BondForce {
+                        i: points.whole(bond.i),
+                        j: points.whole(bond.j),
+                        ..bond
+                    });
+                }
             })
     }
 
-    /// A column of its bonds.
+    /// A column of its bonds, of all that are on this rank.
     pub fn read_bonds(&self, name: &str, out: &mut Vec<f64>) -> bool {
         let cloud = &self.points.cloud;
         self.bonds
@@ -235,10 +282,12 @@ impl<const D: usize> Interface<D> {
     pub fn each_bond(&self, visit: &mut EachBond<D>) {
         let points = &self.points;
         self.bonds.each_bond(&points.cloud, &mut |i, j, xi, state| {
-            let (i, j) = (points.whole(i), points.whole(j));
-            match i < j {
-                true => visit(i, j, xi, state),
-                false => visit(j, i, xi.map(|x| -x), state),
+            let (i, j, xi) = match points.is_before(i, j) {
+                true => (i, j, xi),
+                false => (j, i, xi.map(|x| -x)),
+            };
+            if points.is_here(i) {
+                visit(points.whole(i), points.whole(j), xi, state);
             }
         });
     }
@@ -247,7 +296,9 @@ impl<const D: usize> Interface<D> {
         let points = &self.points;
         let cloud = &points.cloud;
         self.bonds.each_partner(cloud, &mut |i, j, xi, state| {
-            visit(points.whole(i), points.whole(j), xi, state);
+            if points.is_here(i) {
+                visit(points.whole(i), points.whole(j), xi, state);
+            }
         });
     }
 
@@ -256,7 +307,8 @@ impl<const D: usize> Interface<D> {
         let points = &self.points;
         points.take(u, view_mut(&mut self.u));
         let heals = |i: usize, j: usize, e: f64| heals(points.whole(i), points.whole(j), e);
-        self.bonds.mend(&points.cloud, view(&self.u), &heals)
+        let mended = self.bonds.mend(&points.cloud, view(&self.u), &heals);
+        mended.map(|count| points.counted(count))
     }
 
     /// [`expand`](Interaction::expand), by slots of the body of all.
@@ -273,7 +325,9 @@ impl<const D: usize> Interface<D> {
     pub fn wearing(&self, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
         let mut own = self.points.cloud.at_rest();
         self.points.take(u, view_mut(&mut own));
-        self.bonds.wearing(&self.points.cloud, view(&own), load)
+        let mut all = self.bonds.wearing(&self.points.cloud, view(&own), load)?;
+        { all.iter_mut() }.for_each(|bond| bond.counts &= self.points.first);
+        Some(all)
     }
 
     /// [`work_borne`](Interaction::work_borne), of slots of the body of all.
@@ -285,13 +339,16 @@ impl<const D: usize> Interface<D> {
         let points = &self.points;
         points.take(u, view_mut(&mut self.u));
         let visit = &mut |i: usize, j: usize, xi: [f64; D], part: f64| {
-            visit(points.whole(i), points.whole(j), xi, part);
+            if points.is_here(i) {
+                visit(points.whole(i), points.whole(j), xi, part);
+            }
         };
         self.bonds.work_borne(&points.cloud, view(&self.u), visit)
     }
 
     pub fn cut(&mut self, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
-        self.bonds.cut(&self.points.cloud, kind, crosses)
+        let count = self.bonds.cut(&self.points.cloud, kind, crosses);
+        self.points.counted(count)
     }
 
     /// [`scale_bonds`](Interaction::scale_bonds), by slots of the body of all.
@@ -306,7 +363,7 @@ impl<const D: usize> Interface<D> {
     }
 
     pub fn directed_bonds(&self) -> u64 {
-        self.bonds.directed_bonds()
+        self.points.counted(self.bonds.directed_bonds())
     }
 
     pub fn family_size(&self, slot: usize) -> usize {

@@ -28,6 +28,8 @@ struct Own<const D: usize> {
 pub struct SeveralInteraction<const D: usize> {
     body: Identity,
     own: Vec<Own<D>>,
+    /// Where their slots end: behind them are copies.
+    end: usize,
     interfaces: Vec<Interface<D>>,
     /// Family of those that have bonds.
     family: &'static str,
@@ -46,6 +48,7 @@ impl<const D: usize> SeveralInteraction<D> {
             Some(first) if kinds.all(|k| k == first) => first,
             Some(_) => "stencil and list",
         };
+        let end = pieces(body).last().map_or(0, |p| p.range().end);
         let own = pieces(body).iter().zip(bonds).map(|(p, bonds)| Own {
             first: p.first,
             bonds,
@@ -53,6 +56,7 @@ impl<const D: usize> SeveralInteraction<D> {
         SeveralInteraction {
             body: body.identity,
             own: own.collect(),
+            end,
             interfaces,
             family,
         }
@@ -87,15 +91,15 @@ impl<const D: usize> SeveralInteraction<D> {
         all.filter_map(|(p, own)| own.bonds.as_deref().map(|bonds| (p, bonds)))
     }
 
-    /// The body of a slot, and the slot in it.
-    fn place(&self, slot: usize) -> (usize, usize) {
+    /// The body of a slot, and the slot in it; `None`: a copy of a point whose bonds are not here.
+    fn place(&self, slot: usize) -> Option<(usize, usize)> {
         let n = self.own.partition_point(|o| o.first <= slot) - 1;
-        (n, slot - self.own[n].first)
+        (slot < self.end).then(|| (n, slot - self.own[n].first))
     }
 
     /// What the interaction of a slot's body says of it; `None`: a loose point.
     fn at<T>(&self, slot: usize, of: impl Fn(&dyn Interaction<D>, usize, usize) -> T) -> Option<T> {
-        let (n, own) = self.place(slot);
+        let (n, own) = self.place(slot)?;
         self.own[n].bonds.as_deref().map(|bonds| of(bonds, n, own))
     }
 }
@@ -435,8 +439,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
-        let of = |slot: usize| self.own.iter().rfind(|own| own.first <= slot);
-        let own = of(ends[0]).filter(|own| of(ends[1]).is_some_and(|o| o.first == own.first));
+        let of = |slot: usize| self.place(slot).map(|(n, _)| n);
+        let own = of(ends[0]).filter(|n| of(ends[1]) == Some(*n));
+        let own = own.map(|n| &self.own[n]);
         match own.and_then(|own| Some((own.first, own.bonds.as_ref()?))) {
             Some((first, bonds)) => bonds.bond_limit(ends.map(|s| s - first), xi, critical),
             // of an interface
@@ -455,22 +460,19 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         // of points in interfaces, all bonds together
         let mut joined = vec![false; body.len];
         for interface in &self.interfaces {
-            interface.each_bond(&mut |i, j, _, state| {
-                for s in [i, j] {
-                    joined[s] |= state != BondStatus::Absent;
-                }
+            interface.each_partner(&mut |i, _, _, state| {
+                joined[i] |= state != BondStatus::Absent;
             });
         }
         let mut family = vec![[0.0; 2]; body.len];
-        self.each_bond(body, &mut |i, j, _, state| {
+        self.each_partner(body, &mut |i, j, _, state| {
             if state == BondStatus::Absent {
                 return;
             }
-            for (s, volume) in [(i, body.volume.at(j)), (j, body.volume.at(i))] {
-                family[s][0] += volume;
-                if state == BondStatus::Broken {
-                    family[s][1] += volume;
-                }
+            let volume = body.volume.at(j);
+            family[i][0] += volume;
+            if state == BondStatus::Broken {
+                family[i][1] += volume;
             }
         });
         for (s, [all, broken]) in family.into_iter().enumerate() {
@@ -526,7 +528,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
-        let ((n, i), (m, j)) = (self.place(i), self.place(j));
+        let (Some((n, i)), Some((m, j))) = (self.place(i), self.place(j)) else {
+            return false;
+        };
         let bonds = self.own[n].bonds.as_deref();
         n == m && bonds.is_some_and(|b| b.in_family(&pieces(body)[n].body, i, j))
     }

@@ -8,7 +8,7 @@ use crate::execute::exact::Exact;
 /// Whose numbers an owner has.
 #[derive(Debug, Clone, Copy)]
 pub struct Whose<'a> {
-    /// Ids of the points that are here, in their order; `None`: all are.
+    /// Ids of the points that are here, in their order; `None`: all are, on every rank.
     pub ids: Option<&'a [u32]>,
     /// Points of all ranks.
     pub points: usize,
@@ -239,9 +239,9 @@ impl Archive<'_> {
                 }
                 return archive.take(rows.all, hear);
             }
-            let Some(ranks) = &archive.ranks else {
-                archive.header(name, rows.all, T::BYTES)?;
-                return archive.put_each(words);
+            let ranks = archive.ranks.as_ref();
+            let Some(ranks) = ranks.filter(|_| rows.whose.ids.is_some()) else {
+                return archive.put_alike(name, rows.all, words);
             };
             let here = rows.whose.here();
             let ids: Vec<u32> = (0..here).map(|n| rows.whose.id(n)).collect();
@@ -249,6 +249,22 @@ impl Archive<'_> {
             let merged = ranks.merged(&ids, &lengths, (T::BYTES, bytes_of(words)));
             archive.put_merged::<T>(name, merged)
         });
+    }
+
+    /// So many words that every rank has.
+    fn put_alike<T: Word>(
+        &mut self,
+        name: &str,
+        count: usize,
+        words: &mut dyn Iterator<Item = T>,
+    ) -> Result<(), StateError> {
+        self.header(name, count, T::BYTES)?;
+        if self.ranks.is_none() {
+            return self.put_each(words);
+        }
+        let words: Vec<T> = words.collect();
+        self.alike(name, &words);
+        self.put(&words)
     }
 
     /// Words of all ranks, which the first one has.
@@ -294,9 +310,9 @@ impl Archive<'_> {
                     false => Err(archive.invalid(name)),
                 };
             }
-            let Some(ranks) = &archive.ranks else {
-                archive.header(name, x.len(), each)?;
-                return archive.put(x);
+            let ranks = archive.ranks.as_ref();
+            let Some(ranks) = ranks.filter(|_| whose.ids.is_some()) else {
+                return archive.put_alike(name, x.len(), &mut x.iter().copied());
             };
             let ids: Vec<u32> = x.iter().map(|(id, _)| *id).collect();
             let ones = vec![1; x.len()];

@@ -12,7 +12,7 @@ use crate::run::names::Names;
 use crate::run::parts::{Part, parts};
 use crate::run::reference::{cell, current_neighbours};
 use crate::run::sets::{assign_materials, sets};
-use crate::run::{atoms, clouds, gaps, meant, own_horizons, surface, traits};
+use crate::run::{atoms, clouds, gaps, interfaces, meant, own_horizons, surface, traits};
 use crate::spec::{BodySpec, FamilyChoice, Horizon, PieceSpec, Spec};
 use peridyne_comm::Comm;
 use std::sync::Arc;
@@ -106,7 +106,8 @@ impl<'a, const D: usize> Bodies<'a, D> {
             let whole = ended.as_ref().unwrap_or(&body);
             warnings.extend(meant::all(spec, whole, &names.sets)?);
             names.faces.find(spec, whole, &names.sets)?;
-            body = body.subdomain_of(ranks, halo(spec, &body, horizon));
+            let beside = interfaces::ends(spec, &body)?;
+            body = body.subdomain_beside(ranks, halo(spec, &body, horizon), &beside);
             cut(&mut names, &body);
             enough(spec, &parts, &body)?;
         }

@@ -3,6 +3,7 @@
 use super::model::RankModel;
 use crate::error::BuildError;
 use crate::run::build::made_among;
+use crate::run::interfaces;
 use crate::run::ranks::shared;
 use crate::run::reference::current_neighbours;
 use crate::run::{Info, Options, Shelf, Simulation};
@@ -99,13 +100,15 @@ fn planned<const D: usize>(
     let seconds = begun.elapsed().as_secs_f64() / steps as f64;
     let (body, info) = (&model.system.body, model.info().clone());
     let reach = info.horizon + body.spacing();
+    let joined = interfaces::ends(spec, body)?.len();
     let shares = ranks.iter().map(|n| {
         let [points, copies, working] = body.shares(*n, reach);
         Shares {
             ranks: *n,
             working,
             points,
-            copies,
+            // of interfaces all ranks have all
+            copies: copies + joined,
         }
     });
     let shares = shares.collect();

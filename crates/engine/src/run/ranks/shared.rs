@@ -37,11 +37,6 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
             !spec.materials.iter().all(|m| bonds(&m.law)),
         ),
         (
-            "interactions",
-            "interfaces and constants of pairs",
-            !spec.interactions.interfaces.is_empty() || !spec.interactions.pairs.is_empty(),
-        ),
-        (
             "probes",
             "probes of fragments",
             !run.probes.iter().all(probe),

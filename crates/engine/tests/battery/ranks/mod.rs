@@ -3,6 +3,7 @@
 mod atoms;
 mod friction;
 mod heat;
+mod interfaces;
 mod statics;
 mod tiles;
 
@@ -89,7 +90,13 @@ impl Said {
     fn is(&self, other: &Said, name: &str) {
         for (one, other) in self.states.iter().zip(&other.states) {
             let off = one.iter().zip(other).position(|(a, b)| a != b);
-            assert!(one == other, "{name}: the state, from {off:?} on");
+            let text = off.map_or("".into(), |n| String::from_utf8_lossy(&one[..n]));
+            let within = text.rfind("model.").map_or("", |at| &text[at..]);
+            let within = within.split(|c: char| !c.is_ascii_graphic()).next();
+            assert!(
+                one == other,
+                "{name}: the state, from {off:?} on, {within:?}"
+            );
         }
         for (column, wanted) in &self.columns {
             let off = { wanted.iter().zip(&other.columns[column]) }.position(|(a, b)| a != b);
@@ -1099,17 +1106,6 @@ fn what_ranks_do_not_share_is_named() {
     };
     assert_eq!(refused(&|_| ()), None);
     let of = |path: &str| Some(path.to_string());
-    let glued = |s: &mut Spec| {
-        s.interactions.interfaces = vec![InterfaceSpec {
-            name: "glue".into(),
-            bodies: ["one", "other"].map(String::from),
-            law: s.materials[0].law.clone(),
-            horizon: s.bonds.horizon,
-            influence: s.bonds.influence,
-            fracture: None,
-        }];
-    };
-    assert_eq!(refused(&glued), of("interactions"));
     let pieces = |s: &mut Spec| {
         s.run.probes = vec![ProbeSpec {
             name: "pieces".into(),

@@ -154,6 +154,7 @@ impl<const D: usize> Body<D> {
             mark,
             exchange,
             subdomain: Some(Arc::new(subdomain)),
+            beside: vec![],
             slots,
             // nobody is where the first own point is, as in the whole where the last one is
             layout: Layout::Cloud(crate::array::from_fn(|a| part.gathered(&x[a], nobody(a)))),

@@ -59,6 +59,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             all.push(Wearing {
                 life: self.life[self.family.own(group, k, 0, 1) + l],
                 rate: 0.5 * (of(i) + of(j)),
+                counts: true,
             });
         }
         Some(all)
