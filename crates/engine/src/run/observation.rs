@@ -134,7 +134,10 @@ impl<const D: usize> State for View<'_, D> {
     }
 
     fn fragments(&mut self) -> Vec<u32> {
-        Fragments::of(&self.system.body, self.system.interaction.as_ref()).label
+        let body = &self.system.body;
+        // those of ranks hang together over points of others
+        let all = Fragments::of_all(body, self.system.interaction.as_ref());
+        body.part_of(1, all.map(|all| all.label))
     }
 
     fn each_bond(&mut self, visit: &mut dyn FnMut(FamilyBond)) {

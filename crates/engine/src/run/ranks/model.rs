@@ -1,6 +1,6 @@
 //! The part of a model that one rank has.
 
-use super::shared::{FRAGMENT, shared};
+use super::shared::shared;
 use crate::body::{Body, Subdomain};
 use crate::columns::{Declaration, On};
 use crate::error::{BuildError, RunError};
@@ -87,14 +87,6 @@ impl<const D: usize> RankModel<D> {
 
     /// A column of the points of all ranks, by their ids, on the first rank.
     pub(super) fn column(&mut self, name: &str) -> Option<Column> {
-        if name == FRAGMENT {
-            let label = self.fragments()?.label;
-            let observable = self.model.names.shelf.observable(name)?;
-            return Some(Column {
-                declaration: observable.declaration.clone(),
-                values: Values::Counts(label),
-            });
-        }
         let own = self
             .model
             .column(name)

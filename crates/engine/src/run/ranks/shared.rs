@@ -1,10 +1,7 @@
 //! What ranks share of a spec so far.
 
 use crate::error::BuildError;
-use crate::spec::{LawSpec, Measure, ProbeSpec, Spec};
-
-/// The one that is found of all ranks together.
-pub(super) const FRAGMENT: &str = "fragment";
+use crate::spec::{LawSpec, Spec};
 
 /// Can ranks share the model of a spec?
 ///
@@ -21,25 +18,12 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         | LawSpec::Named(_) => true,
         LawSpec::Micromoduli(linear) => !linear.couples_masses() && !linear.has_carriers(),
     };
-    let probe = |p: &ProbeSpec| match &p.measure {
-        Measure::Reaction | Measure::Moment { .. } | Measure::Energy | Measure::Indenter { .. } => {
-            true
-        }
-        Measure::Over { of, .. } | Measure::Value { of, .. } => of != FRAGMENT,
-        Measure::Contour(_) => true,
-    };
-    let run = &spec.run;
     let limits = [
         ("bonds", "fields on nodes", spec.bonds.smooth.is_some()),
         (
             "materials",
             "coarsened bodies whose masses are coupled, or that carry loads of a finer one",
             !spec.materials.iter().all(|m| bonds(&m.law)),
-        ),
-        (
-            "probes",
-            "probes of fragments",
-            !run.probes.iter().all(probe),
         ),
     ];
     match limits.into_iter().find(|(_, _, wrong)| *wrong) {

@@ -911,6 +911,31 @@ fn colliding(case: &Case) -> Spec {
         }),
     }];
     spec.run.schedule.time_step = TimeStep::Fraction(0.5);
+    // in how many pieces they are, and to which the foot belongs
+    let probe = |name: &str, measure| ProbeSpec {
+        name: name.into(),
+        set: "all".into(),
+        measure,
+    };
+    let of = || "fragment".to_string();
+    spec.run.probes = vec![
+        probe(
+            "pieces",
+            Measure::Over {
+                fold: Fold::Max,
+                of: of(),
+                part: Part::All,
+            },
+        ),
+        probe(
+            "foot",
+            Measure::Value {
+                at: [0.0; 3],
+                of: of(),
+                part: Part::All,
+            },
+        ),
+    ];
     spec
 }
 
@@ -1106,18 +1131,15 @@ fn what_ranks_do_not_share_is_named() {
     };
     assert_eq!(refused(&|_| ()), None);
     let of = |path: &str| Some(path.to_string());
-    let pieces = |s: &mut Spec| {
-        s.run.probes = vec![ProbeSpec {
-            name: "pieces".into(),
-            set: "all".into(),
-            measure: Measure::Value {
-                of: "fragment".into(),
-                at: [1.0, 1.0, 0.0],
-                part: Part::All,
-            },
-        }];
+    let smooth = |s: &mut Spec| {
+        s.bonds.smooth = Some(SmoothSpec {
+            window: Window::new(|d| (-d.map(|x| x * x).iter().sum::<f64>()).exp()),
+            width: 3.0,
+            reach: 3.0,
+            spacing: None,
+        });
     };
-    assert_eq!(refused(&pieces), of("probes"));
+    assert_eq!(refused(&smooth), of("bonds"));
 }
 
 #[test]
