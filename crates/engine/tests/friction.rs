@@ -282,6 +282,33 @@ fn glancing() -> Spec {
     spec
 }
 
+/// What touches and its families are known by numbers of points, which move up when some are taken away.
+#[test]
+fn points_that_are_taken_away_change_nothing_for_those_that_rub() {
+    let mut spec = glancing();
+    let BodySpec::Several(pieces) = &mut spec.body else {
+        panic!("several bodies");
+    };
+    // far away, and before the others
+    let debris = square(1.0, [30.0, 30.0, 0.0], [36.0, 34.0, 0.0]);
+    pieces.insert(0, piece("debris", debris, true));
+    let run = |gone: &[u32]| {
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        let rubs = |sim: &mut dyn Simulation| sim.ledger().unwrap().dissipated > 0.0;
+        while !rubs(sim.as_mut()) {
+            sim.step().unwrap();
+        }
+        (0..20).for_each(|_| sim.step().unwrap());
+        sim.remove(gone);
+        (0..100).for_each(|_| sim.step().unwrap());
+        let v = sim.velocities();
+        v[35 - gone.len()..].to_vec()
+    };
+    let gone: Vec<u32> = (0..12).chain([20, 34]).collect();
+    assert_eq!(run(&gone), run(&[]));
+}
+
 #[test]
 fn friction_keeps_momentum_and_gives_no_energy() {
     let mut sim = build(&glancing(), Options::default()).unwrap();

@@ -81,6 +81,9 @@ impl<const D: usize> System<D> {
         self.info.points = self.body.slots().len() as u64;
         self.prescribed.all_mut().for_each(|p| p.retain(&keep));
         self.applied.all().for_each(|x| x.retain(&keep));
+        if let Some(friction) = self.contact.as_mut().and_then(|c| c.friction.as_mut()) {
+            friction.renumber(&moved);
+        }
         self.watch.forget();
         self.stressed = None;
         self.refresh_images();

@@ -21,7 +21,6 @@ use crate::space::{cross, full};
 use crate::spec::FrictionSpec;
 use crate::state::{Archive, words};
 use bytemuck::{Pod, Zeroable};
-use std::collections::HashMap;
 use std::iter::Peekable;
 use std::slice::Iter;
 
@@ -108,6 +107,8 @@ pub struct Friction<const D: usize> {
     /// Work done on the points of this rank (energy), and what it was when the step began.
     pub work: Exact,
     kept: Exact,
+    /// Who is in each slot, copies too; empty: not looked up yet.
+    ids: Vec<u32>,
     /// Who touches now, of pairs with a point of this rank.
     touching: Vec<Pair<D>>,
     families: Families<D>,
@@ -143,6 +144,27 @@ fn archive_springs<const D: usize>(
     }
 }
 
+/// Who is in each slot; nobody where a point was taken away.
+fn ids_by_slot<const D: usize>(body: &Body<D>) -> Vec<u32> {
+    if body.exchange.is_shared() {
+        return body.ids_of_all().into_owned();
+    }
+    let mut ids = vec![u32::MAX; body.len];
+    (0..)
+        .zip(&body.slots)
+        .for_each(|(id, slot)| ids[*slot as usize] = id);
+    body.exchange.fill(&mut ids);
+    ids
+}
+
+/// The id of who is [called](Body::id_of) so, by those of all slots.
+fn called(ids: &[u32], n: usize) -> u32 {
+    match n.checked_sub(ids.len()) {
+        None => ids[n],
+        Some(id) => id as u32,
+    }
+}
+
 /// The spring of two, in a list that is gone through in order of the ends.
 fn find<'a, const D: usize>(
     all: &mut Peekable<Iter<'a, Spring<D>>>,
@@ -163,6 +185,7 @@ impl<const D: usize> Friction<D> {
             pressed: vec![],
             work: Exact::ZERO,
             kept: Exact::ZERO,
+            ids: vec![],
             touching: vec![],
             families: Families::default(),
             found: 0,
@@ -251,6 +274,24 @@ impl<const D: usize> Friction<D> {
         self.work.clone_from(&self.kept);
     }
 
+    /// Points have these ids now, in the order of those that they had; what is gone touches nobody any more.
+    pub fn renumber(&mut self, moved: &[Option<u32>]) {
+        for all in [&mut self.before, &mut self.now, &mut self.pressed] {
+            all.retain_mut(|spring| {
+                let ends = spring.ends.map(|id| moved[id as usize]);
+                let [Some(one), Some(other)] = ends else {
+                    return false;
+                };
+                spring.ends = [one, other];
+                true
+            });
+        }
+        self.ids.clear();
+        self.touching.clear();
+        self.families = Families::default();
+        self.found = 0;
+    }
+
     /// What it took so far is in the past: nothing is dissipated from here on.
     pub fn forget(&mut self) {
         self.work = Exact::ZERO;
@@ -297,7 +338,10 @@ impl<const D: usize> Friction<D> {
                 Some(_) | None => d - r,
             };
             let normal = y.map(|c| c / r);
-            let [one, other] = pair.ids.map(|id| &ends[&id]);
+            let [one, other] = pair.ids.map(|id| {
+                let place = ends.binary_search_by_key(&id, |(id, _)| *id);
+                &ends[place.expect("who touches is known")].1
+            });
             let together = Spin::together([&one.spin, &other.spin]);
             // what both turn by together is no sliding
             let [turn, turned] = together.map_or([[0.0; D]; 2], |t| {
@@ -374,11 +418,15 @@ impl<const D: usize> Friction<D> {
         body: &Body<D>,
         u: &Field<D>,
     ) {
-        let (id, whose) = (body.id_of(), body.whose());
+        if self.ids.is_empty() {
+            self.ids = ids_by_slot(body);
+        }
+        let (ids, whose) = (&self.ids, body.whose());
+        let id = |n: usize| called(ids, n);
         let touching = &mut self.touching;
         touching.clear();
         let mut push = |mut touch: Touch<D>| {
-            let mut ids = [touch.i, touch.j].map(&id);
+            let mut ids = [touch.i, touch.j].map(id);
             if ids[0] > ids[1] {
                 ids.swap(0, 1);
                 std::mem::swap(&mut touch.i, &mut touch.j);
@@ -390,7 +438,7 @@ impl<const D: usize> Friction<D> {
         self.families.begin();
         let families = &mut self.families;
         interaction.each_broken(body, &mut |i, j, xi| {
-            let ids = [i, j].map(&id);
+            let ids = [i, j].map(id);
             families.tear((i, ids[0]), ids[1], &xi);
             // the other end says it, too, where it is here
             if ids[0] <= ids[1] || whose.place(ids[1]).is_none() {
@@ -404,20 +452,20 @@ impl<const D: usize> Friction<D> {
         self.find_families(contact, interaction, body);
     }
 
-    /// What there is to see of all that touch, by id. All ranks come here at once.
+    /// What there is to see of all that touch, in the order of ids. All ranks come here at once.
     fn ends(
         &mut self,
         body: &Body<D>,
         [u, v]: [&Field<D>; 2],
         from: Option<&Field<D>>,
-    ) -> HashMap<u32, End<D>> {
+    ) -> Vec<(u32, End<D>)> {
         let whose = body.whose();
         let mut ids: Vec<u32> = self.touching.iter().flat_map(|pair| pair.ids).collect();
         ids.sort_unstable();
         ids.dedup();
-        let mut ends = HashMap::with_capacity(ids.len());
-        let mut own = vec![];
-        for id in ids {
+        let shared = body.exchange.is_shared();
+        let (mut ends, mut own) = (Vec::with_capacity(ids.len()), vec![]);
+        for &id in &ids {
             let Some(n) = whose.place(id) else {
                 continue;
             };
@@ -430,21 +478,28 @@ impl<const D: usize> Friction<D> {
                 v: of(v),
                 spin: self.families.spin(body, [u, v], from, id),
             };
-            own.push(Told {
-                id: u64::from(id),
-                volume: end.volume,
-                moved: [end.u, end.from, end.v].map(|x| full(&x)),
-                takes: end.spin.takes,
-                turns: end.spin.turns,
-            });
-            ends.insert(id, end);
+            if shared {
+                own.push(Told {
+                    id: u64::from(id),
+                    volume: end.volume,
+                    moved: [end.u, end.from, end.v].map(|x| full(&x)),
+                    takes: end.spin.takes,
+                    turns: end.spin.turns,
+                });
+            }
+            ends.push((id, end));
         }
-        if !body.exchange.is_shared() {
+        if !shared {
             return ends;
         }
-        for told in body.all_of(&own).concat() {
+        let is_other = |told: &Told| {
+            let id = told.id as u32;
+            whose.place(id).is_none() && ids.binary_search(&id).is_ok()
+        };
+        let others = body.all_of(&own).concat().into_iter().filter(is_other);
+        ends.extend(others.map(|told| {
             let of = |n: usize| crate::array::from_fn(|a| told.moved[n][a]);
-            ends.entry(told.id as u32).or_insert_with(|| End {
+            let end = End {
                 volume: told.volume,
                 u: of(0),
                 from: of(1),
@@ -453,8 +508,10 @@ impl<const D: usize> Friction<D> {
                     takes: told.takes,
                     turns: told.turns,
                 },
-            });
-        }
+            };
+            (told.id as u32, end)
+        }));
+        ends.sort_unstable_by_key(|(id, _)| *id);
         ends
     }
 
@@ -474,16 +531,15 @@ impl<const D: usize> Friction<D> {
         if ids.iter().all(|id| self.families.knows(*id)) {
             return;
         }
-        let id = body.id_of();
         contact.each_listed(|ends| {
-            ids.extend(ends.map(|n| id(contact.called_end(body, n))));
+            ids.extend(ends.map(|n| called(&self.ids, contact.called_end(body, n))));
         });
         // faces of a crack are not listed
         if self.found == contact.builds() {
             ids.extend(self.families.ids());
         }
         self.found = contact.builds();
-        self.families.learn(interaction, body, ids);
+        self.families.learn(interaction, body, &self.ids, ids);
     }
 
     /// The tangents of the last evaluation. What pressure and couples do to them is left out: a couple reaches whole families, and is small beside
@@ -522,6 +578,7 @@ impl<const D: usize> Friction<D> {
         let fields = if self.from.is_some() { 3 } else { 1 };
         8 * D * fields * self.force[0].len()
             + size_of::<Spring<D>>() * springs
+            + 4 * self.ids.capacity()
             + size_of::<Pair<D>>() * self.touching.capacity()
             + self.families.bytes()
     }

@@ -216,11 +216,17 @@ impl<const D: usize> Families<D> {
         known.chain(self.others.keys().copied())
     }
 
-    /// Finds the families of these points (ids) in place of those that it knew.
-    pub fn learn(&mut self, interaction: &dyn Interaction<D>, body: &Body<D>, mut ids: Vec<u32>) {
+    /// Finds the families of these points (ids) in place of those that it knew; `by_slot` says who is in each slot.
+    pub fn learn(
+        &mut self,
+        interaction: &dyn Interaction<D>,
+        body: &Body<D>,
+        by_slot: &[u32],
+        mut ids: Vec<u32>,
+    ) {
         ids.sort_unstable();
         ids.dedup();
-        let (whose, id) = (body.whose(), body.id_of());
+        let whose = body.whose();
         self.known.clear();
         self.others.clear();
         for wanted in ids {
@@ -245,7 +251,7 @@ impl<const D: usize> Families<D> {
             }
             let torn = if state == BondStatus::Whole { 0 } else { now };
             let partner = |slot: usize, xi| Partner {
-                id: id(slot),
+                id: by_slot[slot],
                 slot: slot as u32,
                 xi,
                 torn,
@@ -253,7 +259,7 @@ impl<const D: usize> Families<D> {
             if let Some(own) = (place[i] as usize).checked_sub(1) {
                 known[own].partners.push(partner(j, xi));
             }
-            if let Some(members) = others.get_mut(&id(j)) {
+            if let Some(members) = others.get_mut(&by_slot[j]) {
                 members.push(partner(i, xi.map(|x| -x)));
             }
         });
