@@ -161,6 +161,7 @@ fn own_of_all<const D: usize>(constitutive: &ConstitutiveModels, body: &Body<D>)
             own[p.first + s] = given.get(s).copied().unwrap_or_else(of_material);
         }
     }
+    body.exchange().fill(&mut own);
     own
 }
 
@@ -327,6 +328,7 @@ impl Rules {
             for &s in body.slots() {
                 kind[s as usize] = of(s as usize) as u16;
             }
+            body.exchange().fill(&mut kind);
         }
         let near = self.conducts.then(|| nearness(&self.kinds, horizon));
         let kinds = self.kinds.len();

@@ -5,7 +5,7 @@ use crate::error::BuildError;
 use crate::space::Point;
 use crate::space::face::{NoFace, Site, Sites};
 use crate::space::lattice::{Lattice, LatticeKind};
-use crate::spec::{BodySpec, Carriers, ConditionKind, Members, Spec, TransferKind};
+use crate::spec::{BodySpec, Carriers, ConditionKind, ConditionSpec, Members, Spec, TransferKind};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -153,19 +153,23 @@ impl Faces {
     ///
     /// # Errors
     /// As of [`Faces::areas`].
-    pub fn find<const D: usize>(
+    pub fn find<'a, const D: usize>(
         &mut self,
-        spec: &Spec,
+        spec: &'a Spec,
         body: &Body<D>,
         sets: &[(String, Vec<u32>)],
     ) -> Result<(), BuildError> {
-        let conditions = spec.loading.conditions.iter().enumerate();
-        let tractions = conditions.filter_map(|(n, c)| {
-            let ConditionKind::Traction { area: None, .. } = &c.kind else {
-                return None;
-            };
-            Some((format!("conditions[{n}]"), &c.set))
-        });
+        let of = |path: &'static str, conditions: &'a [ConditionSpec]| {
+            conditions.iter().enumerate().filter_map(move |(n, c)| {
+                let ConditionKind::Traction { area: None, .. } = &c.kind else {
+                    return None;
+                };
+                Some((format!("{path}[{n}]"), &c.set))
+            })
+        };
+        let before =
+            { spec.run.preload.iter() }.flat_map(|p| of("preload.conditions", &p.conditions));
+        let tractions = of("conditions", &spec.loading.conditions).chain(before);
         let spreads = spec.interactions.transfers.iter().flat_map(|t| {
             t.conditions.iter().filter_map(|c| match &c.kind {
                 TransferKind::Flux { area, .. } | TransferKind::Exchange { area, .. } => area
@@ -179,7 +183,7 @@ impl Faces {
             let (slots, _) = body.slots_of(set, sets).map_err(here)?;
             let areas = self.areas(body, set, &slots, None).map_err(here)?;
             self.named.retain(|(name, _)| name != set);
-            self.named.push((set.clone(), areas.into()));
+            self.named.push((set.to_string(), areas.into()));
         }
         Ok(())
     }

@@ -158,7 +158,7 @@ fn sticks<const D: usize>(
 ) -> Result<(), BuildError> {
     let path = format!("{path}.cohesion");
     let spacings = body.slots().iter().map(|s| body.spacing_at(*s as usize));
-    let least = spacings.fold(f64::INFINITY, f64::min);
+    let least = body.least(spacings.fold(f64::INFINITY, f64::min));
     let range = cohesion.range();
     if !(range > 0.0 && range.is_finite()) {
         let message = format!(

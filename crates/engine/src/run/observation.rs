@@ -156,7 +156,7 @@ impl<const D: usize> State for View<'_, D> {
                     id: id[i] as usize,
                     xi: full(&xi),
                     eta: full(&eta),
-                    weight: system.constitutive.at(i).0.weight(&xi, r0),
+                    weight: system.constitutive.at(body, i).weight(&xi, r0),
                     volume: body.volume().at(j),
                     whole: state == BondStatus::Whole,
                 });

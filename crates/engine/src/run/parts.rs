@@ -1,5 +1,6 @@
 //! The bodies of a spec on their way into a model: where their points are, their laws, their bonds.
 
+use super::agreed::agreed;
 use super::calibration::cloud_moments;
 use super::own_horizons::{own_stiffness, strengths};
 use super::reference::{Reference, cell, reference};
@@ -191,7 +192,7 @@ impl Part<'_> {
         if let Some(repulsion) = &mut model.repulsion {
             repulsion.own = own_stiffness(spec, body, &model.contact, model.horizon);
         }
-        model.strength = strengths(spec, body, model.horizon, shelf)?;
+        model.strength = agreed(body, strengths(spec, body, model.horizon, shelf))?;
         Ok(model)
     }
 

@@ -250,7 +250,7 @@ impl<const D: usize> Load<D> {
 
     /// Does it change with displacements, in a way that it tells?
     pub fn has_stiffness(&self) -> bool {
-        !self.named.stiffness.is_empty()
+        matches!(&self.kind, LoadKind::Named(force) if force.stiffness() == Stiffness::Answered)
     }
 
     /// Does it, or may it?

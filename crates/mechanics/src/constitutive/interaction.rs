@@ -75,7 +75,10 @@ impl ConstitutiveModel {
             ))
         };
         let text = formula.source();
+        let (elsewhere, most) = (body.exchange.any(wrong.is_some()), body.most(most));
+        let bonds = body.count(bonds);
         match wrong {
+            None if elsewhere => Err(BuildError::elsewhere(0)),
             Some((r, omega)) => invalid(message![
                 format!("ω = {text} is {} at the bond length ", rounded(omega, 4)),
                 Dimension::LENGTH.of(r),

@@ -8,6 +8,7 @@ pub(crate) mod shelf;
 mod sweeps;
 mod toughness;
 
+use crate::body::Body;
 use crate::condition::toughness::Bears;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
@@ -126,10 +127,9 @@ impl ConstitutiveModels {
         self.of.iter().map(|(_, _, m)| m)
     }
 
-    /// The model of the body that a slot belongs to, and the first slot of that.
-    pub fn at(&self, slot: usize) -> (&ConstitutiveModel, usize) {
-        let n = self.of.partition_point(|(first, _, _)| *first <= slot) - 1;
-        (&self.of[n].2, self.of[n].0)
+    /// The model of the body that the point in a slot belongs to.
+    pub fn at<const D: usize>(&self, body: &Body<D>, slot: usize) -> &ConstitutiveModel {
+        &self.of[body.piece_of(slot)].2
     }
 
     pub fn forget_stencils(&mut self) {

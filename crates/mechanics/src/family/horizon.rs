@@ -80,13 +80,6 @@ impl HorizonList {
                 .help("make the body longer along this axis, or the horizon shorter"));
             }
         }
-        // vector gathers count numbers of four-number records with 31 bits
-        if body.len >= 1 << 29 {
-            return Err(BuildError::too_many(
-                "body",
-                format!("{} points are too many for a list (2²⁹)", body.len),
-            ));
-        }
         let limit = |i: usize, j: u32| {
             let horizon = of(i, j as usize);
             horizon * horizon
@@ -102,7 +95,15 @@ impl HorizonList {
             horizon,
         );
 
-        let laid = count(&cells, body, horizon, &limit).and_then(|(size, near)| {
+        let counted = match body.len < 1 << 29 {
+            true => count(&cells, body, horizon, &limit),
+            // vector gathers count numbers of four-number records with 31 bits
+            false => Err(BuildError::too_many(
+                "body",
+                format!("{} points are too many for a list (2²⁹)", body.len),
+            )),
+        };
+        let laid = counted.and_then(|(size, near)| {
             let (rows, start) = lines(own.clone(), &size);
             affordable(&size, start[start.len() - 1], horizon, body.spacing)?;
             Ok((rows, start, size.iter().map(|s| *s as u64).sum(), near))

@@ -66,6 +66,7 @@ pub struct Contact<const D: usize> {
     /// Of ghosts: rows of the tables, and volumes.
     kinds_there: Vec<u32>,
     volumes_there: Vec<f64>,
+    own_there: Vec<f64>,
     /// `[slots]`: which row of the tables of `repulsion` a point has; empty: that of its material.
     kind: Vec<u16>,
     pairs: Vec<Pair<D>>,
@@ -122,6 +123,7 @@ impl<const D: usize> Contact<D> {
             ghosts: Ghosts::default(),
             kinds_there: vec![],
             volumes_there: vec![],
+            own_there: vec![],
             kind: vec![],
             pairs: vec![],
             near,
@@ -199,6 +201,7 @@ impl<const D: usize> Contact<D> {
         self.bounds.clear();
         self.kinds_there = self.ghosts.ask(|s| self.kind_of(body, s) as u32);
         self.volumes_there = self.ghosts.ask(|s| body.volume.at(s));
+        self.own_there = self.ghosts.ask(|s| self.repulsion.own_at(s));
         for (i, row) in self.neighbours.rows() {
             let (p, ui) = (
                 self.ghosts.position(body, i),
@@ -223,10 +226,18 @@ impl<const D: usize> Contact<D> {
                 self.pairs.push(Pair {
                     base: base(body, &xi, &crate::array::from_fn(|a| uj[a] - ui[a])),
                     distance,
-                    stiffness: self.repulsion.between(materials, [i, j]),
+                    stiffness: self.stiffness(body, materials, [i, j]),
                 });
             }
         }
+    }
+
+    fn stiffness(&self, body: &Body<D>, materials: [usize; 2], ends: [usize; 2]) -> f64 {
+        let own = ends.map(|n| match n.checked_sub(body.len) {
+            None => self.repulsion.own_at(n),
+            Some(ghost) => self.own_there[ghost],
+        });
+        self.repulsion.of_both(materials, own)
     }
 
     /// Rows of the tables of repulsion.

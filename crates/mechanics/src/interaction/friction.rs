@@ -13,7 +13,8 @@
 
 use super::contact::{Contact, Touch};
 use super::coulomb::{Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped};
-use super::spin::{Families, Spin};
+
+use super::spin::{Families, Spin, in_order};
 use super::{BondTangent, EachTangent, Evaluation, Interaction};
 use crate::body::{Body, Field, zeros};
 use crate::execute::exact::Exact;
@@ -448,7 +449,10 @@ impl<const D: usize> Friction<D> {
                     .for_each(&mut push);
             }
         });
-        self.touching.sort_by_key(|pair| pair.ids);
+        // two may touch more than once, by their images: in one order, whichever of them is here
+        let by_image = |a: &Pair<D>, b: &Pair<D>| in_order(&a.touch.y, &b.touch.y);
+        self.touching
+            .sort_by(|a, b| a.ids.cmp(&b.ids).then_with(|| by_image(a, b)));
         self.find_families(contact, interaction, body);
     }
 

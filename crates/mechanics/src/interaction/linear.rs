@@ -14,6 +14,7 @@ use crate::body::{
 };
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
+use crate::execute::exact::Exact;
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::{Links, Tile, Tiles};
@@ -292,9 +293,12 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
-        let mut sum = self.energies(body, u, Shared::NULL);
-        self.each_growth_energy(body, u, |i, energy| sum += body.volume.at(i) * energy);
-        [sum, 0.0]
+        let mut growth = Exact::ZERO;
+        self.each_growth_energy(body, u, |i, energy| {
+            growth.add(body.volume.at(i) * energy);
+        });
+        let [growth] = body.sums([growth]);
+        [self.energies(body, u, Shared::NULL) + growth, 0.0]
     }
 
     unsafe fn observe_unchecked(

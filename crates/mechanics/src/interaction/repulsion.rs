@@ -103,11 +103,20 @@ impl Repulsion {
 
     /// K of two points: that of their materials, or of each in series.
     pub fn between(&self, materials: [usize; 2], slots: [usize; 2]) -> f64 {
-        let own = |s: usize| self.own.get(s).copied().unwrap_or(0.0);
+        self.of_both(materials, slots.map(|s| self.own_at(s)))
+    }
+
+    /// The same of what [each has itself](Self::own_at).
+    pub fn of_both(&self, materials: [usize; 2], [a, b]: [f64; 2]) -> f64 {
         match self.own.is_empty() {
             true => self.of(materials),
-            false => in_series(own(slots[0]), own(slots[1])),
+            false => in_series(a, b),
         }
+    }
+
+    /// What a point has itself.
+    pub fn own_at(&self, slot: usize) -> f64 {
+        self.own.get(slot).copied().unwrap_or(0.0)
     }
 
     /// Coefficient of the way `y` from one point to another, away from each other: `K V (r − d)/r` below the distance d, else 0;

@@ -13,6 +13,7 @@ use crate::body::{Body, Field};
 use crate::law::material::tensor::{Matrix, inverse_within, product, times};
 use crate::space::{Point, cross, dot, full};
 use bytemuck::{Pod, Zeroable};
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// The part of the largest moment of inertia below which a family is a row: forces with shorter arms would be great, and stiff.
@@ -169,6 +170,16 @@ impl Spin {
     }
 }
 
+/// Of vectors, component by component.
+pub(super) fn in_order<const D: usize>(a: &[f64; D], b: &[f64; D]) -> Ordering {
+    // −0 is 0: one end sees it so, the other so
+    let each = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| (a + 0.0).total_cmp(&(b + 0.0)));
+    each.fold(Ordering::Equal, Ordering::then)
+}
+
 /// Of such partners that nearest to ξ is not bonded now: a point may be a partner more than once, by its images.
 fn mark<const D: usize>(
     partners: &mut [Partner<D>],
@@ -264,8 +275,9 @@ impl<const D: usize> Families<D> {
             }
         });
         let all = known.iter_mut().map(|k| &mut k.partners);
-        all.chain(others.values_mut())
-            .for_each(|partners| partners.sort_by_key(|p| p.id));
+        all.chain(others.values_mut()).for_each(|partners| {
+            partners.sort_by(|a, b| a.id.cmp(&b.id).then_with(|| in_order(&a.xi, &b.xi)));
+        });
     }
 
     /// The spin of a point of this rank at displacements u and velocities v, and since displacements `from`.

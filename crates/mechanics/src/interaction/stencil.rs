@@ -169,6 +169,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn look_bits(&mut self) {
+        // a bond that is there again has a point that knows no limit
+        self.settled = false;
         self.look();
     }
 

@@ -6,6 +6,7 @@ use crate::error::BuildError;
 use crate::family::nodes::Nodes;
 use crate::interaction::longest_term;
 use crate::quantity::Warnings;
+use crate::run::agreed::agreed;
 use crate::run::faces::Faces;
 use crate::run::feasible::enough_memory;
 use crate::run::names::Names;
@@ -109,7 +110,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             let beside = interfaces::ends(spec, &body)?;
             body = body.subdomain_beside(ranks, halo(spec, &body, horizon), &beside);
             cut(&mut names, &body);
-            enough(spec, &parts, &body)?;
+            agreed(&body, enough(spec, &parts, &body))?;
         }
         Ok(Bodies {
             parts,

@@ -446,7 +446,7 @@ pub fn build(
     options: Options,
     comm: &Arc<Comm>,
 ) -> Result<Option<Box<dyn Simulation>>, BuildError> {
-    possible(spec, options.simd)?;
+    agreed_among(comm, possible(spec, options.simd))?;
     match spec.space.dimension {
         1 => built::<1>(spec, options, comm),
         2 => built::<2>(spec, options, comm),

@@ -55,7 +55,7 @@ impl<const D: usize> System<D> {
                 },
                 seen.as_mut(),
             );
-            self.fault = tally.fault.take();
+            self.fault = self.known_to_all(tally.fault.take());
             self.accounts.swept += tally;
             self.take_heat_of_flow();
         } else {

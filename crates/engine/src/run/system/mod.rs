@@ -23,8 +23,9 @@ use crate::condition::constraint::Constraint;
 use crate::condition::prescribed_motion::PrescribedMotion;
 use crate::condition::toughness::ToughnessField;
 use crate::constitutive::ConstitutiveModels;
-use crate::interaction::{ContactForces, Fault, Interaction, PointEnergies};
+use crate::interaction::{ContactForces, Interaction, PointEnergies};
 use crate::observe::Observed;
+use crate::run::accounts::KnownFault;
 use crate::spec::Release;
 use crate::transfer::Transfer;
 
@@ -59,7 +60,7 @@ pub(super) struct System<const D: usize> {
     /// Has somebody had enough of a search for an equilibrium?
     pub stop: fn() -> bool,
     /// The last forces mean nothing.
-    pub fault: Option<Fault>,
+    pub fault: Option<KnownFault>,
     /// The linear body about a reference in which bonds pull, where somebody asked for it.
     pub stressed: Option<Stressed<D>>,
     /// What its states mean under the stepper that moves it.

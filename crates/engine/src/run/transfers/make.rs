@@ -115,7 +115,7 @@ impl<const D: usize> Maker<'_, D> {
         let slots = places.here();
         let of = |slot: usize| &t.materials[body.material_of(slot)];
         let weight = |slot: usize, xi: &[f64], r: f64| {
-            let model = self.system.constitutive.at(slot).0;
+            let model = self.system.constitutive.at(body, slot);
             let own = body.horizons().get(slot);
             model.weight_within(own.copied().unwrap_or(model.horizon), xi, r)
         };

@@ -231,6 +231,7 @@ fn fan_of<F: fan::Described>(given: &Given, body: &Body<3>) -> Result<F, Wrong> 
     let known = fan.table().kinds();
     let kinds = body.slots.iter().map(|s| body.material_of(*s as usize));
     let found = kinds.max().map_or(0, |k| k + 1);
+    let found = body.most(found as f64) as usize;
     if found > known {
         let message = format!(
             "{} knows {known} kinds of atom, the body has {found}",

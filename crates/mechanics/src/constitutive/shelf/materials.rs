@@ -416,7 +416,10 @@ impl Chosen {
             true => numbers.iter().map(|n| self.materials[*n].held).collect(),
             false => vec![],
         };
-        let unfit = |(slot, why): (usize, String)| {
+        let unfit = |wrong: Option<(usize, String)>| {
+            let Some((slot, why)) = wrong else {
+                return BuildError::elsewhere(0);
+            };
             let n = match numbers[..] {
                 [one] => one,
                 _ => body.material_of(slot),

@@ -256,19 +256,19 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
 
     fn cut(&mut self, body: &Body<D>, kind: CrackKind, crosses: &Crosses<D>) -> u64 {
         let count = |all: &Self| {
-            let (mut all_of, mut whole) = (0, 0);
+            let mut whole = 0;
             all.each_bond(body, &mut |_, _, _, state| {
-                all_of += 2;
                 whole += 2 * u64::from(state == BondStatus::Whole);
             });
-            [all_of, whole]
+            whole
         };
-        let [_, before] = count(self);
+        let before = count(self);
         for part in &mut self.parts {
             part.cut(body, kind, crosses);
         }
-        let [family, left] = count(self);
-        self.broken = family - left;
+        let left = count(self);
+        // bonds that were never there are none of the broken ones
+        self.count_broken(body);
         before - left
     }
 
@@ -293,10 +293,12 @@ impl<const D: usize, P: Interaction<D> + ?Sized> Interaction<D> for Together<D, 
         for part in &mut self.parts {
             archive.within("part", |archive| part.archive(body, archive));
         }
-        archive.one("broken", &mut self.broken);
         if let Some(union) = &mut self.union {
             let (list, simd) = (&mut union.list, union.simd);
             archive.within("union", |archive| list.archive(body, simd, archive));
+        }
+        if archive.loads() {
+            self.count_broken(body);
         }
     }
 

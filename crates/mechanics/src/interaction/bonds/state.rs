@@ -171,22 +171,28 @@ pub(super) fn all_whole<const D: usize, F: Family<D>>(family: &F) -> (Vec<u8>, u
 /// Constants of every point, as `of` a material and a place says them.
 ///
 /// # Errors
-/// The slot whose place has none, and why.
+/// The slot whose place has none, and why; `None`: one of another rank. All ranks come here at once.
 pub fn placed<const D: usize, F: Family<D>>(
     family: &F,
     body: &Body<D>,
     count: usize,
     of: &dyn Fn(usize, &Point, &mut [f64]) -> Result<(), String>,
-) -> Result<Store, (usize, String)> {
+) -> Result<Store, Option<(usize, String)>> {
     let mut all = Store::zeros(family.layout(count));
-    let mut numbers = vec![0.0; count];
+    let (mut numbers, mut wrong) = (vec![0.0; count], None);
     for &s in &body.slots {
         let slot = s as usize;
         let (material, place) = (body.material_of(slot), body.position(slot));
-        of(material, &place, &mut numbers).map_err(|why| (slot, why))?;
+        if let Err(why) = of(material, &place, &mut numbers) {
+            wrong = Some((slot, why));
+            break;
+        }
         for (n, x) in numbers.iter().enumerate() {
             all.set(n, slot, *x);
         }
+    }
+    if body.exchange.any(wrong.is_some()) {
+        return Err(wrong);
     }
     all.fill(&body.exchange);
     Ok(all)
@@ -218,7 +224,9 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         // fused sweeps look at broken bonds that repel, too, and tear what they find themselves
         let criticals = breaks || law.fused && repulsion.is_some();
         let found = breaks && !law.fused;
-        let bonds = |is: bool, x: f64| vec![x; if is { family.memory() } else { 0 }];
+        // of a rank without bonds, too: by what there is one knows what bonds have
+        let room = family.memory().max(TILE);
+        let bonds = |is: bool, x: f64| vec![x; if is { room } else { 0 }];
         let column = |is: bool, x: f64| match is {
             true => Column::new(body.len, x, field::line(3)),
             false => Column::default(),
@@ -250,7 +258,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             form: store(law.form),
             point: store(law.point),
             past: store(law.past),
-            memory: vec![0.0; family.memory() * law.memory],
+            memory: vec![0.0; room * law.memory],
             critical: critical(),
             next: critical(),
             damage: column(fails, 0.0),

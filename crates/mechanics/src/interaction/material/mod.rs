@@ -102,12 +102,12 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     /// The law is put on the family by `on`.
     ///
     /// # Errors
-    /// The slot whose place has no constants, and why.
+    /// As of [`placed`](crate::interaction::bonds::state::placed).
     pub fn new(
         parts: BondParts<D, F>,
         law: Arc<dyn AnyLaw<D>>,
         on: fn(Arc<dyn AnyLaw<D>>) -> Arc<dyn LawSweeps<D, F>>,
-    ) -> Result<Self, (usize, String)> {
+    ) -> Result<Self, Option<(usize, String)>> {
         let of = law.clone().properties();
         let placed = match law.is_placed() {
             false => Store::zeros(parts.family.layout(0)),
