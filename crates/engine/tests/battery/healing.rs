@@ -397,3 +397,41 @@ fn what_heals_after_statics_moves_as_what_was_never_cut() {
         }
     }
 }
+
+/// The only bond of two points, which heals: its ends had nobody left, and bear no more than at first.
+#[test]
+fn the_last_bond_of_two_points_breaks_again() {
+    for (law, family) in laws() {
+        let body = BodySpec::Lattice {
+            kind: LatticeKind::Square,
+            spacing: 1.0,
+            origin: [0.0; 3],
+            region: Region::Block {
+                low: [0.0; 3],
+                high: [1.0, 0.0, 0.0],
+            },
+            perturb: None,
+        };
+        let mut spec = Spec::new(2, body, 1.0, law);
+        spec.bonds.family = family;
+        spec.bonds.horizon = Horizon::Ratio(1);
+        spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
+        heals(&mut spec, "0.02");
+        spec.loading.conditions = vec![ConditionSpec {
+            set: "all".into(),
+            kind: ConditionKind::Displacement([
+                Some(e("x > 0.5 ? 0.4*sin(pi*t)^2 : 0")),
+                Some(e("0")),
+                None,
+            ]),
+        }];
+        spec.run.schedule.time_step = TimeStep::Fixed(0.01);
+        let mut sim = started(&spec);
+        let mut pieces = vec![];
+        for _ in 0..4 {
+            (0..50).for_each(|_| sim.step().unwrap());
+            pieces.push(sim.fragments());
+        }
+        assert_eq!(pieces, [2, 1, 2, 1], "{family:?}");
+    }
+}

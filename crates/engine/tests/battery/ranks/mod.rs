@@ -1,5 +1,6 @@
 //! Ranks that share a body: the same bits as one that has all of it.
 
+mod alone;
 mod atoms;
 mod friction;
 mod heat;

@@ -1,0 +1,184 @@
+//! What one rank meets alone, and all must know: states without an answer, mistakes, bodies of which it has nothing.
+
+use super::heat::spreading;
+use super::{among, colliding, meeting, options, place, same, scattered, shelf, torn};
+use crate::atoms::{atoms, potentials};
+use crate::sample::*;
+use peridyne::error::{BuildErrorKind, RunError};
+use peridyne::run::ranks::{AllRanks, RankModel};
+use peridyne::run::{Simulation, build_in};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::*;
+use peridyne_comm::on_threads;
+use std::sync::Arc;
+
+fn square() -> Place {
+    place(LatticeKind::Square)
+}
+
+/// Why forces mean nothing, of a model that begins so.
+fn fault(sim: &mut dyn Simulation) -> [Option<RunError>; 2] {
+    sim.start(true);
+    let first = sim.ledger().err();
+    [first, (0..3).find_map(|_| sim.step().err())]
+}
+
+/// A chain of atoms that have gone through each other where the last rank has them.
+#[test]
+fn a_state_without_an_answer_is_known_to_all() {
+    let (_, potential) = &potentials()[1];
+    let mut spec = atoms(
+        LatticeKind::Chain,
+        1200,
+        potential,
+        FamilyChoice::Stencil,
+        false,
+    );
+    spec.loading.initial = vec![InitialSpec {
+        set: "all".into(),
+        displacement: [Some(e("x > 1150 && x < 1151 ? 1.7 : 0")), None, None],
+        velocity: [const { None }; 3],
+    }];
+    let mut one = build_in::<1>(&spec, options(None), &shelf()).unwrap();
+    let one = fault(&mut one);
+    assert!(
+        matches!(one[0], Some(RunError::Crossing { .. })),
+        "{:?}",
+        one[0]
+    );
+    let all = on_threads(3, |comm| {
+        let comm = Arc::new(comm);
+        let own = RankModel::<1>::new(&spec, options(None), &shelf(), &comm).unwrap();
+        match comm.rank() {
+            0 => Some(fault(&mut AllRanks::new(own))),
+            _ => {
+                own.follow();
+                None
+            }
+        }
+    });
+    assert_eq!(all[0], Some(one));
+}
+
+/// Of a law whose direction is none at the places of one rank.
+#[test]
+fn a_mistake_in_a_law_is_known_to_all() {
+    let kinds = |spec: &Spec| {
+        on_threads(3, |comm| {
+            let made = RankModel::<2>::new(spec, options(None), &shelf(), &Arc::new(comm));
+            made.err().map(|e| e.kind)
+        })
+    };
+    let found = |kinds: Vec<Option<BuildErrorKind>>| {
+        let invalid = kinds
+            .iter()
+            .filter(|k| **k == Some(BuildErrorKind::Invalid));
+        assert!(invalid.count() >= 1, "{kinds:?}");
+        assert!(kinds.iter().all(Option::is_some), "{kinds:?}");
+    };
+    let case = Case::of("wound", square());
+    let mut spec = case.spec();
+    for material in &mut spec.materials {
+        if let LawSpec::Named(law) = &mut material.law {
+            let nowhere = ["abs(x) + max(20 - y, 0)", "0", "0"].map(e);
+            law.parameters.set("fibre", Parameter::Direction(nowhere));
+        }
+    }
+    found(kinds(&spec));
+}
+
+/// Contact of points with horizons of their own, and of bodies of unlike materials, with friction between faces of cracks.
+#[test]
+fn what_copies_repel_by_is_theirs() {
+    let mut spec = meeting(&Case::of("pmb", square()), false);
+    scattered(&mut spec);
+    let Horizon::Length(longest) = spec.bonds.horizon else {
+        panic!("a length");
+    };
+    spec.bonds.own_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
+    spec.bonds.calibration = Calibration::Continuum;
+    same::<2>(&spec, &[2, 3], None);
+
+    let mut spec = colliding(&Case::of("pmb", square()));
+    let soft = MaterialSpec {
+        name: "soft".into(),
+        set: "soft".into(),
+        law: LawSpec::Pmb(PmbStiffness::Young(1.0)),
+        ..spec.materials[0].clone()
+    };
+    spec.materials.push(soft);
+    spec.sets.push(SetSpec {
+        name: "soft".into(),
+        members: Members::Where(e("y > 12 || x > 22")),
+    });
+    let contact = spec.interactions.contact.as_mut().unwrap();
+    contact.cohesion = None;
+    contact.friction = Some(FrictionSpec::constant(0.4));
+    assert!(same::<2>(&spec, &[2, 3], None));
+}
+
+/// Ranks beyond the blocks of a cloud whose bonds break by work, and what they say of it.
+#[test]
+fn ranks_without_bonds_know_what_bonds_have() {
+    let mut case = Case::of("pmb", square());
+    case.place.cells = [20, 20, 1];
+    let mut spec = torn(&case, false);
+    scattered(&mut spec);
+    for material in &mut spec.materials {
+        material.fracture = Some(FractureSpec::new(Criterion::BondEnergy(1e-5)));
+    }
+    assert!(same::<2>(&spec, &[4], None));
+    let (_, all) = among::<2>(&spec, 4, None, None);
+    assert!(all.columns.contains_key("critical_bond_work"));
+}
+
+/// Springs that expand hold energy by that.
+#[test]
+fn springs_expand_on_any_number_of_ranks() {
+    let case = Case::of("pmb", square());
+    let mut spec = torn(&case, false);
+    super::faced(&mut spec, &case);
+    let LawSpec::Pmb(stiffness) = spec.materials[0].law.clone() else {
+        panic!("pmb");
+    };
+    spec.materials[0].law = LawSpec::Springs(stiffness);
+    spec.materials[0].fracture = None;
+    spec.interactions.transfers = vec![spreading(
+        Quantity::Heat,
+        TransferMethod::Explicit { safety: 0.5 },
+        0.02,
+    )];
+    same::<2>(&spec, &[2, 3], None);
+}
+
+/// A traction that acts in statics before motion, on the face of a body whose points have moved from their sites.
+#[test]
+fn tractions_of_statics_before_motion_have_the_areas_of_the_whole() {
+    let case = Case::of("pmb", square());
+    let mut spec = torn(&case, false);
+    spec.materials[0].fracture = None;
+    super::faced(&mut spec, &case);
+    let on = |set: &str, kind| ConditionSpec {
+        set: set.into(),
+        kind,
+    };
+    let zero = || Some(e("0"));
+    spec.run.preload = Some(PreloadSpec {
+        statics: Statics::default(),
+        increments: 1,
+        duration: None,
+        conditions: vec![
+            on("low", ConditionKind::Displacement([zero(), zero(), None])),
+            on(
+                "high",
+                ConditionKind::Traction {
+                    value: [zero(), Some(e("0.01*t")), zero()],
+                    area: None,
+                },
+            ),
+        ],
+        indenters: vec![],
+        cuts: vec![],
+    });
+    same::<2>(&spec, &[2, 3], None);
+}
