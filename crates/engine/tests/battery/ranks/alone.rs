@@ -99,18 +99,8 @@ fn what_copies_repel_by_is_theirs() {
     spec.bonds.calibration = Calibration::Continuum;
     same::<2>(&spec, &[2, 3], None);
 
-    let mut spec = colliding(&Case::of("pmb", square()));
-    let soft = MaterialSpec {
-        name: "soft".into(),
-        set: "soft".into(),
-        law: LawSpec::Pmb(PmbStiffness::Young(1.0)),
-        ..spec.materials[0].clone()
-    };
-    spec.materials.push(soft);
-    spec.sets.push(SetSpec {
-        name: "soft".into(),
-        members: Members::Where(e("y > 12 || x > 22")),
-    });
+    let mut spec = colliding(&Case::of("pmb mixed", square()));
+    breaking(&mut spec, 0.005);
     let contact = spec.interactions.contact.as_mut().unwrap();
     contact.cohesion = None;
     contact.friction = Some(FrictionSpec::constant(0.4));
@@ -164,7 +154,10 @@ fn tractions_of_statics_before_motion_have_the_areas_of_the_whole() {
     };
     let zero = || Some(e("0"));
     spec.run.preload = Some(PreloadSpec {
-        statics: Statics::default(),
+        statics: Statics {
+            method: Method::Newton,
+            ..Statics::default()
+        },
         increments: 1,
         duration: None,
         conditions: vec![
