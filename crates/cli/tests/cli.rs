@@ -277,8 +277,17 @@ fn what_ranks_cannot_share_is_told_once_and_writes_nothing() {
         "did you mean `m_ratio`?",
     );
     refused(BLOCK, &["--threads", "0"], "at least one thread must run");
-    let rubbing = BLOCK.replace("contact = false", "contact = { friction = 0.3 }");
-    refused(&rubbing, &[], "ranks do not share friction of contact");
+    let smoothed = r#"
+        units = "lj"
+        periodic = ["x", "y", "z"]
+        family = "reference"
+        horizon = 2.5
+        smooth = { kernel = "polynomial", smoothness = 5, width = 4, spacing = 1.57 }
+        body = { lattice = "fcc", spacing = 1.57, cells = [6, 4, 4] }
+        material = { mass = 1, law = { lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5, end = "shifted_force" } } }
+        run = { steps = 2, time_step = 0.001 }
+    "#;
+    refused(smoothed, &[], "ranks do not share fields on nodes");
     // where one rank has its points
     let nowhere = r#"initial=[{ velocity = { x = "1 mm^2/s / max(z - 4 mm, 0 mm)" } }]"#;
     refused(BLOCK, &["--set", nowhere], "is inf at");

@@ -5,38 +5,11 @@ pub(super) mod state;
 use super::system::System;
 use crate::body::view;
 use crate::condition::driven::Driven;
-use crate::constitutive::{ConstitutiveModel, Laws};
+use crate::constitutive::Laws;
 use crate::error::RunError;
 use crate::execute::exact::Exact;
-use crate::interaction::{BondStatus, Fault};
+use crate::interaction::BondStatus;
 use crate::observe::Ledger;
-use crate::space::Point;
-
-/// Why forces mean nothing, with points by their numbers among those of all ranks.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct KnownFault {
-    first: u64,
-    /// Of two that went through each other; else 0, and the first has this density at this place.
-    second: u64,
-    position: Point,
-    density: f64,
-}
-
-impl KnownFault {
-    fn words(self) -> [u64; 6] {
-        let [x, y, z] = self.position.map(f64::to_bits);
-        [self.first, self.second, x, y, z, self.density.to_bits()]
-    }
-
-    fn of([first, second, x, y, z, density]: [u64; 6]) -> KnownFault {
-        KnownFault {
-            first,
-            second,
-            position: [x, y, z].map(f64::from_bits),
-            density: f64::from_bits(density),
-        }
-    }
-}
 
 impl<const D: usize> System<D> {
     /// Energies of a state with whole velocities.
@@ -122,7 +95,7 @@ impl<const D: usize> System<D> {
     /// The balance now, or why the run cannot be trusted.
     pub(super) fn balance(&mut self) -> Result<Ledger, RunError> {
         if let Some(fault) = self.fault {
-            return Err(self.explained(fault));
+            return Err(fault.explained(self.clock.step()));
         }
         let ledger = self.energy_now();
         if let Some((i, j)) = self.crossed_chain() {
@@ -178,49 +151,6 @@ impl<const D: usize> System<D> {
     }
 
     /// A fault of the last forces, with point ids.
-    /// A state that a law of any rank has no answer to, as the one with the first point says it; all ranks ask at once.
-    pub(super) fn known_to_all(&self, own: Option<Fault>) -> Option<KnownFault> {
-        let body = &self.body;
-        let told = own.map(|fault| match fault {
-            Fault::Crossing { i, j } => KnownFault {
-                first: body.number(i),
-                second: body.number(j),
-                ..KnownFault::default()
-            },
-            Fault::Density { slot, density } => {
-                let x = body.position(slot);
-                let moved = |a: usize| if a < D { self.u[a][slot] } else { 0.0 };
-                KnownFault {
-                    first: body.number(slot),
-                    position: crate::array::from_fn(|a| x[a] + moved(a)),
-                    density,
-                    ..KnownFault::default()
-                }
-            }
-        });
-        // no other law has such states
-        let atoms = |m: &ConstitutiveModel| matches!(m.laws, Laws::Atoms(_));
-        if !self.constitutive.all().any(atoms) || !body.exchange().any(told.is_some()) {
-            return told;
-        }
-        let all = body.all_of(&[told.unwrap_or_default().words()]).concat();
-        let found = all.into_iter().filter(|words| words[0] > 0);
-        found.min_by_key(|words| words[0]).map(KnownFault::of)
-    }
-
-    pub(super) fn explained(&self, fault: KnownFault) -> RunError {
-        let (step, id) = (self.clock.step(), fault.first);
-        match fault.second {
-            0 => RunError::Density {
-                step,
-                id,
-                position: fault.position,
-                density: fault.density,
-            },
-            j => RunError::Crossing { step, i: id, j },
-        }
-    }
-
     fn crossed_chain(&self) -> Option<(u64, u64)> {
         if D != 1 {
             return None;

@@ -17,6 +17,7 @@ mod contact;
 mod equilibrium;
 mod examined;
 mod faces;
+mod fault;
 mod feasible;
 mod gaps;
 mod healing;

@@ -12,7 +12,7 @@ const MIDDLE: &[(&str, &str, [usize; 3])] = &[
     (
         "system/mod.rs",
         "impl<const D: usize> System<D> {",
-        [22, 105, 25],
+        [22, 104, 25],
     ),
     ("names.rs", "impl<const D: usize> Names<D> {", [5, 4, 2]),
     ("stages.rs", "impl<const D: usize> Stages<D> {", [3, 4, 1]),

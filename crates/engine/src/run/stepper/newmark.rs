@@ -80,7 +80,7 @@ impl<const D: usize> Stepper<D> for NewmarkStepper<D> {
         let moved = self.advance(system);
         let error = match (moved, system.fault) {
             (Err(error), _) => Some(not_solved(system, error)),
-            (Ok(()), Some(fault)) => Some(system.explained(fault)),
+            (Ok(()), Some(fault)) => Some(fault.explained(system.clock.step())),
             (Ok(()), None) => None,
         };
         if let Some(error) = error {

@@ -151,7 +151,7 @@ impl<const D: usize> SplitStep<D> for VelocityVerlet {
         system.heal(t);
         system.forces(true, system.clock.step_end());
         if let Some(fault) = system.fault {
-            let error = system.explained(fault);
+            let error = fault.explained(system.clock.step());
             system.retreat_transfers();
             system.acting_retreat();
             self.step_back(system);

@@ -2,9 +2,11 @@
 
 use super::System;
 use crate::body::{Field, view, view_mut};
+use crate::constitutive::{ConstitutiveModel, Laws};
 use crate::interaction::friction::Pressed;
 use crate::interaction::{Evaluation, Sweep};
 use crate::run::Watched;
+use crate::run::fault::KnownFault;
 
 impl<const D: usize> System<D> {
     /// All forces at the current displacements, no bond breaking.
@@ -55,7 +57,14 @@ impl<const D: usize> System<D> {
                 },
                 seen.as_mut(),
             );
-            self.fault = self.known_to_all(tally.fault.take());
+            let own = tally.fault.take();
+            let own = own.map(|fault| KnownFault::of(fault, &self.body, &self.u));
+            // no other law has such states
+            let atoms = |m: &ConstitutiveModel| matches!(m.laws, Laws::Atoms(_));
+            self.fault = match self.constitutive.all().any(atoms) {
+                true => KnownFault::of_all(own, &self.body),
+                false => own,
+            };
             self.accounts.swept += tally;
             self.take_heat_of_flow();
         } else {

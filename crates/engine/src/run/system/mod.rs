@@ -25,7 +25,7 @@ use crate::condition::toughness::ToughnessField;
 use crate::constitutive::ConstitutiveModels;
 use crate::interaction::{ContactForces, Interaction, PointEnergies};
 use crate::observe::Observed;
-use crate::run::accounts::KnownFault;
+use crate::run::fault::KnownFault;
 use crate::spec::Release;
 use crate::transfer::Transfer;
 
