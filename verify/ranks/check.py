@@ -34,6 +34,8 @@ ASKED = {
     "implicit_crack": (["run.duration=\"12 us\""], 5, 1),
     "lennard_jones_liquid": ([], 120, 0),
     "silicon_torn": (["run.steps=600"], 350, 10),
+    "braking_block": ([], 90, 0),
+    "glued_solids": ([], 20, 10),
 }
 # a run that is killed: as the first one, with a state every fifth of a second
 KILLED = ["--set", "body.spacing=1 mm", "--set", "run.steps=400", "--set", "output.every=150", "--set", 'output.checkpoint={ every = "0.2 s", keep = 2 }']

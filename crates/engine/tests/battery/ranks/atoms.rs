@@ -267,9 +267,9 @@ fn atoms_in_equilibrium_have_the_same_bits_on_any_number_of_ranks() {
     ];
     let methods = [Method::Newton, Method::Relaxation, Method::Fire];
     for (n, mut spec) in specs.into_iter().enumerate() {
-        // that one is not stable there
-        let known = methods.iter().filter(|m| n < 3 || **m != Method::Newton);
-        for &method in known {
+        // two of the three in turn; the last is not stable where Newton's method would look
+        let left_out = methods[if n < 3 { n } else { 0 }];
+        for method in methods.into_iter().filter(|m| *m != left_out) {
             spec.title = format!("{n} {method:?}");
             spec.sets.push(SetSpec {
                 name: "held".into(),
