@@ -135,7 +135,7 @@ fn pressed(case: &Case, statics: Statics) -> Spec {
             _ => None,
         })),
     };
-    spec.loading.conditions = vec![moved("foot", "0", "0"), moved("head", "-0.4*t", "0.2*t")];
+    spec.loading.conditions = vec![moved("foot", "0", "0"), moved("head", "-0.2*t", "0.1*t")];
     spec.run.schedule = Schedule {
         steps: 2,
         time_step: TimeStep::Fixed(0.5),
