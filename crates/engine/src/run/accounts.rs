@@ -150,7 +150,7 @@ impl<const D: usize> System<D> {
         }))
     }
 
-    /// A fault of the last forces, with point ids.
+    /// Neighbours of a chain of solids that went through each other, the first of all ranks: numbers of both points.
     fn crossed_chain(&self) -> Option<(u64, u64)> {
         if D != 1 {
             return None;

@@ -87,9 +87,9 @@ fn a_mistake_in_a_law_is_known_to_all() {
     found(kinds(&spec));
 }
 
-/// Contact of points with horizons of their own, and of bodies of unlike materials, with friction between faces of cracks.
+/// Contact of points with horizons of their own, which repel by what they are bonded with.
 #[test]
-fn what_copies_repel_by_is_theirs() {
+fn what_ghosts_repel_by_is_theirs() {
     let mut spec = meeting(&Case::of("pmb", square()), false);
     scattered(&mut spec);
     let Horizon::Length(longest) = spec.bonds.horizon else {
@@ -98,7 +98,11 @@ fn what_copies_repel_by_is_theirs() {
     spec.bonds.own_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
     spec.bonds.calibration = Calibration::Continuum;
     same::<2>(&spec, &[2, 3], None);
+}
 
+/// Bodies of unlike materials, with friction between the faces of their cracks.
+#[test]
+fn what_copies_repel_by_is_theirs() {
     let mut spec = colliding(&Case::of("pmb mixed", square()));
     breaking(&mut spec, 0.005);
     let contact = spec.interactions.contact.as_mut().unwrap();

@@ -1,5 +1,6 @@
 //! Friction of points that ranks share: who touches, how it turns, and what sticks.
 
+use super::interfaces::moved;
 use super::{STEPS, colliding, meeting, options, place, same, scattered, shelf};
 use crate::sample::*;
 use peridyne::run::build_with;
@@ -108,9 +109,6 @@ fn pressed(case: &Case, statics: Statics) -> Spec {
         panic!("several bodies");
     };
     pieces.truncate(2);
-    let (d, last) = (case.d(), case.d() - 1);
-    let axis = ["x", "y", "z"][last];
-    let top = case.place.cells[last] as f64 * H;
     for material in &mut spec.materials {
         material.fracture = None;
     }
@@ -118,24 +116,7 @@ fn pressed(case: &Case, statics: Statics) -> Spec {
     rubbing(&mut spec);
     spec.title = format!("{} {statics:?}", spec.title);
     spec.loading.initial.clear();
-    let set = |name: &str, text: String| SetSpec {
-        name: name.into(),
-        members: Members::Where(e(&text)),
-    };
-    spec.sets.extend([
-        set("foot", format!("{axis} < {}", 1.6 * H)),
-        set("head", format!("{axis} > {}", top + 3.5 * H)),
-    ]);
-    let moved = |set: &str, down: &str, along: &str| ConditionSpec {
-        set: set.into(),
-        kind: ConditionKind::Displacement(std::array::from_fn(|a| match a {
-            _ if a == last => Some(e(down)),
-            0 => Some(e(along)),
-            _ if a < d => Some(e("0")),
-            _ => None,
-        })),
-    };
-    spec.loading.conditions = vec![moved("foot", "0", "0"), moved("head", "-0.2*t", "0.1*t")];
+    moved(&mut spec, case, "0.1*t", "-0.2*t");
     spec.run.schedule = Schedule {
         steps: 2,
         time_step: TimeStep::Fixed(0.5),

@@ -128,13 +128,35 @@ fn heat_crosses_glue_on_any_number_of_ranks() {
     same_of(&spec, &[3]);
 }
 
+/// The foot of the lower of two bodies is held, and the head of the upper one goes along the first axis and the last one.
+pub(super) fn moved(spec: &mut Spec, case: &Case, along: &str, up: &str) {
+    let (d, last) = (case.d(), case.d() - 1);
+    let axis = ["x", "y", "z"][last];
+    let top = case.place.cells[last] as f64 * H;
+    let set = |name: &str, text: String| SetSpec {
+        name: name.into(),
+        members: Members::Where(e(&text)),
+    };
+    spec.sets.extend([
+        set("foot", format!("{axis} < {}", 1.6 * H)),
+        set("head", format!("{axis} > {}", top + 3.5 * H)),
+    ]);
+    let to = |set: &str, along: &str, up: &str| ConditionSpec {
+        set: set.into(),
+        kind: ConditionKind::Displacement(std::array::from_fn(|a| match a {
+            _ if a == last => Some(e(up)),
+            0 => Some(e(along)),
+            _ if a < d => Some(e("0")),
+            _ => None,
+        })),
+    };
+    spec.loading.conditions = vec![to("foot", "0", "0"), to("head", along, up)];
+}
+
 /// Drawn apart, or turned in steps that begin from rest.
 fn drawn(case: &Case, stepper: Stepper, fracture: Option<FractureSpec>) -> Spec {
     let mut spec = glued(case, fracture);
     spec.title = format!("{} {stepper:?}", spec.title);
-    let (d, last) = (case.d(), case.d() - 1);
-    let axis = ["x", "y", "z"][last];
-    let top = case.place.cells[last] as f64 * H;
     for material in &mut spec.materials {
         material.fracture = None;
     }
@@ -145,22 +167,6 @@ fn drawn(case: &Case, stepper: Stepper, fracture: Option<FractureSpec>) -> Spec 
     spec.interactions.interfaces.truncate(1);
     spec.interactions.contact = None;
     spec.loading.initial.clear();
-    let set = |name: &str, text: String| SetSpec {
-        name: name.into(),
-        members: Members::Where(e(&text)),
-    };
-    spec.sets.extend([
-        set("foot", format!("{axis} < {}", 1.6 * H)),
-        set("head", format!("{axis} > {}", top + 3.5 * H)),
-    ]);
-    let moved = |set: &str, up: &str| ConditionSpec {
-        set: set.into(),
-        kind: ConditionKind::Displacement(std::array::from_fn(|a| match a {
-            _ if a == last => Some(e(up)),
-            _ if a < d => Some(e("0")),
-            _ => None,
-        })),
-    };
     let statics = matches!(stepper, Stepper::Statics(_));
     let cycles = matches!(
         stepper,
@@ -174,7 +180,7 @@ fn drawn(case: &Case, stepper: Stepper, fracture: Option<FractureSpec>) -> Spec 
         false if statics => "0.05*t",
         false => "0.1*t",
     };
-    spec.loading.conditions = vec![moved("foot", "0"), moved("head", up)];
+    moved(&mut spec, case, "0", up);
     spec.run.schedule = Schedule {
         steps: 2,
         time_step: TimeStep::Fixed(0.5),
