@@ -6,7 +6,7 @@ use crate::space::Point;
 use crate::space::face::{NoFace, Site, Sites};
 use crate::space::lattice::{Lattice, LatticeKind};
 use crate::spec::{BodySpec, Carriers, ConditionKind, ConditionSpec, Members, Spec, TransferKind};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Part of a spacing by which points may be off the sites of a lattice.
@@ -115,6 +115,9 @@ impl Faces {
         {
             return Ok(areas.to_vec());
         }
+        if body.subdomain().is_some() {
+            return self.areas_of_all(body, set, slots);
+        }
         let mut areas = vec![0.0; slots.len()];
         let ids = match body.pieces() {
             [] => std::iter::once(0..body.points()).collect(),
@@ -149,7 +152,55 @@ impl Faces {
         Ok(areas)
     }
 
-    /// Finds the areas that tractions, fluxes and exchanges act on, of sets of a body that ranks will share.
+    /// The same of a lattice that ranks share: all know all points of a face, and those beside them. All ask at once.
+    fn areas_of_all<const D: usize>(
+        &self,
+        body: &Body<D>,
+        set: &str,
+        slots: &[u32],
+    ) -> Result<Vec<f64>, BuildError> {
+        let [origin @ Origin::On(lattice)] = &self.origins[..] else {
+            return Err(unknown(set, "ranks have parts of it"));
+        };
+        let ids = body.ids_of_all();
+        let point = |slot: &u32| {
+            let (s, [x, y, z]) = (*slot as usize, body.position(*slot as usize));
+            [f64::from(ids[s]), x, y, z, body.volume().at(s)]
+        };
+        let all = |own: Vec<[f64; 5]>| body.all_of(&own).concat();
+        let mut face = all(slots.iter().map(point).collect());
+        face.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let period = quarters(lattice, &body.period());
+        let site = |x: &Point, moved: Site| -> Site {
+            let q = lattice.quarter(x);
+            wrapped(crate::array::from_fn(|a| q[a] + moved[a]), &period)
+        };
+        let members = face
+            .iter()
+            .map(|[_, x, y, z, _]| site(&[*x, *y, *z], [0; 3]));
+        let members: HashSet<Site> = members.collect();
+        // the next ones along the axes are all that matter
+        let is_beside = |slot: &&u32| {
+            let x = body.position(**slot as usize);
+            let mut next = (0..D).flat_map(|a| {
+                [-4, 4].map(|by| crate::array::from_fn(|b| if b == a { by } else { 0 }))
+            });
+            !members.contains(&site(&x, [0; 3])) && next.any(|by| members.contains(&site(&x, by)))
+        };
+        let beside = all(body.slots().iter().filter(is_beside).map(point).collect());
+        let points = face.iter().chain(&beside);
+        let points: Vec<_> = points.map(|[_, x, y, z, v]| ([*x, *y, *z], *v)).collect();
+        let numbers: Vec<usize> = (0..face.len()).collect();
+        let shares = self.shares(origin, body.spacing(), &body.period(), &points, &numbers);
+        let shares = shares.map_err(|why| unknown(set, why))?;
+        let share = |slot: &u32| {
+            let id = f64::from(ids[*slot as usize]);
+            shares[face.partition_point(|of| of[0] < id)]
+        };
+        Ok(slots.iter().map(share).collect())
+    }
+
+    /// Finds the areas that tractions, fluxes and exchanges act on, of sets of a body that ranks share or will share.
     ///
     /// # Errors
     /// As of [`Faces::areas`].
@@ -238,12 +289,7 @@ impl Faces {
             Origin::Given => regular::<D>(spacing, self.section, points)
                 .ok_or("its points come with volumes, and their faces are not known")?,
         };
-        let edges = lattice.kind.edges();
-        let quarters = |a: usize| {
-            let p = (*period.get(a)?)?;
-            Some((4.0 * p / (edges[a] * lattice.spacing)).round() as i32)
-        };
-        let period: [Option<i32>; 3] = crate::array::from_fn(quarters);
+        let period = quarters(&lattice, period);
         let set: Vec<Site> = members.iter().map(|n| sites[*n]).collect();
         // what is further away than a cell does not matter
         let bounds: [(i32, i32); D] = crate::array::from_fn(|a| {
@@ -256,12 +302,9 @@ impl Faces {
                 period[a].is_some() || (low - 4 <= q[a] && q[a] <= high + 4)
             })
         };
-        let wrapped = |q: Site| -> Site {
-            crate::array::from_fn(|a| period[a].map_or(q[a], |p| q[a].rem_euclid(p)))
-        };
         let body: HashMap<Site, f64> = { sites.iter().zip(points) }
             .filter(|(q, _)| near(q))
-            .map(|(q, (_, v))| (wrapped(*q), *v))
+            .map(|(q, (_, v))| (wrapped(*q, &period), *v))
             .collect();
         let sites = Sites {
             kind: lattice.kind,
@@ -272,6 +315,20 @@ impl Faces {
         };
         sites.shares(&set).map_err(NoFace::reason)
     }
+}
+
+/// Periods (length) in quarters of the cell's edges.
+fn quarters<const D: usize>(lattice: &Lattice, period: &[Option<f64>; D]) -> [Option<i32>; 3] {
+    let edges = lattice.kind.edges();
+    crate::array::from_fn(|a| {
+        let p = (*period.get(a)?)?;
+        Some((4.0 * p / (edges[a] * lattice.spacing)).round() as i32)
+    })
+}
+
+/// The site within the periods (quarters) that one is an image of.
+fn wrapped(q: Site, period: &[Option<i32>; 3]) -> Site {
+    crate::array::from_fn(|a| period[a].map_or(q[a], |p| q[a].rem_euclid(p)))
 }
 
 /// A chain, square or cubic lattice on whose sites all these points lie, none with more than its cell.

@@ -63,7 +63,7 @@ fn join<const D: usize>(
     // its law on a full family of the first body
     let mut own = of_first(spec, &pieces[bodies[0]], written);
     shelf.resolve(&mut own)?;
-    let full = reference::<D>(&own)?;
+    let full = reference::<D>(&own, None)?;
     let spacings = bodies.map(|b| {
         let piece = &all.pieces()[b].body;
         cell(
@@ -169,7 +169,7 @@ pub(super) fn ends<const D: usize>(spec: &Spec, all: &Body<D>) -> Result<Vec<u32
         let bodies = joined_by(pieces, written).map_err(named)?;
         let own = of_first(spec, &pieces[bodies[0]], written);
         // none that is as near as its law says is left out by round-off
-        let reach = 1.001 * reference::<D>(&own).map_err(named)?.horizon;
+        let reach = 1.001 * reference::<D>(&own, None).map_err(named)?.horizon;
         ends.extend(near(all, bodies, reach).iter().map(|s| ids[*s as usize]));
     }
     ends.sort_unstable();

@@ -63,7 +63,7 @@ fn regions<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<Message> {
             };
             let wanted = measure(region, D, spec.space.periodic)?;
             let volume = { body.slots().iter() }.map(|s| body.volume().at(*s as usize));
-            let found = volume.sum::<f64>() / spec.space.section;
+            let found = body.sum(volume) / spec.space.section;
             let off = found / wanted - 1.0;
             if off.abs() <= CLOSE {
                 return None;
@@ -101,9 +101,7 @@ fn layers<const D: usize>(
         .filter(|a| spec.space.periodic[*a].is_none())
         .map(|a| {
             let all = body.slots().iter().map(|s| grid.position(*s as usize)[a]);
-            let (first, last) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-                (l.min(x), h.max(x))
-            });
+            let (first, last) = body.ends(all);
             let whole = last - first + thick(a);
             ((whole / (high[a] - low[a]) - 1.0).abs(), a, first, last)
         });
@@ -142,9 +140,7 @@ fn periods<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<Vec<Message>, 
                 continue;
             };
             let points = { own.slots().iter() }.map(|s| x[a][*s as usize]);
-            let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-                (l.min(x), h.max(x))
-            });
+            let (low, high) = own.ends(points);
             let between = (period - (high - low)) / own.spacing();
             let said = |what: &str| {
                 message![
@@ -185,15 +181,15 @@ fn sets<const D: usize>(spec: &Spec, body: &Body<D>, sets: &[(String, Vec<u32>)]
         let (members, count, of) = match &set.members {
             Members::Within { body: name, members } => {
                 let of = bodies(spec, body).into_iter().find(|b| b.0 == Some(name))?;
-                (&**members, of.2.points(), called(of.0))
+                (&**members, of.2.all_points(), called(of.0))
             }
-            all => (all, body.points(), called(None)),
+            all => (all, body.all_points(), called(None)),
         };
         let Members::Where(e) = members else {
             return None;
         };
         let (_, ids) = sets.iter().find(|(name, _)| *name == set.name)?;
-        (count > 1 && ids.len() == count).then(|| {
+        (count > 1 && body.count(ids.len() as u64) == count as u64).then(|| {
             Message::from(format!(
                 "`{}` holds at every point: the set `{}` is all of {of}; are the numbers in it those of the deck's lengths?",
                 e.source(),

@@ -134,10 +134,7 @@ impl<const D: usize> State for View<'_, D> {
     }
 
     fn fragments(&mut self) -> Vec<u32> {
-        let body = &self.system.body;
-        // those of ranks hang together over points of others
-        let all = Fragments::of_all(body, self.system.interaction.as_ref());
-        body.part_of(1, all.map(|all| all.label))
+        Fragments::of_all(&self.system.body, self.system.interaction.as_ref()).label
     }
 
     fn each_bond(&mut self, visit: &mut dyn FnMut(FamilyBond)) {

@@ -1,8 +1,10 @@
 //! Horizons of points: what each has, and what can have such.
 
+use super::agreed::agreed;
 use crate::body::Body;
 use crate::constitutive::{Shelf, toughness};
 use crate::error::BuildError;
+use crate::expression::Expression;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::{Dimension, place};
@@ -75,6 +77,18 @@ pub(super) fn give<const D: usize>(
         )
         .help("write it with x, y, z alone"));
     }
+    let mut own = agreed(body, of_points(expression, body, longest))?;
+    body.exchange().fill(&mut own);
+    body.set_horizons(own);
+    Ok(())
+}
+
+/// The horizon of each point that is here, by its slot.
+fn of_points<const D: usize>(
+    expression: &Expression,
+    body: &Body<D>,
+    longest: f64,
+) -> Result<Vec<f64>, BuildError> {
     let mut own = vec![0.0; body.len()];
     for &s in body.slots() {
         let x = body.position(s as usize);
@@ -95,8 +109,7 @@ pub(super) fn give<const D: usize>(
         }
         own[s as usize] = horizon;
     }
-    body.set_horizons(own);
-    Ok(())
+    Ok(own)
 }
 
 /// `15 c/δ` of the bonds of each slot, `c` of bonds that weigh alike, from that of the materials at the horizon of the body: `c ∝ δ^−(D+1)` at equal moduli,

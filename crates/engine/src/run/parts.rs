@@ -19,7 +19,9 @@ use crate::spec::{
     BodySpec, Calibration, ContactStiffness, Horizon, LawSpec, MaterialSpec, PieceSpec,
     PmbStiffness, Spec,
 };
+use peridyne_comm::Comm;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// One body.
 pub(super) struct Part<'a> {
@@ -36,18 +38,22 @@ pub(super) struct Part<'a> {
     pub horizon: f64,
 }
 
-/// The bodies of a spec, and where their points are.
+/// The bodies of a spec, and where their points are; of one that ranks can make part by part this rank's points.
 pub(super) fn parts<'a, const D: usize>(
     spec: &'a Spec,
+    ranks: Option<&Arc<Comm>>,
 ) -> Result<(Vec<Part<'a>>, Body<D>), BuildError> {
-    let part = |spec: Cow<'a, Spec>, bonded: bool| -> Result<(Part<'a>, Body<D>), BuildError> {
+    let part = |spec: Cow<'a, Spec>,
+                bonded: bool,
+                ranks: Option<&Arc<Comm>>|
+     -> Result<(Part<'a>, Body<D>), BuildError> {
         let Reference {
             body,
             stencil,
             bulk,
             family,
             horizon,
-        } = reference::<D>(&spec)?;
+        } = reference::<D>(&spec, ranks)?;
         let part = Part {
             materials: (0..spec.materials.len()).collect(),
             spec,
@@ -62,7 +68,7 @@ pub(super) fn parts<'a, const D: usize>(
     let pieces = match &spec.body {
         BodySpec::Several(pieces) => pieces,
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => {
-            let (part, body) = part(Cow::Borrowed(spec), true)?;
+            let (part, body) = part(Cow::Borrowed(spec), true, ranks)?;
             return Ok((vec![part], body));
         }
     };
@@ -74,7 +80,7 @@ pub(super) fn parts<'a, const D: usize>(
     let (mut all, mut bodies) = (vec![], vec![]);
     for (n, piece) in pieces.iter().enumerate() {
         let own = without.alone(piece);
-        let (part, body) = part(Cow::Owned(own), piece.bonded).map_err(|e| BuildError {
+        let (part, body) = part(Cow::Owned(own), piece.bonded, None).map_err(|e| BuildError {
             path: e.path.replacen("body", &format!("body[{n}]"), 1),
             message: message![format!("body `{}`: ", piece.name), e.message],
             ..e

@@ -8,10 +8,13 @@ use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::Dimension;
-use crate::space::fill::fill;
+use crate::run::agreed::agreed_among;
+use crate::space::fill::{Search, fill};
 use crate::space::lattice::{Lattice, LatticeKind};
 use crate::space::{AXES, Point};
 use crate::spec::{BodySpec, Cloud, FamilyChoice, Horizon, Perturbation, Spec};
+use peridyne_comm::Comm;
+use std::sync::Arc;
 
 /// Where the points are, and what their family is.
 pub(super) struct Reference<const D: usize> {
@@ -97,7 +100,11 @@ fn bulk_family<const D: usize>(
     (sum, family)
 }
 
-pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, BuildError> {
+/// The reference of a spec of one body; of a lattice that these ranks can share without listing its sites, this rank's part.
+pub(super) fn reference<const D: usize>(
+    spec: &Spec,
+    ranks: Option<&Arc<Comm>>,
+) -> Result<Reference<D>, BuildError> {
     match &spec.body {
         BodySpec::Lattice {
             kind,
@@ -117,8 +124,20 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 spacing: *spacing,
                 origin: *origin,
             };
+            if let Some(ranks) = ranks
+                && perturb.is_none()
+                && !listed(spec)
+            {
+                let search = Search::new(&lattice, region)?;
+                agreed_among(ranks, search.affordable(ranks.ranks()))?;
+                return on_lattice(spec, lattice, None, |reach, periodic, volume| {
+                    Body::shared_lattice(ranks, &search, reach, periodic, volume)
+                });
+            }
             let sites = fill(&lattice, region)?;
-            let r = on_lattice(spec, lattice, &sites.quarters, None)?;
+            let r = on_lattice(spec, lattice, None, |reach, periodic, volume| {
+                Body::on_lattice(lattice, &sites.quarters, reach, periodic, volume)
+            })?;
             match perturb {
                 Some(p) => Ok(Reference {
                     body: perturbed(&r.body, p)?,
@@ -141,7 +160,10 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 spacing: *spacing,
                 origin: *origin,
             };
-            listed_if_asked(spec, on_lattice(spec, lattice, quarters, *volume)?)
+            let r = on_lattice(spec, lattice, *volume, |reach, periodic, volume| {
+                Body::on_lattice(lattice, quarters, reach, periodic, volume)
+            })?;
+            listed_if_asked(spec, r)
         }
         BodySpec::Cloud(cloud) => of_cloud(spec, cloud),
         BodySpec::Several(_) => Err(BuildError::unsupported(
@@ -151,12 +173,12 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
     }
 }
 
-/// Points on sites of a lattice, each of `volume` or of that of its cell, and their stencil.
+/// Points on sites of a lattice, each of `volume` or of that of its cell, and their stencil; `body` of cells that a bond spans, periodic axes and that volume.
 fn on_lattice<const D: usize>(
     spec: &Spec,
     lattice: Lattice,
-    quarters: &[[i32; 3]],
     volume: Option<f64>,
+    body: impl FnOnce(usize, [bool; D], f64) -> Result<Body<D>, BuildError>,
 ) -> Result<Reference<D>, BuildError> {
     let Lattice { kind, spacing, .. } = lattice;
     if kind.dimension() != D {
@@ -172,7 +194,7 @@ fn on_lattice<const D: usize>(
     let (stencil, horizon) = stencil_of(spec, kind, spacing)?;
     let periodic: [bool; D] = crate::array::from_fn(|a| spec.space.periodic[a].is_some());
     let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.space.section);
-    let body = Body::<D>::on_lattice(lattice, quarters, stencil.reach(), periodic, volume)?;
+    let body = body(stencil.reach(), periodic, volume)?;
     periods_fit(spec, &body)?;
     let (bulk, family) = bulk_family::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
     Ok(Reference {
@@ -322,9 +344,16 @@ fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>
 pub(super) struct SplitMix(pub u64);
 
 impl SplitMix {
+    /// Number `n`, from 0 on, of a seed.
+    pub fn number(seed: u64, n: u64) -> f64 {
+        SplitMix(seed.wrapping_add(n.wrapping_mul(Self::STEP))).unit()
+    }
+
+    const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
     /// Uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        self.0 = self.0.wrapping_add(Self::STEP);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

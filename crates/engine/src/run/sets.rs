@@ -1,5 +1,6 @@
 //! Named sets, the materials and the initial state of the points in them.
 
+use super::agreed::agreed;
 use super::feasible::possible;
 use super::names::Names;
 use super::parts::parts;
@@ -11,15 +12,15 @@ use crate::message;
 use crate::quantity::{Dimension, Message};
 use crate::space::lattice::Lattice;
 use crate::space::{AXES, Point};
-use crate::spec::{BodySpec, Carriers, Members, Spec};
+use crate::spec::{BodySpec, Carriers, MaterialSpec, Members, Spec};
 
-/// Does a point (index, reference position) belong?
+/// Does a point (id among all, reference position) belong?
 type Member<'a> = Box<dyn Fn(usize, &Point) -> bool + 'a>;
 
 /// Named sets and the numbers of their points.
 pub(super) type Sets = Vec<(String, Vec<u32>)>;
 
-/// Point ids of every named set, and its points among those that carry loads. A set may have points of the one kind only.
+/// Ids of the points here of every named set, and its points among those that carry loads. A set may have points of the one kind only.
 pub(super) fn sets<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
@@ -32,7 +33,7 @@ pub(super) fn sets<const D: usize>(
             .slots()
             .iter()
             .enumerate()
-            .filter(|(id, s)| belongs(*id, &body.position(**s as usize)))
+            .filter(|(id, s)| belongs(body.id_of_all(*id), &body.position(**s as usize)))
             .map(|(id, _)| id as u32)
             .collect();
         let mut loaded: Vec<u32> = vec![];
@@ -56,8 +57,7 @@ pub(super) fn sets<const D: usize>(
             let points = (0..carriers.points()).filter(|p| belongs(*p, &at(p)));
             loaded = points.map(|p| p as u32).collect();
         }
-        // another rank may have its points
-        if ids.is_empty() && loaded.is_empty() && body.subdomain().is_none() {
+        if loaded.is_empty() && body.count(ids.len() as u64) == 0 {
             return Err(BuildError::empty(
                 format!("sets.{}", set.name),
                 format!("set `{}` has no points", set.name),
@@ -75,9 +75,7 @@ fn extent<const D: usize>(body: &Body<D>) -> Message {
     let mut told = Message::from("points lie at ");
     for a in 0..D {
         let all = body.slots().iter().map(|s| body.position(*s as usize)[a]);
-        let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-            (l.min(x), h.max(x))
-        });
+        let (low, high) = body.ends(all);
         let comma = if a == 0 { "" } else { ", " };
         told = message![
             told,
@@ -158,8 +156,8 @@ fn member<'a, const D: usize>(
                 let message = format!("the part is {part}, expected a number from 0 to 1");
                 return Err(BuildError::invalid(format!("sets.{set}"), message));
             }
-            let drawn = drawn(body.points(), *part, *seed);
-            Box::new(move |id, _| drawn[id])
+            let drawn = Drawn::new(body.all_points(), *part, *seed);
+            Box::new(move |id, _| drawn.holds(id))
         }
         Members::Outside(names) => {
             let mut others = vec![];
@@ -200,16 +198,39 @@ fn member<'a, const D: usize>(
     })
 }
 
-/// Which of so many points are drawn.
-fn drawn(points: usize, part: f64, seed: u64) -> Vec<bool> {
-    let mut random = SplitMix(seed);
-    let numbers: Vec<f64> = (0..points).map(|_| random.unit()).collect();
-    let mut order: Vec<usize> = (0..points).collect();
-    order.sort_by(|a, b| numbers[*a].total_cmp(&numbers[*b]));
-    let mut drawn = vec![false; points];
-    let count = (part * points as f64).round() as usize;
-    order[..count].iter().for_each(|n| drawn[*n] = true);
-    drawn
+/// Points that are drawn: those with the least numbers, of which each id has one, and of equal ones those with the least ids.
+struct Drawn {
+    seed: u64,
+    /// The number and the id of the last of them.
+    last: Option<(f64, usize)>,
+}
+
+impl Drawn {
+    /// This part of so many points.
+    fn new(points: usize, part: f64, seed: u64) -> Drawn {
+        /// Equal ranges of numbers, so many that few numbers are in each.
+        const RANGES: usize = 1 << 16;
+        let range = |x: f64| (x * RANGES as f64) as usize;
+        let number = |id: usize| SplitMix::number(seed, id as u64);
+        let mut left = (part * points as f64).round() as usize;
+        let mut counts = vec![0usize; RANGES];
+        (0..points).for_each(|id| counts[range(number(id))] += 1);
+        let last = counts.iter().position(|n| {
+            let here = left <= *n;
+            left -= if here { 0 } else { *n };
+            here
+        });
+        let all = (0..points).map(|id| (number(id), id));
+        let mut near: Vec<_> = all.filter(|(x, _)| Some(range(*x)) == last).collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let last = left.checked_sub(1).map(|n| near[n]);
+        Drawn { seed, last }
+    }
+
+    fn holds(&self, id: usize) -> bool {
+        let number = SplitMix::number(self.seed, id as u64);
+        self.last.is_some_and(|last| (number, id) <= last)
+    }
 }
 
 /// Points within round-off of a region's boundary belong to it.
@@ -241,6 +262,28 @@ pub(super) fn assign_materials<const D: usize>(
             format!("{} materials; at most 255", materials.len()),
         ));
     }
+    let of_points = agreed(body, materials_of_points(materials, body, sets))?;
+    let density: Vec<f64> = { of_points.iter() }
+        .map(|m| materials[*m as usize].density)
+        .collect();
+    body.give_materials(of_points.iter().copied());
+    body.set_densities(&density);
+    if body.marks().is_empty() {
+        body.set_marks(of_points.into_iter().map(i32::from).collect());
+    }
+    Ok(())
+}
+
+/// The material of each point that is here, by its place among these.
+fn materials_of_points<const D: usize>(
+    materials: &[MaterialSpec],
+    body: &Body<D>,
+    sets: &[(String, Vec<u32>)],
+) -> Result<Vec<u8>, BuildError> {
+    let point = |id: usize| {
+        let x = body.position(body.slots()[id] as usize);
+        format!("point {} at {x:?}", body.id_of_all(id) + 1)
+    };
     let mut of: Vec<Option<u8>> = vec![None; body.points()];
     for (n, m) in materials.iter().enumerate() {
         let all: Vec<u32>;
@@ -262,12 +305,11 @@ pub(super) fn assign_materials<const D: usize>(
         };
         for &id in ids {
             if let Some(other) = of[id as usize].replace(n as u8) {
-                let x = body.position(body.slots()[id as usize] as usize);
                 return Err(BuildError::conflict(
                     format!("materials[{n}].set"),
                     format!(
-                        "point {} at {x:?} belongs to material `{}` and to material `{}`",
-                        id + 1,
+                        "{} belongs to material `{}` and to material `{}`",
+                        point(id as usize),
                         materials[other as usize].name,
                         m.name
                     ),
@@ -276,25 +318,15 @@ pub(super) fn assign_materials<const D: usize>(
             }
         }
     }
-    if let Some(id) = of.iter().position(Option::is_none) {
-        let x = body.position(body.slots()[id] as usize);
-        return Err(BuildError::missing(
-            "materials",
-            format!("point {} at {x:?} belongs to no material", id + 1),
-        )
-        .help("make the materials' sets cover the body"));
-    }
-    let of_points = of.iter().map(|m| m.unwrap_or(0));
-    let density: Vec<f64> = of_points
-        .clone()
-        .map(|m| materials[m as usize].density)
-        .collect();
-    body.give_materials(of_points);
-    body.set_densities(&density);
-    if body.marks().is_empty() {
-        body.set_marks(of.iter().map(|m| i32::from(m.unwrap_or(0))).collect());
-    }
-    Ok(())
+    let all = of.iter().enumerate();
+    let all = all.map(|(id, m)| {
+        m.ok_or_else(|| {
+            let message = format!("{} belongs to no material", point(id));
+            BuildError::missing("materials", message)
+                .help("make the materials' sets cover the body")
+        })
+    });
+    all.collect()
 }
 
 /// Every point of the body of a spec: where it is in the reference, and its material by its place in the spec.
@@ -327,7 +359,7 @@ fn of_bodies<const D: usize>(
     spec: &Spec,
     all: &[(Point, usize)],
 ) -> Result<Vec<Vec<usize>>, BuildError> {
-    let ids = parts::<D>(spec)?.1.ids();
+    let ids = parts::<D>(spec, None)?.1.ids();
     let each = ids.into_iter().map(|ids| {
         let mut of: Vec<usize> = all[ids].iter().map(|(_, m)| *m).collect();
         of.sort_unstable();
@@ -338,7 +370,7 @@ fn of_bodies<const D: usize>(
 }
 
 fn of_points<const D: usize>(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildError> {
-    let (_, mut body) = parts::<D>(spec)?;
+    let (_, mut body) = parts::<D>(spec, None)?;
     let sets = sets(spec, &body, None)?.0;
     assign_materials(spec, &mut body, &sets)?;
     let slots = body.slots().iter().map(|s| *s as usize);

@@ -12,6 +12,7 @@ use crate::observe::{Ledger, StateHash};
 use crate::transfer::TransferAccount;
 use rayon::prelude::*;
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 /// Ids of a block, which has a digest of its own.
 const BLOCK: usize = 1024;
@@ -44,8 +45,8 @@ struct Bonds<'a, const D: usize> {
     system: &'a System<D>,
     /// By slot.
     id: Cow<'a, [u32]>,
-    /// Per block.
-    sums: Vec<u64>,
+    /// Of blocks, where there is anything.
+    sums: HashMap<u64, u64>,
     words: Words,
 }
 
@@ -62,7 +63,7 @@ impl<const D: usize> Bonds<'_, D> {
         self.words.put([i, j].map(u64::from));
         self.words.put(image);
         self.words.numbers(numbers.iter().copied());
-        let sum = &mut self.sums[i as usize / BLOCK];
+        let sum = self.sums.entry(u64::from(i) / BLOCK as u64).or_default();
         *sum = sum.wrapping_add(self.words.hash(column));
     }
 }
@@ -85,8 +86,8 @@ fn hash_of_state<const D: usize>(system: &System<D>) -> u64 {
         system.clock.step(),
         system.clock.shown().to_bits(),
     ]);
-    let points = digests_of_points(system);
-    for (digest, bonds) in points.into_iter().zip(sums_of_bonds(system)) {
+    let digests = digests_of_points(system).zip(sums_of_bonds(system));
+    for (digest, bonds) in digests.into_iter().flat_map(|(d, b)| d.into_iter().zip(b)) {
         words.put([digest, bonds]);
     }
     for indenter in &system.applied.rigid {
@@ -95,8 +96,8 @@ fn hash_of_state<const D: usize>(system: &System<D>) -> u64 {
     words.hash(0)
 }
 
-/// Of each block, all that its points remember.
-fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
+/// Of each block, all that its points remember; on the first rank.
+fn digests_of_points<const D: usize>(system: &System<D>) -> Option<Vec<u64>> {
     let mut columns: Vec<(Cow<'static, str>, Owner)> = vec![
         ("displacement".into(), Owner::Displacement),
         ("velocity".into(), Owner::Velocity),
@@ -107,7 +108,8 @@ fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
     columns.extend(declared(system, On::Points).map(|(name, each)| (name, Owner::Law(each))));
     columns.sort_by(|a, b| a.0.cmp(&b.0));
 
-    let mut digests = vec![0; system.body.all_points().div_ceil(BLOCK)];
+    let runs = system.body.runs_of_ids(BLOCK);
+    let mut digests = vec![0; runs.points().div_ceil(BLOCK)];
     let slots = || system.body.slots().iter().map(|s| *s as usize);
     for (name, owner) in columns {
         let of = |field: &Field<D>| -> Vec<f64> {
@@ -126,11 +128,9 @@ fn digests_of_points<const D: usize>(system: &System<D>) -> Vec<u64> {
                 (each, own.copied().collect())
             }
         };
-        if let Some(values) = system.body.whole(each, own) {
-            chain(&mut digests, (&name, each), &values);
-        }
+        chain(&mut digests, (&name, each), &runs.of(each, own));
     }
-    digests
+    system.body.joined(digests)
 }
 
 /// Columns over points or over bonds that the law declares and that persist, with the numbers of each.
@@ -151,12 +151,12 @@ fn of_law<const D: usize>(system: &System<D>, name: &str) -> Vec<f64> {
     values
 }
 
-/// Of each block, which bonds of its points are broken or were never there, and what the others of its bonds' columns say.
-fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
+/// Of each block, which bonds of its points are broken or were never there, and what the others of its bonds' columns say; on the first rank.
+fn sums_of_bonds<const D: usize>(system: &System<D>) -> Option<Vec<u64>> {
     let mut bonds = Bonds {
         system,
         id: system.body.ids_of_all(),
-        sums: vec![0; system.body.all_points().div_ceil(BLOCK)],
+        sums: HashMap::new(),
         words: Words::default(),
     };
     let (whole, whose) = (hash_of_name(history::WHOLE), system.body.whose());
@@ -183,11 +183,14 @@ fn sums_of_bonds<const D: usize>(system: &System<D>) -> Vec<u64> {
             });
         assert!(rows.next().is_none(), "a bond of each value");
     }
-    let mut sums = vec![0u64; bonds.sums.len()];
-    for own in system.body.all_of(&bonds.sums) {
-        { sums.iter_mut().zip(own) }.for_each(|(sum, x)| *sum = sum.wrapping_add(x));
+    let own = bonds.sums.into_iter().map(<[u64; 2]>::from);
+    let all = system.body.joined(own.collect())?;
+    let mut sums = vec![0u64; system.body.all_points().div_ceil(BLOCK)];
+    for [block, sum] in all {
+        let all = &mut sums[block as usize];
+        *all = all.wrapping_add(sum);
     }
-    sums
+    Some(sums)
 }
 
 fn hash_of_ledger<const D: usize>(system: &mut System<D>) -> Option<u64> {

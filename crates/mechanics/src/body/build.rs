@@ -1,9 +1,9 @@
 //! Bodies from lattice sites and from clouds.
 
+use super::grid::Ends;
 use super::{Body, Exchange, Grid, Identity, Layout, Values};
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
-use crate::space::AXES;
 use crate::space::lattice::Lattice;
 
 impl<const D: usize> Body<D> {
@@ -18,49 +18,12 @@ impl<const D: usize> Body<D> {
         periodic: [bool; D],
         volume: f64,
     ) -> Result<Self, BuildError> {
-        let basis = lattice.kind.basis();
         if quarters.is_empty() {
             return Err(BuildError::empty("body", "the body has no points"));
         }
-        let mut low = [i32::MAX; D];
-        let mut high = [i32::MIN; D];
-        for q in quarters {
-            for a in 0..D {
-                low[a] = low[a].min(q[a].div_euclid(4));
-                high[a] = high[a].max(q[a].div_euclid(4));
-            }
-        }
-        let halo: [usize; D] = crate::array::from_fn(|a| if periodic[a] { reach } else { 0 });
-        let extent: [usize; D] = crate::array::from_fn(|a| (high[a] - low[a] + 1) as usize);
-        for a in 0..D {
-            if periodic[a] && extent[a] < reach {
-                return Err(BuildError::conflict(
-                    "periodic",
-                    format!(
-                        "the period along {} is {} cells, shorter than the horizon of {reach}",
-                        AXES[a], extent[a]
-                    ),
-                )
-                .help("make the body longer along this axis, or the horizon shorter"));
-            }
-        }
-        let cells: [usize; D] = crate::array::from_fn(|a| extent[a] + 2 * halo[a]);
-        let low: [i32; D] = crate::array::from_fn(|a| low[a] - halo[a] as i32);
-        let count: usize = cells.iter().product();
-        let stride = count.div_ceil(TILE) * TILE;
-        let mut grid = Grid {
-            lattice,
-            cells,
-            low,
-            halo,
-            first: 0,
-            stride,
-            guard: 0,
-            present: vec![],
-            owned: vec![],
-        };
-        let span = grid.shift([reach as i64; D], 0).unsigned_abs() as usize;
-        grid.guard = span.div_ceil(TILE) * TILE + TILE;
+        let mut ends = Ends::none();
+        quarters.iter().for_each(|q| ends.reach(*q));
+        let mut grid = Grid::around(lattice, &ends, reach, periodic)?;
         if grid.slots() > u32::MAX as usize {
             return Err(BuildError::too_many(
                 "body",
@@ -70,18 +33,13 @@ impl<const D: usize> Body<D> {
         grid.owned = vec![0; grid.tiles()];
         let mut slots = Vec::with_capacity(quarters.len());
         for q in quarters {
-            let cell: [i64; D] =
-                crate::array::from_fn(|a| (q[a].div_euclid(4) - grid.low[a]) as i64);
-            let rest: [i32; 3] =
-                crate::array::from_fn(|a| if a < D { q[a].rem_euclid(4) } else { 0 });
-            let Some(b) = basis.iter().position(|s| *s == rest) else {
+            let Some((b, cell)) = grid.find(*q) else {
                 return Err(BuildError::invalid(
                     "body",
                     format!("{q:?} quarters is not a site of the lattice"),
                 ));
             };
-            let slot = grid.slot(cell, b).expect("the box was made of these sites");
-            let i = slot - grid.guard;
+            let i = b * grid.stride + cell;
             if grid.owned[i / TILE] >> (i % TILE) & 1 == 1 {
                 return Err(BuildError::conflict(
                     "body",
@@ -89,22 +47,28 @@ impl<const D: usize> Body<D> {
                 ));
             }
             grid.owned[i / TILE] |= 1 << (i % TILE);
-            slots.push(slot as u32);
+            slots.push((grid.guard + i) as u32);
         }
         grid.present = grid.owned.clone();
-        let exchange = images(&mut grid, extent);
-        let edges = lattice.kind.edges();
-        let period = crate::array::from_fn(|a| {
-            periodic[a].then(|| extent[a] as f64 * edges[a] * lattice.spacing)
-        });
-        let spacing = lattice.spacing * lattice.kind.site_volume().powf(1.0 / D as f64);
-        let len = grid.slots();
-        Ok(Body {
+        let exchange = images(&mut grid);
+        let period = grid.period(periodic);
+        Ok(Self::of_grid(grid, slots, exchange, period, volume))
+    }
+
+    /// Points in these slots of a grid, all alike.
+    pub(super) fn of_grid(
+        grid: Grid<D>,
+        slots: Vec<u32>,
+        exchange: Exchange,
+        period: [Option<f64>; D],
+        volume: f64,
+    ) -> Body<D> {
+        let lattice = grid.lattice();
+        Body {
             identity: Identity::new(),
-            layout: Layout::Grid(grid),
             slots,
-            len,
-            spacing,
+            len: grid.slots(),
+            spacing: lattice.spacing * lattice.kind.site_volume().powf(1.0 / D as f64),
             volume: Values::Uniform(volume),
             density: Values::Uniform(1.0),
             period,
@@ -114,7 +78,8 @@ impl<const D: usize> Body<D> {
             exchange,
             subdomain: None,
             beside: vec![],
-        })
+            layout: Layout::Grid(grid),
+        }
     }
 
     /// A body of free points (`[N]` positions and volumes), stored in an order that keeps neighbours close.
@@ -211,28 +176,20 @@ impl<const D: usize> Body<D> {
 }
 
 /// Periodic images: every halo cell copies the cell one period away.
-fn images<const D: usize>(grid: &mut Grid<D>, extent: [usize; D]) -> Exchange {
+fn images<const D: usize>(grid: &mut Grid<D>) -> Exchange {
     let mut images = Exchange::default();
     if grid.halo == [0; D] {
         return images;
     }
     let count: usize = grid.cells.iter().product();
     for b in 0..grid.basis() {
-        for i in 0..count {
-            let copy = grid.guard + b * grid.stride + i;
-            let (c, _) = grid.cell(copy);
-            let from: [i64; D] = crate::array::from_fn(|a| {
-                let h = grid.halo[a] as i64;
-                (c[a] - h).rem_euclid(extent[a] as i64) + h
-            });
-            // axes without halo map onto themselves
-            if from != c {
-                let original = grid.slot(from, b).expect("inside the box");
-                if grid.is_owned(original) {
-                    let k = copy - grid.guard;
-                    grid.present[k / TILE] |= 1 << (k % TILE);
-                    images.push(copy, original);
-                }
+        let first = grid.guard + b * grid.stride;
+        for cell in 0..count {
+            let from = grid.original(cell);
+            if from != cell && grid.is_owned(first + from) {
+                let k = first + cell - grid.guard;
+                grid.present[k / TILE] |= 1 << (k % TILE);
+                images.push(first + cell, first + from);
             }
         }
     }

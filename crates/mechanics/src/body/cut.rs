@@ -4,86 +4,20 @@
 //! one after the other. What is near by but somebody else's is a copy, as periodic images are ([`Exchange`]).
 //!
 //! A part of a lattice has the cells of the whole grid from one to another, in the order of memory, so that a neighbour is as many cells away as in the whole:
-//! slabs across the axis that is slowest in memory, whose borders may lie within a layer.
+//! slabs across the axis that is slowest in memory, whose borders may lie within a layer. What a region says of cells one by one needs no whole body: no rank
+//! has it ([`Body::shared_lattice`]).
 
 mod blocks;
 mod cloud;
+mod lattice;
 mod several;
 
-use super::exchange::{Copies, Exchange};
-use super::subdomain::Subdomain;
-use super::{Body, Grid, Identity, Layout, Values};
-use crate::execute::lane::TILE;
+use super::{Body, Layout};
 pub(super) use blocks::CELLS;
 use blocks::by_ranks;
 use peridyne_comm::Comm;
-use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Cells of the whole grid, of each sublattice: those whose points a rank owns, and those that it has.
-struct Share {
-    own: Range<usize>,
-    near: Range<usize>,
-}
-
-impl Share {
-    /// Of all ranks, that have these blocks.
-    fn of_blocks<const D: usize>(grid: &Grid<D>, blocks: &[Range<usize>]) -> Vec<Share> {
-        let reach = grid.guard - TILE;
-        let share = |of: &Range<usize>| {
-            let own = of.start * CELLS..(of.end * CELLS).min(grid.stride);
-            let near = match own.is_empty() {
-                true => 0..0,
-                false => own.start.saturating_sub(reach)..(own.end + reach).min(grid.stride),
-            };
-            Share { own, near }
-        };
-        blocks.iter().map(share).collect()
-    }
-
-    /// The grid of the rank that has it.
-    fn grid<const D: usize>(&self, whole: &Grid<D>) -> Grid<D> {
-        let mut grid = Grid {
-            first: self.near.start,
-            stride: self.near.len(),
-            present: vec![],
-            owned: vec![],
-            ..*whole
-        };
-        for first in (0..whole.basis()).map(|b| b * whole.stride) {
-            let tiles =
-                |cells: &Range<usize>| (first + cells.start) / TILE..(first + cells.end) / TILE;
-            let (near, own) = (tiles(&self.near), tiles(&self.own));
-            grid.present.extend_from_slice(&whole.present[near.clone()]);
-            let owned = |t: usize| if own.contains(&t) { whole.owned[t] } else { 0 };
-            grid.owned.extend(near.map(owned));
-        }
-        grid
-    }
-
-    /// The slot of a cell that the rank has.
-    fn slot<const D: usize>(&self, whole: &Grid<D>, (b, cell): (usize, usize)) -> usize {
-        whole.guard + b * self.near.len() + cell - self.near.start
-    }
-
-    /// What slots of the part have of what those of the whole have; nothing where that is nothing.
-    fn gathered<const D: usize, T: Copy>(&self, whole: &Grid<D>, all: &[T]) -> Vec<T> {
-        // guards have what the first one has
-        let Some(guard) = all.first() else {
-            return vec![];
-        };
-        let basis = whole.basis();
-        let mut part = vec![*guard; 2 * whole.guard + basis * self.near.len()];
-        for b in 0..basis {
-            let from = whole.guard + b * whole.stride;
-            let from = &all[from + self.near.start..from + self.near.end];
-            let to = whole.guard + b * self.near.len();
-            part[to..to + from.len()].copy_from_slice(from);
-        }
-        part
-    }
-}
 
 impl<const D: usize> Body<D> {
     /// The part of this body that a rank has. A cloud has copies of all within `reach` (length), a lattice those that its stencil reaches. All ranks ask at
@@ -120,12 +54,7 @@ impl<const D: usize> Body<D> {
     /// Copies of others' points that the rank of these blocks has.
     fn copies_of(&self, blocks: &Range<usize>, reach: f64) -> usize {
         match &self.layout {
-            Layout::Grid(grid) => {
-                let share = &Share::of_blocks(grid, std::slice::from_ref(blocks))[0];
-                let part = share.grid(grid);
-                let bits = |of: &[u8]| of.iter().map(|b| b.count_ones() as usize).sum::<usize>();
-                bits(&part.present) - bits(&part.owned)
-            }
+            Layout::Grid(grid) => lattice::copies_of(grid, blocks),
             Layout::Cloud(x) => cloud::near(self, x, &self.slots_of_blocks(blocks), reach).len(),
             Layout::Several(pieces) => {
                 let mut passed = 0;
@@ -151,76 +80,6 @@ impl<const D: usize> Body<D> {
             Layout::Cloud(x) => self.part_of_cloud(x, blocks, comm, reach),
             Layout::Several(_) => self.part_of_several(blocks, comm, reach, &[]),
         }
-    }
-
-    fn part_of_lattice(
-        &self,
-        whole: &Grid<D>,
-        blocks: &[Range<usize>],
-        comm: &Arc<Comm>,
-    ) -> Body<D> {
-        let all = Share::of_blocks(whole, blocks);
-        let share = &all[comm.rank()];
-        let grid = share.grid(whole);
-        let copies = self.copies(whole, &grid, &all, comm.rank());
-        let (mut ids, mut slots) = (vec![], vec![]);
-        for (id, slot) in self.slots.iter().enumerate() {
-            let place = whole.place(*slot as usize);
-            if share.own.contains(&place.1) {
-                ids.push(id as u32);
-                slots.push(share.slot(whole, place) as u32);
-            }
-        }
-        let values = |of: &Values| match of {
-            Values::Uniform(x) => Values::Uniform(*x),
-            Values::PerSlot(x) => Values::PerSlot(share.gathered(whole, x)),
-        };
-        let mark = { ids.iter() }.filter_map(|id| self.mark.get(*id as usize).copied());
-        let mark = mark.collect();
-        let exchange = Exchange::among(comm, copies);
-        let mut of_slots = vec![0; grid.slots()];
-        { ids.iter().zip(&slots) }.for_each(|(id, slot)| of_slots[*slot as usize] = *id);
-        exchange.fill(&mut of_slots);
-        let subdomain = Subdomain::new(comm, ids, of_slots, self.points());
-        Body {
-            identity: Identity::new(),
-            len: grid.slots(),
-            spacing: self.spacing,
-            volume: values(&self.volume),
-            density: values(&self.density),
-            period: self.period,
-            material: share.gathered(whole, &self.material),
-            horizon: share.gathered(whole, &self.horizon),
-            mark,
-            exchange,
-            subdomain: Some(Arc::new(subdomain)),
-            beside: vec![],
-            slots,
-            layout: Layout::Grid(grid),
-        }
-    }
-
-    /// Who is there, but is not this rank's.
-    fn copies(&self, whole: &Grid<D>, grid: &Grid<D>, all: &[Share], rank: usize) -> Copies {
-        let mut copies = Copies::new(all.len());
-        let mut named = HashMap::new();
-        for slot in grid.guard..grid.slots() - grid.guard {
-            if grid.is_owned(slot) || !grid.is_present(slot) {
-                continue;
-            }
-            let (b, cell) = grid.place(slot);
-            let original = self
-                .exchange
-                .original(whole.guard + b * whole.stride + cell);
-            let place = whole.place(original);
-            let owner = all.partition_point(|share| share.own.end <= place.1);
-            let there = all[owner].slot(whole, place);
-            match owner == rank {
-                true => copies.own(slot, there),
-                false => copies.of_rank(owner, slot, there, *named.entry(original).or_insert(slot)),
-            }
-        }
-        copies
     }
 }
 

@@ -1,8 +1,9 @@
 //! The integer grid of a lattice body: one box of cells per basis site, cut into tiles of eight slots.
 
+use crate::error::BuildError;
 use crate::execute::lane::TILE;
-use crate::space::Point;
 use crate::space::lattice::Lattice;
+use crate::space::{AXES, Point};
 
 /// Tiles of a block of work. Where blocks begin belongs to the grid, so that sums are made of the same ones whoever has them.
 pub const BLOCK: usize = 32;
@@ -28,7 +29,85 @@ pub struct Grid<const D: usize> {
     pub(crate) owned: Vec<u8>,
 }
 
+/// The lowest and the highest cell along each axis of some sites.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ends<const D: usize> {
+    pub low: [i32; D],
+    pub high: [i32; D],
+}
+
+impl<const D: usize> Ends<D> {
+    /// Of no sites.
+    pub fn none() -> Ends<D> {
+        Ends {
+            low: [i32::MAX; D],
+            high: [i32::MIN; D],
+        }
+    }
+
+    /// This site (in quarters), too.
+    pub fn reach(&mut self, site: [i32; 3]) {
+        for a in 0..D {
+            self.low[a] = self.low[a].min(site[a].div_euclid(4));
+            self.high[a] = self.high[a].max(site[a].div_euclid(4));
+        }
+    }
+}
+
 impl<const D: usize> Grid<D> {
+    /// Of all cells between such ends, with images along periodic axes as far as bonds span, so many cells; without sites.
+    pub(super) fn around(
+        lattice: Lattice,
+        ends: &Ends<D>,
+        reach: usize,
+        periodic: [bool; D],
+    ) -> Result<Grid<D>, BuildError> {
+        let halo: [usize; D] = crate::array::from_fn(|a| if periodic[a] { reach } else { 0 });
+        let extent: [usize; D] =
+            crate::array::from_fn(|a| (ends.high[a] - ends.low[a] + 1) as usize);
+        for a in 0..D {
+            if periodic[a] && extent[a] < reach {
+                return Err(BuildError::conflict(
+                    "periodic",
+                    format!(
+                        "the period along {} is {} cells, shorter than the horizon of {reach}",
+                        AXES[a], extent[a]
+                    ),
+                )
+                .help("make the body longer along this axis, or the horizon shorter"));
+            }
+        }
+        let cells: [usize; D] = crate::array::from_fn(|a| extent[a] + 2 * halo[a]);
+        let count: usize = cells.iter().product();
+        let mut grid = Grid {
+            lattice,
+            cells,
+            low: crate::array::from_fn(|a| ends.low[a] - halo[a] as i32),
+            halo,
+            first: 0,
+            stride: count.div_ceil(TILE) * TILE,
+            guard: 0,
+            present: vec![],
+            owned: vec![],
+        };
+        let span = grid.shift([reach as i64; D], 0).unsigned_abs() as usize;
+        grid.guard = span.div_ceil(TILE) * TILE + TILE;
+        Ok(grid)
+    }
+
+    /// What it repeats after (length) along these axes.
+    pub(super) fn period(&self, periodic: [bool; D]) -> [Option<f64>; D] {
+        let (edges, extent) = (self.lattice.kind.edges(), self.extent());
+        crate::array::from_fn(|a| {
+            periodic[a].then(|| extent[a] as f64 * edges[a] * self.lattice.spacing)
+        })
+    }
+
+    /// Cells along each axis, without images.
+    pub(super) fn extent(&self) -> [usize; D] {
+        crate::array::from_fn(|a| self.cells[a] - 2 * self.halo[a])
+    }
+
     /// What its cells are of.
     pub fn lattice(&self) -> &Lattice {
         &self.lattice
@@ -96,6 +175,11 @@ impl<const D: usize> Grid<D> {
         Some(self.guard + b * self.stride + i)
     }
 
+    /// Slot of a site of a cell that is here, by its place in the order of cells.
+    pub(super) fn slot_of(&self, b: usize, cell: usize) -> usize {
+        self.guard + b * self.stride + cell - self.first
+    }
+
     /// Sublattice of a slot inside the grid, and its cell in their order.
     #[inline]
     pub(super) fn place(&self, slot: usize) -> (usize, usize) {
@@ -105,14 +189,52 @@ impl<const D: usize> Grid<D> {
 
     /// Box coordinates and sublattice of a slot inside the grid.
     pub fn cell(&self, slot: usize) -> ([i64; D], usize) {
-        let (b, mut i) = self.place(slot);
-        let c = crate::array::from_fn(|a| {
+        let (b, i) = self.place(slot);
+        (self.coordinates_of(i), b)
+    }
+
+    /// Box coordinates of a cell by its place in their order.
+    fn coordinates_of(&self, mut cell: usize) -> [i64; D] {
+        crate::array::from_fn(|a| {
             let n = self.cells[a];
-            let c = if a + 1 < D { i % n } else { i };
-            i /= n;
+            let c = if a + 1 < D { cell % n } else { cell };
+            cell /= n;
             c as i64
-        });
-        (c, b)
+        })
+    }
+
+    /// The cell that these are, or are the image of.
+    fn home_of(&self, c: [i64; D]) -> [i64; D] {
+        let extent = self.extent();
+        crate::array::from_fn(|a| {
+            let halo = self.halo[a] as i64;
+            halo + (c[a] - halo).rem_euclid(extent[a] as i64)
+        })
+    }
+
+    /// The cell that one is the image of, or itself, by their places in the order of cells.
+    pub(super) fn original(&self, cell: usize) -> usize {
+        if self.halo == [0; D] {
+            return cell;
+        }
+        let home = self.home_of(self.coordinates_of(cell));
+        (0..D)
+            .rev()
+            .fold(0, |i, a| i * self.cells[a] + home[a] as usize)
+    }
+
+    /// Quarters of the cell's edges from the lattice origin to a site of a cell, by its place in the order of cells.
+    pub(super) fn site(&self, b: usize, cell: usize) -> [i32; 3] {
+        self.quarter_of((self.coordinates_of(cell), b))
+    }
+
+    /// The sublattice and the cell, by its place in their order, of a site (quarters) between the ends of the grid.
+    pub(super) fn find(&self, site: [i32; 3]) -> Option<(usize, usize)> {
+        let rest: [i32; 3] =
+            crate::array::from_fn(|a| if a < D { site[a].rem_euclid(4) } else { 0 });
+        let b = { self.lattice.kind.basis().iter() }.position(|s| *s == rest)?;
+        let cell = |a: usize| (site[a].div_euclid(4) - self.low[a]) as usize;
+        Some((b, (0..D).rev().fold(0, |i, a| i * self.cells[a] + cell(a))))
     }
 
     /// Number of slots from a cell to the cell `d` cells away and `db` sublattices on.
@@ -158,11 +280,7 @@ impl<const D: usize> Grid<D> {
     /// Reference position of the point that a slot is a copy of, if of any.
     pub(super) fn home(&self, slot: usize) -> Point {
         let (c, b) = self.cell(slot);
-        let c = crate::array::from_fn(|a| {
-            let halo = self.halo[a] as i64;
-            halo + (c[a] - halo).rem_euclid(self.cells[a] as i64 - 2 * halo)
-        });
-        self.lattice.position(self.quarter_of((c, b)))
+        self.lattice.position(self.quarter_of((self.home_of(c), b)))
     }
 
     fn quarter_of(&self, (c, b): ([i64; D], usize)) -> [i32; 3] {

@@ -157,13 +157,22 @@ impl<const D: usize> Body<D> {
         self.density = Values::Uniform(density);
     }
 
-    /// Gives each point its density, in order of id.
+    /// Gives each point its density, in order of id, and their copies theirs.
     ///
     /// # Panics
     /// If there are not as many as points.
     pub fn set_densities(&mut self, density: &[f64]) {
         assert_eq!(density.len(), self.points(), "a density for each point");
-        self.density = Values::from_points(density, &self.slots, self.len, 1.0);
+        let (low, high) = self.ends(density.iter().copied());
+        self.density = match low == high {
+            true => Values::Uniform(low),
+            false => {
+                let mut all = vec![1.0; self.len];
+                { density.iter().zip(&self.slots) }.for_each(|(x, s)| all[*s as usize] = *x);
+                self.exchange.fill(&mut all);
+                Values::PerSlot(all)
+            }
+        };
     }
 
     /// Gives each slot its volume.

@@ -57,13 +57,8 @@ impl Fragments {
             size[*piece as usize] += 1;
             label.push(*piece);
         }
-        let mut order: Vec<u32> = (0..size.len() as u32).collect();
-        order.sort_by_key(|p| std::cmp::Reverse(size[*p as usize])); // stable: ties stay in order of lowest id
-        let mut rank = vec![0u32; order.len()];
-        for (r, p) in order.iter().enumerate() {
-            rank[*p as usize] = r as u32;
-        }
-        let mut mass = vec![0.0; order.len()];
+        let rank = by_size(&size);
+        let mut mass = vec![0.0; size.len()];
         for (l, own) in label.iter_mut().zip(masses) {
             *l = rank[*l as usize];
             mass[*l as usize] += own;
@@ -72,39 +67,39 @@ impl Fragments {
         Fragments { label, size, mass }
     }
 
-    /// The pieces of the body of all ranks, on the first; of more than one rank their masses are not known.
-    pub fn of_all<const D: usize>(
-        body: &Body<D>,
-        interaction: &dyn Interaction<D>,
-    ) -> Option<Fragments> {
+    /// The pieces of the body of all ranks, and in which of them the points are that are here; of more than one rank their masses are not known. All ask at once.
+    pub fn of_all<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Fragments {
         if body.subdomain().is_none() {
-            return Some(Fragments::of(body, interaction));
+            return Fragments::of(body, interaction);
         }
-        let joined = body.joined(Self::joined(body, interaction))?;
-        Some(Self::of_joined(body.all_points(), joined.iter()))
-    }
-
-    /// What whole bonds of this rank's points join: ids among all points, the lowest of each piece beside the others.
-    fn joined<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Vec<[u32; 2]> {
-        let id = body.id_of();
-        let mut sets = Sets::new(body.all_points());
-        interaction.each_bond(body, &mut |i, j, _, state| {
-            if state == BondStatus::Whole {
-                sets.join(id(i), id(j));
+        let parts = Parts::of(body, interaction);
+        let mut all: Vec<[u32; 2]> = body.all_of(&parts.sizes).concat();
+        all.sort_unstable();
+        let place = |name: u32| {
+            { all.binary_search_by_key(&name, |[name, _]| *name) }
+                .expect("somebody has a part of this name") as u32
+        };
+        let mut sets = Sets::new(all.len());
+        for [a, b] in body.all_of(&parts.joined).concat() {
+            sets.join(place(a), place(b));
+        }
+        // a part of many is called by the lowest of their names, and pieces are in order of these
+        let (mut piece, mut size) = (vec![0; all.len()], vec![]);
+        for (n, [_, points]) in (0..).zip(&all) {
+            let root = sets.root(n);
+            if root == n {
+                piece[n as usize] = size.len() as u32;
+                size.push(0);
             }
-        });
-        let all = 0..body.all_points() as u32;
-        all.map(|id| [id, sets.root(id)])
-            .filter(|[id, root]| id != root)
-            .collect()
-    }
-
-    /// Of so many points, from what is joined; their masses are not known.
-    fn of_joined<'a>(points: usize, joined: impl Iterator<Item = &'a [u32; 2]>) -> Fragments {
-        let mut sets = Sets::new(points);
-        joined.for_each(|[i, j]| sets.join(*i, *j));
-        let roots = (0..points as u32).map(|id| sets.root(id)).collect();
-        Self::of_roots(roots, std::iter::repeat(0.0))
+            piece[n as usize] = piece[root as usize];
+            size[piece[n as usize] as usize] += points;
+        }
+        let rank = by_size(&size);
+        let label = |name: u32| rank[piece[place(name) as usize] as usize];
+        let label = parts.names.into_iter().map(label).collect();
+        size.sort_unstable_by(|a, b| b.cmp(a));
+        let mass = vec![0.0; size.len()];
+        Fragments { label, size, mass }
     }
 
     /// Number of fragments, single points included.
@@ -113,7 +108,96 @@ impl Fragments {
     }
 }
 
-/// Disjoint sets of slots; the root of a set is its lowest slot.
+/// The places of pieces where larger ones come first, and of equal ones those that came first.
+fn by_size(size: &[u32]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..size.len() as u32).collect();
+    order.sort_by_key(|p| std::cmp::Reverse(size[*p as usize]));
+    let mut place = vec![0u32; order.len()];
+    for (n, p) in (0..).zip(&order) {
+        place[*p as usize] = n;
+    }
+    place
+}
+
+/// What hangs together on one rank, called by the lowest id among all points that it has there.
+struct Parts {
+    /// The part of each point that is here, in order of id.
+    names: Vec<u32>,
+    /// Names with numbers of points.
+    sizes: Vec<[u32; 2]>,
+    /// Parts, also of other ranks, that hang together over bonds of this one.
+    joined: Vec<[u32; 2]>,
+}
+
+impl Parts {
+    fn of<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Parts {
+        const NONE: u32 = u32::MAX;
+        let mut sets = Sets::new(body.len);
+        // points without a slot here go by their ids
+        let mut away: Vec<[u32; 2]> = vec![];
+        interaction.each_bond(body, &mut |i, j, _, state| {
+            if state != BondStatus::Whole {
+                return;
+            }
+            match [i.checked_sub(body.len), j.checked_sub(body.len)] {
+                [None, None] => sets.join(i as u32, j as u32),
+                [None, Some(id)] => away.push([i as u32, id as u32]),
+                [Some(id), None] => away.push([j as u32, id as u32]),
+                [Some(_), Some(_)] => unreachable!("one end of a bond is here"),
+            }
+        });
+        let mut first = vec![NONE; body.len];
+        let mut names = Vec::with_capacity(body.points());
+        for (id, slot) in body.slots.iter().enumerate() {
+            let first = &mut first[sets.root(*slot) as usize];
+            if *first == NONE {
+                *first = body.id_of_all(id) as u32;
+            }
+            names.push(*first);
+        }
+        let mut ordered = names.clone();
+        ordered.sort_unstable();
+        let parts = ordered.chunk_by(|a, b| a == b);
+        let sizes = parts.map(|of| [of[0], of.len() as u32]).collect();
+        // copies are called as where they are at home
+        let mut of_slots = vec![NONE; body.len];
+        { body.slots.iter().zip(&names) }.for_each(|(slot, name)| of_slots[*slot as usize] = *name);
+        body.exchange.fill(&mut of_slots);
+        let mut joined = vec![];
+        for slot in body.exchange.copies() {
+            let (root, name) = (sets.root(slot as u32) as usize, of_slots[slot]);
+            match first[root] {
+                NONE => first[root] = name,
+                other => joined.push([other, name]),
+            }
+        }
+        if body.exchange.any(!away.is_empty()) {
+            let mut ids: Vec<u32> = away.iter().map(|[_, id]| *id).collect();
+            ids.sort_unstable();
+            ids.dedup();
+            let own = body.whose();
+            let asked = body.all_of(&ids).concat().into_iter();
+            let known = asked.filter_map(|id| Some([id, names[own.place(id)?]]));
+            let mut known = body.all_of(&known.collect::<Vec<_>>()).concat();
+            known.sort_unstable();
+            for [slot, id] in away {
+                let at = known.binary_search_by_key(&id, |[id, _]| *id);
+                let [_, name] = known[at.expect("somebody has the point")];
+                joined.push([first[sets.root(slot) as usize], name]);
+            }
+        }
+        joined.retain(|[a, b]| a != b);
+        joined.sort_unstable();
+        joined.dedup();
+        Parts {
+            names,
+            sizes,
+            joined,
+        }
+    }
+}
+
+/// Disjoint sets; the root of a set is its lowest slot.
 struct Sets {
     parent: Vec<u32>,
 }

@@ -7,6 +7,7 @@ use super::{AXES, Point};
 use crate::error::BuildError;
 use crate::execute::memory;
 use crate::quantity::rounded;
+use std::ops::Range;
 
 /// The least that a point takes (bytes): its place, displacement, velocity and force.
 const POINT: f64 = 88.0;
@@ -38,101 +39,24 @@ impl Sites {
 /// A region without end along an axis of the lattice, one that holds no site, or one that spans more cells than
 /// points can be numbered; numbers that make no region or lattice.
 pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
-    let membership = Membership::new(lattice, region)?;
-    let dimension = lattice.kind.dimension();
-    let (low, high) = region.bounds();
-    let edges = lattice.kind.edges();
-    let (mut first, mut last) = ([0i32; 3], [0i32; 3]);
-    let mut cells = 1.0f64;
-    for a in 0..dimension {
-        let axis = AXES[a];
-        if !(low[a].is_finite() && high[a].is_finite()) && low[a] <= high[a] {
-            return Err(BuildError::invalid(
-                "body.region",
-                format!("the body has no end along {axis}"),
-            )
-            .help("clip the region with a block that is finite along every axis"));
-        }
-        let cell = |x: f64| (x - lattice.origin[a]) / (lattice.spacing * edges[a]);
-        // one cell of margin: membership decides, and it rounds
-        let (from, to) = (cell(low[a]).floor() - 1.0, cell(high[a]).ceil() + 1.0);
-        if low[a] <= high[a] && !(from > -5e8 && to < 5e8) {
-            return Err(BuildError::too_many(
-                "body.spacing",
-                format!("the body spans more than 5e8 lattice cells along {axis}"),
-            )
-            .help("check the units of the spacing and of the region"));
-        }
-        (first[a], last[a]) = (from as i32, to as i32);
-        cells *= (to - from + 1.0).max(0.0);
-    }
-    let basis = lattice.kind.basis();
-    if cells > f64::from(u32::MAX) {
-        return Err(BuildError::too_many(
-            "body.spacing",
-            format!("the region spans {} lattice cells", rounded(cells, 3)),
-        )
-        .help("points are numbered up to 4.29e9: use a larger spacing or a smaller region"));
-    }
-    let inside = |n: usize, of: usize| -> f64 {
-        // cells in the middle of n³ equal parts of the box
-        let mut found = 0usize;
-        for i in 0..n.pow(dimension as u32) {
-            let mut rest = i;
-            let q = crate::array::from_fn(|a| {
-                if a >= dimension {
-                    return 0;
-                }
-                let k = rest % n;
-                rest /= n;
-                let cells = i64::from(last[a]) - i64::from(first[a]) + 1;
-                4 * (i64::from(first[a]) + cells * (2 * k as i64 + 1) / of as i64) as i32
-            });
-            found += usize::from(membership.contains(q));
-        }
-        found as f64 / (n as f64).powi(dimension as i32)
-    };
-    let all = cells * basis.len() as f64;
-    if memory::available().is_some_and(|left| all * POINT > left) {
-        let points = all * inside(SAMPLES, 2 * SAMPLES);
-        memory::afford(
-            "body.spacing",
-            &format!("a body of {} points", rounded(points, 3)),
-            points * POINT,
-            "check the units of the spacing and of the region; a larger spacing or a smaller region makes fewer points",
-        )?;
-    }
+    let search = Search::new(lattice, region)?;
+    search.affordable(1)?;
+    let room = search.cells as usize * lattice.kind.basis().len();
     let mut quarters = Vec::new();
     // room for the whole box is only address space until it is written, and saves copying while growing
-    quarters
-        .try_reserve_exact(cells as usize * basis.len())
-        .map_err(|_| {
-            BuildError::too_large(
-                "body.spacing",
-                (
-                    (cells as usize * basis.len() * size_of::<[i32; 3]>()) as f64,
-                    memory::available(),
-                ),
-                format!(
-                    "no memory for the sites of {} lattice cells",
-                    rounded(cells, 3)
-                ),
-            )
-        })?;
-    for k in first[2]..=last[2] {
-        for j in first[1]..=last[1] {
-            for i in first[0]..=last[0] {
-                for b in basis {
-                    let q = [4 * i + b[0], 4 * j + b[1], 4 * k + b[2]];
-                    if membership.contains(q) {
-                        quarters.push(q);
-                    }
-                }
-            }
-        }
-    }
+    quarters.try_reserve_exact(room).map_err(|_| {
+        BuildError::too_large(
+            "body.spacing",
+            ((room * size_of::<[i32; 3]>()) as f64, memory::available()),
+            format!(
+                "no memory for the sites of {} lattice cells",
+                rounded(search.cells, 3)
+            ),
+        )
+    })?;
+    search.each(search.layers(), |q| quarters.push(q));
     if quarters.is_empty() {
-        return Err(empty(lattice, low, high));
+        return Err(search.empty());
     }
     quarters.shrink_to_fit();
     Ok(Sites {
@@ -141,7 +65,152 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
     })
 }
 
-/// Says how far the region reaches and where the lattice has its next site.
+/// The cells of a lattice that may have sites in a region, layer by layer along the last axis.
+#[derive(Debug)]
+pub struct Search {
+    lattice: Lattice,
+    membership: Membership,
+    /// Of the region.
+    ends: [Point; 2],
+    first: [i32; 3],
+    last: [i32; 3],
+    /// How many.
+    cells: f64,
+}
+
+impl Search {
+    /// # Errors
+    /// As of [`fill`], but that nothing is found.
+    pub fn new(lattice: &Lattice, region: &Region) -> Result<Search, BuildError> {
+        let membership = Membership::new(lattice, region)?;
+        let dimension = lattice.kind.dimension();
+        let (low, high) = region.bounds();
+        let edges = lattice.kind.edges();
+        let (mut first, mut last) = ([0i32; 3], [0i32; 3]);
+        let mut cells = 1.0f64;
+        for a in 0..dimension {
+            let axis = AXES[a];
+            if !(low[a].is_finite() && high[a].is_finite()) && low[a] <= high[a] {
+                return Err(BuildError::invalid(
+                    "body.region",
+                    format!("the body has no end along {axis}"),
+                )
+                .help("clip the region with a block that is finite along every axis"));
+            }
+            let cell = |x: f64| (x - lattice.origin[a]) / (lattice.spacing * edges[a]);
+            // one cell of margin: membership decides, and it rounds
+            let (from, to) = (cell(low[a]).floor() - 1.0, cell(high[a]).ceil() + 1.0);
+            if low[a] <= high[a] && !(from > -5e8 && to < 5e8) {
+                return Err(BuildError::too_many(
+                    "body.spacing",
+                    format!("the body spans more than 5e8 lattice cells along {axis}"),
+                )
+                .help("check the units of the spacing and of the region"));
+            }
+            (first[a], last[a]) = (from as i32, to as i32);
+            cells *= (to - from + 1.0).max(0.0);
+        }
+        if cells > f64::from(u32::MAX) {
+            return Err(BuildError::too_many(
+                "body.spacing",
+                format!("the region spans {} lattice cells", rounded(cells, 3)),
+            )
+            .help("points are numbered up to 4.29e9: use a larger spacing or a smaller region"));
+        }
+        Ok(Search {
+            lattice: *lattice,
+            membership,
+            ends: [low, high],
+            first,
+            last,
+            cells,
+        })
+    }
+
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// Is there memory for one of so many parts?
+    ///
+    /// # Errors
+    /// There is less.
+    pub fn affordable(&self, parts: usize) -> Result<(), BuildError> {
+        let all = self.cells * self.lattice.kind.basis().len() as f64;
+        if memory::available().is_some_and(|left| all * POINT > left * parts as f64) {
+            let points = all * self.held();
+            memory::afford(
+                "body.spacing",
+                &format!("a body of {} points", rounded(points, 3)),
+                points * POINT / parts as f64,
+                "check the units of the spacing and of the region; a larger spacing or a smaller region makes fewer points",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// About which part of the cells the region holds: of those in the middle of equal parts of the box.
+    fn held(&self) -> f64 {
+        let dimension = self.lattice.kind.dimension();
+        let all = SAMPLES.pow(dimension as u32);
+        let mut found = 0usize;
+        for i in 0..all {
+            let mut rest = i;
+            let q = crate::array::from_fn(|a| {
+                if a >= dimension {
+                    return 0;
+                }
+                let k = rest % SAMPLES;
+                rest /= SAMPLES;
+                let cells = i64::from(self.last[a]) - i64::from(self.first[a]) + 1;
+                let part = cells * (2 * k as i64 + 1) / (2 * SAMPLES) as i64;
+                4 * (i64::from(self.first[a]) + part) as i32
+            });
+            found += usize::from(self.contains(q));
+        }
+        found as f64 / all as f64
+    }
+
+    /// Is this site of the lattice in the region?
+    pub fn contains(&self, quarter: [i32; 3]) -> bool {
+        self.membership.contains(quarter)
+    }
+
+    /// Cells along the last axis of the lattice.
+    pub fn layers(&self) -> Range<i32> {
+        let a = self.lattice.kind.dimension() - 1;
+        self.first[a]..self.last[a].saturating_add(1)
+    }
+
+    /// The sites in these layers, cell by cell (z, y, x with x fastest).
+    pub fn each(&self, layers: Range<i32>, mut site: impl FnMut([i32; 3])) {
+        let (basis, whole) = (self.lattice.kind.basis(), self.layers());
+        let layers = layers.start.max(whole.start)..layers.end.min(whole.end);
+        let along = |a: usize| match a + 1 == self.lattice.kind.dimension() {
+            true => layers.clone(),
+            false => self.first[a]..self.last[a].saturating_add(1),
+        };
+        for k in along(2) {
+            for j in along(1) {
+                for i in along(0) {
+                    for b in basis {
+                        let q = [4 * i + b[0], 4 * j + b[1], 4 * k + b[2]];
+                        if self.contains(q) {
+                            site(q);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Says how far the region reaches and where the lattice has its next site.
+    pub fn empty(&self) -> BuildError {
+        let [low, high] = self.ends;
+        empty(&self.lattice, low, high)
+    }
+}
+
 fn empty(lattice: &Lattice, low: Point, high: Point) -> BuildError {
     let dimension = lattice.kind.dimension();
     let kind = lattice.kind.name();

@@ -45,7 +45,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
         ranks: Option<&Arc<Comm>>,
         warnings: &mut Warnings,
     ) -> Result<Self, BuildError> {
-        let (mut parts, mut body) = parts::<D>(spec)?;
+        let (mut parts, mut body) = parts::<D>(spec, ranks)?;
         match (potentials, spec.bonds.family) {
             (Some(potentials), _) if current_neighbours(spec) => {
                 atoms::check_box(potentials, &body.period())?;
@@ -83,7 +83,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
         complete(&mut parts, &mut body, spec.body.pieces(), shelf)?;
         if !body.horizons().is_empty() {
             let own = body.slots().iter().map(|s| body.horizons()[*s as usize]);
-            least_horizon = own.fold(least_horizon, f64::min);
+            least_horizon = body.least(own.fold(least_horizon, f64::min));
         }
         let by_length = |p: &&Part| matches!(p.spec.bonds.horizon, Horizon::Length(_));
         let ends = parts.iter().filter(by_length).flat_map(|p| &p.stencil);
@@ -102,14 +102,16 @@ impl<'a, const D: usize> Bodies<'a, D> {
         };
         let nearest = gaps::between(&body, reach(spec, &parts, &body, horizon));
         if let Some(ranks) = ranks {
-            // all ranks know all points until here, and find the same mistakes
             let ended = surface::ended(spec, &body);
             let whole = ended.as_ref().unwrap_or(&body);
             warnings.extend(meant::all(spec, whole, &names.sets)?);
             names.faces.find(spec, whole, &names.sets)?;
-            let beside = interfaces::ends(spec, &body)?;
-            body = body.subdomain_beside(ranks, halo(spec, &body, horizon), &beside);
-            cut(&mut names, &body);
+            if body.subdomain().is_none() {
+                // all ranks know all points until here, and find the same mistakes
+                let beside = interfaces::ends(spec, &body)?;
+                body = body.subdomain_beside(ranks, halo(spec, &body, horizon), &beside);
+                cut(&mut names, &body);
+            }
             agreed(&body, enough(spec, &parts, &body))?;
         }
         Ok(Bodies {

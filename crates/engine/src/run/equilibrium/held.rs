@@ -58,10 +58,11 @@ impl<const D: usize> Everyone<D> {
         let support = whole_support(&system.body, support);
         let places = system.body.whole(D, system.body.places().into_flattened());
         let parts = Fragments::of_all(&system.body, system.interaction.as_ref());
+        let parts = system.body.whole(1, parts.label);
         Some(Everyone {
             support: support?,
             places: places?.as_chunks().0.to_vec(),
-            parts: parts?.label,
+            parts: parts?,
             period: system.body.period(),
         })
     }

@@ -160,7 +160,7 @@ impl<const D: usize> RankModel<D> {
                 Ask::Step => drop(self.step()),
                 Ask::Ledger => drop(self.model.ledger()),
                 Ask::Summary => drop(self.model.summary()),
-                Ask::Fragments => drop(self.fragments()),
+                Ask::Fragments => _ = self.fragments(),
                 Ask::Observed => drop(self.observed()),
                 Ask::Forces => drop(self.forces()),
                 Ask::LinearBody => drop(linear_of_all(&mut self.model)),
@@ -323,8 +323,7 @@ impl<const D: usize> Simulation for AllRanks<D> {
 
     fn fragments(&self) -> u64 {
         self.ask(&Ask::Fragments);
-        let fragments = self.own.fragments();
-        fragments.expect("this rank gathers").count() as u64
+        self.own.fragments()
     }
 
     fn members(&self, set: &str) -> Option<Vec<u32>> {

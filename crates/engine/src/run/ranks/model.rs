@@ -73,9 +73,9 @@ impl<const D: usize> RankModel<D> {
         all
     }
 
-    /// Pieces of the body of all ranks, on the first; their masses are not known.
-    pub(super) fn fragments(&self) -> Option<Fragments> {
-        Fragments::of_all(self.body(), self.model.system.interaction.as_ref())
+    /// Number of pieces of the body of all ranks.
+    pub(super) fn fragments(&self) -> u64 {
+        Fragments::of_all(self.body(), self.model.system.interaction.as_ref()).count() as u64
     }
 
     /// Of the model of all ranks, on the first.
