@@ -24,6 +24,7 @@ RANKS = [1, 2, 3, 4]
 LENGTHS = 4
 DECKS = Path(__file__).resolve().parents[2] / "decks/good"
 DECK = DECKS / "ten_lines.toml"
+SCRIPTS = DECKS.parents[1] / "verify/lammps/cases"
 # what is run of it on any number of ranks, of another one on three: keys, where it is cut off, bonds that break at least
 ASKED = {
     "ten_lines": (["body.spacing=1 mm", "run.steps=200", "output.every=60"], 110, 10_000),
@@ -36,6 +37,7 @@ ASKED = {
     "silicon_torn": (["run.steps=600"], 350, 10),
     "braking_block": ([], 90, 0),
     "glued_solids": ([], 20, 10),
+    "in.indent_pmb": ([], 30, 10),
 }
 # a run that is killed: as the first one, with a state every fifth of a second
 KILLED = ["--set", "body.spacing=1 mm", "--set", "run.steps=400", "--set", "output.every=150", "--set", 'output.checkpoint={ every = "0.2 s", keep = 2 }']
@@ -74,7 +76,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             for parts in [1, 2]:
                 out = Path(folder) / f"{parts}"
-                first = ["run", DECKS / f"{deck}.toml", *keys, "--out", out]
+                path = SCRIPTS / deck if deck.startswith("in.") else DECKS / f"{deck}.toml"
+                first = ["run", path, *keys, "--out", out]
                 cut = ["--stop-after", stop] if parts == 2 else []
                 for part, words in enumerate([[*first, *cut], ["resume", out]][:parts]):
                     # what was cut off goes on in one process
@@ -95,7 +98,7 @@ def main():
 
     def written(out):
         record = json.loads((out / "run.json").read_text())
-        files = {str(p.relative_to(out)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(out.rglob("*")) if p.is_file() and p.name not in ["run.json", "report.html"]}
+        files = {str(p.relative_to(out)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(out.rglob("*")) if p.is_file() and p.name not in ["run.json", "report.html"] and p.suffix != ".log"}
         return record["state_hash"], record["ledger_hash"], files
 
     def killed(mpi, whole):

@@ -84,8 +84,8 @@ struct Findings<'a> {
     fields: Vec<continuum::Found>,
     /// Points of each indenter that two of its sides push alike.
     ties: Vec<usize>,
-    /// Can ranks share the run? What they do not share yet; `None`: it is of a script.
-    ranks: Option<Result<(), String>>,
+    /// Can ranks share the run? What they do not share yet.
+    ranks: Result<(), String>,
 }
 
 impl Findings<'_> {
@@ -148,7 +148,12 @@ struct Subject {
     steps: u64,
     increments: u64,
     fields: Option<FieldsPlan>,
-    ranks: Option<Result<(), String>>,
+    ranks: Result<(), String>,
+}
+
+/// Can ranks share the run of a spec?
+fn shared(spec: &Spec) -> Result<(), String> {
+    peridyne::run::ranks::shared(spec).map_err(|e| e.message.to_string())
 }
 
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
@@ -156,6 +161,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     if !deck::is_deck(input) {
         return with_threads(arguments.threads, |threads| {
             let (mut prepared, setup) = script::prepare(input)?;
+            let ranks = shared(&prepared.spec);
             let subject = Subject {
                 spec: prepared.spec,
                 units: setup.units.system(),
@@ -164,7 +170,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
                 steps: setup.steps,
                 increments: 0,
                 fields: None,
-                ranks: None,
+                ranks,
             };
             report(arguments, &subject, prepared.simulation.as_mut(), threads)
         });
@@ -194,9 +200,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             steps: deck.steps(sim.info().time_step) - deck.increments(),
             increments: deck.increments(),
             fields: crate::run::continuum(&deck),
-            ranks: Some(
-                peridyne::run::ranks::shared(&deck.spec).map_err(|e| e.message.to_string()),
-            ),
+            ranks: shared(&deck.spec),
             units: deck.units,
             spec: deck.spec,
             script: false,

@@ -12,6 +12,7 @@ use peridyne::spec::{Spec, TransferMethod};
 use peridyne_comm::Comm;
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use peridyne_io::read::{encoding, source};
+use peridyne_io::write::shares::write_share;
 use std::sync::Arc;
 
 /// Is this file a deck, as opposed to a LAMMPS script?
@@ -161,7 +162,7 @@ pub fn model_among(
         simd: agreed(comm, simd(input))?,
         ..Options::default()
     };
-    peridyne::run::ranks::build(spec, options, comm).map_err(|e| match e.kind {
+    peridyne::run::ranks::build(spec, options, comm, write_share).map_err(|e| match e.kind {
         BuildErrorKind::Elsewhere => Failure::Elsewhere,
         _ => Failure::Input(deck.explain(&e).into()),
     })

@@ -73,8 +73,7 @@ fn resume_among(arguments: &ResumeArguments, comm: &Arc<Comm>) -> Result<(), Fai
         early: arguments.early.clone(),
     };
     if anew.is_none() && !deck::is_deck(&run.input) {
-        alone(comm, "scripts of LAMMPS")?;
-        return resume_script(run, asked, from);
+        return resume_script(run, comm, asked, from);
     }
     if anew.is_none()
         && let Some(law) = agreed(comm, law::read(&run.input))?
@@ -129,26 +128,36 @@ fn same_deck(asked: &Asked, text: &str) -> Result<(), Failure> {
 }
 
 /// A script of LAMMPS.
-fn resume_script(mut run: RunArguments, asked: Asked, mut from: Checkpoint) -> Result<(), Failure> {
+fn resume_script(
+    mut run: RunArguments,
+    comm: &Arc<Comm>,
+    asked: Asked,
+    mut from: Checkpoint,
+) -> Result<(), Failure> {
     // of a script these are its variables
     (run.input.set, run.input.var) = (vec![], asked.set.clone());
-    if deck::text(&run.input)? != asked.text {
-        return Err(Failure::input(format!(
-            "{}: this is not the script that the run began with; put it back, or begin anew with peridyne run",
-            asked.deck.display()
-        )));
-    }
-    for (path, _) in &asked.files {
-        // one that cannot be read is not the same
-        let _ = source::open(path);
-    }
-    same_files(&asked.files, &source::sums())?;
+    let same = || {
+        if deck::text(&run.input)? != asked.text {
+            return Err(Failure::input(format!(
+                "{}: this is not the script that the run began with; put it back, or begin anew with peridyne run",
+                asked.deck.display()
+            )));
+        }
+        for (path, _) in &asked.files {
+            // one that cannot be read is not the same
+            let _ = source::open(path);
+        }
+        same_files(&asked.files, &source::sums())
+    };
+    agreed(comm, same())?;
     let mut place = run.place_of_script();
-    from.load(|archive| archive.one("shared", &mut place.shared))
-        .map_err(|e| Failure::input(e.to_string()))?;
-    going_on(&asked);
-    with_threads(run.threads, |threads| {
-        script::run(&place, threads, Some((asked, from)))
+    let shared = from.load(|archive| archive.one("shared", &mut place.shared));
+    agreed(comm, shared.map_err(|e| Failure::input(e.to_string())))?;
+    if comm.rank() == 0 {
+        going_on(&asked);
+    }
+    with_threads(threads_here(comm, run.threads)?, |threads| {
+        script::run_among(&place, (comm, threads), Some((asked, from)))
     })
 }
 

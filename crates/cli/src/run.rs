@@ -77,10 +77,9 @@ impl RunArguments {
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     shared(arguments.on_threads, |comm| {
         if !deck::is_deck(&arguments.input) {
-            alone(comm, "scripts of LAMMPS")?;
             let place = arguments.place_of_script();
-            return with_threads(arguments.threads, |threads| {
-                script::run(&place, threads, None)
+            return with_threads(threads_here(comm, arguments.threads)?, |threads| {
+                script::run_among(&place, (comm, threads), None)
             });
         }
         if let Some(deck) = agreed(comm, law::read(&arguments.input))? {

@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne::state::Archive;
+use peridyne_comm::Comm;
 use peridyne_io::deck::{Dim, UnitSystem, counted};
 use peridyne_io::drive::default_dir;
 use peridyne_io::write::atomic::{create_directory, write_file};
@@ -23,12 +24,13 @@ use peridyne_io::write::run_json::{
 };
 use peridyne_io::write::{Series, SeriesOptions, WriteError};
 use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup, Wish};
-use peridyne_lammps::model::{ModelEngine, ModelHost, Prepared};
+use peridyne_lammps::model::{ModelEngine, ModelHost, Prepared, Sharing};
 use peridyne_lammps::{Options, Outcome, Record, go_on_text, run_text};
 use std::cell::RefCell;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The model of a script as it stands at its first `run`, which does not take place. Nothing is written.
@@ -42,6 +44,7 @@ pub fn prepare(input: &Input) -> Result<(Prepared, Setup), Failure> {
     let mut host = Inspector {
         host: ModelHost {
             simd: deck::simd(input)?,
+            ranks: None,
         },
         found: None,
     };
@@ -68,8 +71,7 @@ struct Inspector {
 
 impl Host for Inspector {
     fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError> {
-        let prepared = self.host.prepare(&setup)?;
-        self.found = Some((prepared, setup));
+        self.found = self.host.prepare(&setup)?.map(|prepared| (prepared, setup));
         Err(HostError::new("checked"))
     }
 }
@@ -129,11 +131,84 @@ impl<'a> Place<'a> {
     }
 }
 
+/// Runs a script that ranks share, or lets it go on from a state: the first one does, the others read it up to its first `run` and follow the model.
+pub fn run_among(
+    place: &Place<'_>,
+    (comm, threads): (&Arc<Comm>, usize),
+    from: Option<(Asked, Checkpoint)>,
+) -> Result<(), Failure> {
+    if comm.ranks() == 1 {
+        return run(place, (None, threads), from);
+    }
+    let sharing = Sharing::new(comm);
+    let ended = match comm.rank() {
+        0 => {
+            note(&format!("{} ranks: {}", comm.ranks(), comm.carrier()));
+            run(place, (Some((&sharing, comm.ranks())), threads), from)
+        }
+        _ => follow(place.input, &sharing),
+    };
+    match sharing.leave(ended.is_ok()) {
+        // there was no run to follow
+        Some(true) => ended.or_else(|e| match e {
+            Failure::Elsewhere => Ok(()),
+            other => Err(other),
+        }),
+        Some(false) | None => ended,
+    }
+}
+
+/// Follows the model of a script.
+fn follow(input: &Input, sharing: &Sharing) -> Result<(), Failure> {
+    // what is wrong the first rank says
+    let elsewhere = |_| Failure::Elsewhere;
+    let text = deck::text(input).map_err(elsewhere)?;
+    let name = input.file.display().to_string();
+    let options = Options {
+        dry: true,
+        ..options(input, Path::new("")).map_err(elsewhere)?
+    };
+    let mut host = Follower {
+        host: ModelHost {
+            simd: deck::simd(input).map_err(elsewhere)?,
+            ranks: Some(sharing.clone()),
+        },
+        followed: false,
+    };
+    // it comes no further than to its first run
+    let _ = run_text(&name, &text, &options, &mut host, &mut Silent);
+    match host.followed {
+        true => Ok(()),
+        false => Err(Failure::Elsewhere),
+    }
+}
+
+/// Has nobody who runs a model, but follows the first rank's.
+struct Follower {
+    host: ModelHost,
+    followed: bool,
+}
+
+impl Host for Follower {
+    fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError> {
+        self.followed = self.host.prepare(&setup)?.is_none();
+        Err(HostError::new("followed"))
+    }
+}
+
+/// Says nothing.
+struct Silent;
+
+impl Console for Silent {
+    fn print(&mut self, _: &str) {}
+    fn note(&mut self, _: &str) {}
+}
+
 /// Run a script, or let it go on from a state. Files that it names go to the folder of its results where that was given, or to the
 /// current folder as with LAMMPS; the report, the picture and the last state go to `out/<name of the script>` then.
-pub fn run(
+fn run(
     place: &Place<'_>,
-    threads: usize,
+    (sharing, threads): (Option<(&Sharing, usize)>, usize),
     from: Option<(Asked, Checkpoint)>,
 ) -> Result<(), Failure> {
     let (input, results) = (place.input, place.dir.clone());
@@ -155,6 +230,7 @@ pub fn run(
     let mut host = Holder {
         host: ModelHost {
             simd: deck::simd(input)?,
+            ranks: sharing.map(|(sharing, _)| sharing.clone()),
         },
         dir: results.clone(),
         held: None,
@@ -209,6 +285,7 @@ pub fn run(
         name: &name,
         text: &text,
         command,
+        ranks: sharing.map_or(1, |(_, ranks)| ranks),
         threads,
         ended_by: ended_by.filter(|_| ended),
     };
@@ -313,6 +390,7 @@ struct Told<'a> {
     name: &'a str,
     text: &'a str,
     command: String,
+    ranks: usize,
     threads: usize,
     /// Who ended it early.
     ended_by: Option<String>,
@@ -479,7 +557,7 @@ impl Told<'_> {
             broken_directed_bonds: broken,
             fragments: Some(fragments),
             hash,
-            ranks: 1,
+            ranks: self.ranks,
             threads: self.threads,
             simd: info.simd.to_string(),
             energy: EnergyReport::from(&ledger),

@@ -277,25 +277,30 @@ fn what_ranks_cannot_share_is_told_once_and_writes_nothing() {
         "did you mean `m_ratio`?",
     );
     refused(BLOCK, &["--threads", "0"], "at least one thread must run");
-    let smoothed = r#"
-        units = "lj"
-        periodic = ["x", "y", "z"]
-        family = "reference"
-        horizon = 2.5
-        smooth = { kernel = "polynomial", smoothness = 5, width = 4, spacing = 1.57 }
-        body = { lattice = "fcc", spacing = 1.57, cells = [6, 4, 4] }
-        material = { mass = 1, law = { lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5, end = "shifted_force" } } }
-        run = { steps = 2, time_step = 0.001 }
-    "#;
-    refused(smoothed, &[], "ranks do not share fields on nodes");
     // where one rank has its points
     let nowhere = r#"initial=[{ velocity = { x = "1 mm^2/s / max(z - 4 mm, 0 mm)" } }]"#;
     refused(BLOCK, &["--set", nowhere], "is inf at");
+    // scripts: without a run, wrong before it, and wrong in it on all ranks
     let script = dir.path().join("in.block");
-    std::fs::write(&script, "units si\n").unwrap();
-    let output = run(&script, &out, &["--on-threads", "2"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(errors(&output).contains("ranks do not share scripts of LAMMPS"));
+    let block = "units si\nboundary s s s\natom_style peri\natom_modify map array\nlattice sc 1\nregion b block 0 9 0 9 0 9 units box\ncreate_box 1 b\ncreate_atoms 1 region b\npair_style peri/pmb\n";
+    for (text, code, said) in [
+        ("units si\n".to_string(), 0, ""),
+        (
+            "units si\nregoin b block 0 1 0 1 0 1\n".to_string(),
+            2,
+            "regoin",
+        ),
+        (
+            format!("{block}pair_coeff * * 1 0.5 1 0\nrun 1\n"),
+            2,
+            "horizon",
+        ),
+    ] {
+        std::fs::write(&script, text).unwrap();
+        let output = run(&script, &out, &["--on-threads", "3"]);
+        assert_eq!(output.status.code(), Some(code), "{}", errors(&output));
+        assert!(errors(&output).contains(said), "{}", errors(&output));
+    }
     // a state goes on with any number of them
     std::fs::write(&file, BLOCK).unwrap();
     let more = [

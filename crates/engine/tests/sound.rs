@@ -362,7 +362,8 @@ fn a_body_is_changed_within_its_slots() {
     let mut body = lattice(9, 2);
     let (law, constants) = lps();
     let mut it = stencil_of(&body, 2, law, constants);
-    body.retain(|s| s % 2 == 0);
+    let gone: Vec<u32> = (0..body.points() as u32).filter(|id| id % 2 == 1).collect();
+    body.remove(&gone);
     body.set_volumes(vec![0.5; body.len()]);
     body.set_horizons(vec![1.0; body.len()]);
     it.energy(&body, view(&body.at_rest()));

@@ -282,7 +282,6 @@ impl Run {
         for writer in std::mem::take(&mut self.writers) {
             writer.end(&mut now, &mut made)?;
         }
-        let snapshot = now.snapshot();
         let hash = sim.state_hash();
         let status = match &stopped {
             Some(error) => Status::Stopped(plan.units.tell(&error.message())),
@@ -327,7 +326,7 @@ impl Run {
             warnings: known.warnings,
             setting: Some(Setting {
                 slices: made.slices,
-                ..plan.setting(sim, &snapshot, &made.pictures, made.paths)
+                ..plan.setting(sim, &made.pictures, made.paths)
             }),
             pictures: made.pictures,
         };

@@ -73,7 +73,7 @@ pub fn write(found: &Findings) -> String {
             "bodies": g.bodies.map(|b| info.bodies[b].0.as_str()), "distance": g.distance, "contact": g.contact,
         })).collect::<Vec<_>>(),
         "memory_bytes": info.bytes,
-        "ranks": found.ranks.as_ref().map(|r| json!({"shared": r.is_ok(), "why_not": r.as_ref().err()})),
+        "ranks": json!({"shared": found.ranks.is_ok(), "why_not": found.ranks.as_ref().err()}),
         "threads": found.threads,
         "simd": info.simd,
         "seconds_per_step": found.trial.seconds_per_step,

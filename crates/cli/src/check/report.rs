@@ -97,16 +97,13 @@ fn cost(found: &Findings) -> String {
             row(&mut out, "speed", "motion was not reached in the trial");
         }
     }
-    if let Some(ranks) = &found.ranks {
-        let of_one = |why: &String| format!("one process: {why}");
-        let shared =
-            "share the run, one for each 256 points at most, with the same bits (mpiexec -n)";
-        row(
-            &mut out,
-            "ranks",
-            ranks.as_ref().err().map_or(shared.into(), of_one),
-        );
-    }
+    let of_one = |why: &String| format!("one process: {why}");
+    let shared = "share the run, one for each 256 points at most, with the same bits (mpiexec -n)";
+    row(
+        &mut out,
+        "ranks",
+        found.ranks.as_ref().err().map_or(shared.into(), of_one),
+    );
     if let Some(why) = &found.untried {
         row(&mut out, "not tried", why);
     }

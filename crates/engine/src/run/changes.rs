@@ -5,6 +5,7 @@ use super::Wall;
 use super::system::System;
 use crate::body::FAR;
 use crate::spec::CrackKind;
+use std::collections::HashSet;
 
 impl<const D: usize> System<D> {
     /// Mirrors points that are behind the wall, with their velocity across it.
@@ -30,20 +31,19 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Takes points away, between steps: like sites that were never there, they are far from everything, at rest and without bonds.
-    /// Answers the new ids of those that stay.
+    /// Takes points away, by their ids among those of all ranks: like sites that were never there, they are far from everything, at rest and without bonds.
+    /// Answers the new ids of those that stay, of this rank's points by their ids here.
     pub(super) fn take_away(&mut self, ids: &[u32]) -> Vec<Option<u32>> {
-        let gone: std::collections::HashSet<u32> = ids
-            .iter()
-            .map(|id| self.body.slots()[*id as usize])
+        let mut gone_ids = ids.to_vec();
+        gone_ids.sort_unstable();
+        gone_ids.dedup();
+        let is_here = self.body.whose();
+        let here = gone_ids.iter().filter_map(|id| is_here.place(*id));
+        let gone: HashSet<u32> = here.map(|id| self.body.slots()[id]).collect();
+        let own: Vec<[f64; 3]> = { gone.iter() }
+            .map(|s| self.body.position(*s as usize))
             .collect();
-        let places: Vec<[f64; D]> = gone
-            .iter()
-            .map(|s| {
-                let x = self.body.position(*s as usize);
-                crate::array::from_fn(|a| x[a])
-            })
-            .collect();
+        let places = self.body.all_of(&own).concat();
         // bonds know their ends by where they are in the reference, up to round-off
         let near = (1e-6 * self.body.spacing()).powi(2);
         let is_gone = |x: [f64; D]| {
@@ -67,22 +67,22 @@ impl<const D: usize> System<D> {
         let keep = |s: u32| !gone.contains(&s);
         // ids of those that stay
         let mut next = 0;
-        let moved: Vec<Option<u32>> = self
-            .body
-            .slots()
-            .iter()
+        let moved: Vec<Option<u32>> = { self.body.slots().iter() }
             .map(|s| {
                 let id = keep(*s).then_some(next);
                 next += u32::from(id.is_some());
                 id
             })
             .collect();
-        self.body.retain(keep);
-        self.info.points = self.body.slots().len() as u64;
+        self.body.remove(&gone_ids);
+        self.info.points = self.body.all_points() as u64;
         self.prescribed.all_mut().for_each(|p| p.retain(&keep));
         self.applied.all().for_each(|x| x.retain(&keep));
         if let Some(friction) = self.contact.as_mut().and_then(|c| c.friction.as_mut()) {
-            friction.renumber(&moved);
+            friction.renumber(&|id| match gone_ids.binary_search(&id) {
+                Ok(_) => None,
+                Err(below) => Some(id - below as u32),
+            });
         }
         self.watch.forget();
         self.stressed = None;

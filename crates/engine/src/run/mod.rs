@@ -279,6 +279,12 @@ pub trait Simulation: Steered + Examined + Owner + Send {
     fn column(&mut self, name: &str) -> Option<Column>;
     /// Displacements and these columns, of what exists; unbroken bonds if asked for. Nothing else is computed.
     fn snapshot(&mut self, fields: &[&str], bonds: bool) -> Snapshot;
+    /// Has a frame of displacements and these columns written by ranks, each the points of its [`Share`](ranks::Share) as `asked` says (one line), and
+    /// answers what they say of it, in order of ids. `None`: one process has all points, and a [`Snapshot`] of them.
+    fn shares(&mut self, fields: &[&str], asked: &str) -> Option<Vec<Vec<u8>>> {
+        let _ = (fields, asked);
+        None
+    }
     /// What the model is now, in two numbers: for a look whether two runs went the same way.
     fn state_hash(&mut self) -> StateHash;
     /// Sets a persistent column of the law, or of what spreads, to numbers as [`Simulation::column`] gives them, those of the dimension's components
@@ -322,7 +328,7 @@ pub trait Steered {
     fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>);
     /// Points that no force moves. Replaces those of the last call for the same way.
     fn prescribe(&mut self, way: Prescription, ids: &[u32]);
-    /// Takes points away for ever: their bonds break without a force, all ids above theirs move down. Driven values must
+    /// Takes points away for ever, these ids in order: their bonds break without a force, all ids above theirs move down. Driven values must
     /// be set anew before the next forces.
     fn remove(&mut self, ids: &[u32]);
     fn set_time(&mut self, step: u64, time: f64);
@@ -343,9 +349,11 @@ pub trait Steered {
     /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
     /// order in which they act, after all other forces. Replaces those of the last call.
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]);
-    /// Hands driven condition `index` a value for the next force evaluation ([`Simulation::start`] or [`Simulation::step`]), if there is one
-    /// to hand over, and answers what it had at the last. `None`: there is no such condition, or it is of another kind.
-    fn exchange(&mut self, index: usize, value: Option<&Drive>) -> Option<Reaction>;
+    /// Hands driven condition `index` a value for the next force evaluation ([`Simulation::start`] or [`Simulation::step`]); false: there is no such
+    /// condition, or it is of another kind.
+    fn drive(&mut self, index: usize, value: &Drive) -> bool;
+    /// What driven condition `index` had at the last; `None`: there is none.
+    fn reaction(&mut self, index: usize) -> Option<Reaction>;
 }
 
 /// What somebody asks who examines a model: its families, its answers to strains and displacements, equilibria and vibrations.

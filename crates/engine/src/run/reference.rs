@@ -126,6 +126,7 @@ pub(super) fn reference<const D: usize>(
             };
             if let Some(ranks) = ranks
                 && perturb.is_none()
+                && spec.bonds.smooth.is_none()
                 && !listed(spec)
             {
                 let search = Search::new(&lattice, region)?;

@@ -131,9 +131,13 @@ impl<const D: usize> Steered for Model<D> {
         }
     }
 
-    fn exchange(&mut self, index: usize, value: Option<&Drive>) -> Option<Reaction> {
-        let driven = self.system.applied.driven.get_mut(index)?;
-        let taken = value.is_none_or(|value| driven.set(value));
-        taken.then(|| driven.reaction())
+    fn drive(&mut self, index: usize, value: &Drive) -> bool {
+        let driven = self.system.applied.driven.get_mut(index);
+        driven.is_some_and(|driven| driven.set(value))
+    }
+
+    fn reaction(&mut self, index: usize) -> Option<Reaction> {
+        let driven = self.system.applied.driven.get(index)?;
+        Some(driven.reaction(&self.system.body))
     }
 }

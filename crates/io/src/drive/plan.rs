@@ -78,8 +78,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// What a frame shows.
-    pub(super) fn look(&self, sim: &mut dyn Simulation) -> Snapshot {
+    /// Columns of a frame beside displacements, of which a model may not have all.
+    pub(super) fn frame_fields(&self, sim: &dyn Simulation) -> Vec<String> {
         let mut fields: Vec<&str> = self.fields.iter().map(String::as_str).collect();
         for picture in &self.series.pictures {
             let shown = match &picture.field {
@@ -97,6 +97,13 @@ impl Plan {
                 }
             }
         }
+        fields.into_iter().map(String::from).collect()
+    }
+
+    /// What a frame shows.
+    pub(super) fn look(&self, sim: &mut dyn Simulation) -> Snapshot {
+        let fields = self.frame_fields(sim);
+        let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
         sim.snapshot(&fields, self.series.bonds)
     }
 

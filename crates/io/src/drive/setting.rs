@@ -3,7 +3,6 @@
 use super::plan::Plan;
 use crate::deck::Dim;
 use crate::write::run_json::{FieldNote, RigidNote, Setting, UnitNames};
-use peridyne::observe::Snapshot;
 use peridyne::run::Simulation;
 
 impl Plan {
@@ -11,7 +10,6 @@ impl Plan {
     pub(super) fn setting(
         &self,
         sim: &mut dyn Simulation,
-        last: &Snapshot,
         pictures: &[String],
         indenters: Vec<RigidNote>,
     ) -> Setting {
@@ -31,10 +29,17 @@ impl Plan {
         let atoms = self.atoms.iter();
         let named = atoms.flat_map(|a| a.trajectories.iter().map(|(n, _)| n).chain(&a.data));
         files.extend(dump.chain(named).map(|n| n.display().to_string()));
-        let fields = last.columns.iter().map(|c| FieldNote {
-            name: c.name().to_string(),
-            unit: self.units.unit(c.declaration.dimension),
-            says: c.declaration.doc.to_string(),
+        let declared = sim.columns();
+        let frame = self.frame_fields(sim).into_iter();
+        let frame = std::iter::once("displacement".to_string())
+            .chain(frame.filter(|f| f != "displacement"));
+        let fields = frame.filter_map(|name| {
+            let c = declared.iter().find(|c| c.name == name)?;
+            Some(FieldNote {
+                unit: self.units.unit(c.dimension),
+                says: c.doc.to_string(),
+                name,
+            })
         });
         Setting {
             command: self.command.clone(),

@@ -24,6 +24,7 @@ pub mod report;
 pub mod run_json;
 pub mod series;
 pub mod setfl;
+pub mod shares;
 pub mod space;
 pub mod space_time;
 pub mod table;

@@ -17,6 +17,7 @@ use super::picture::rigid::Placed;
 use super::picture::shown::About;
 use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
+use super::shares;
 use super::vtu::{write_bonds, write_cells, write_points};
 use crate::read::Cells;
 
@@ -138,7 +139,7 @@ impl Series {
         })
     }
 
-    /// Takes away what came after the state that was read; this is the snapshot of that state.
+    /// Takes away what came after the state that was read; this is the snapshot of that state, of which only films see anything.
     ///
     /// # Errors
     /// The operating system's; what is left is not what was written.
@@ -178,10 +179,35 @@ impl Series {
         options.points || options.bonds || options.dump.is_some() || films
     }
 
+    /// Is a frame nothing but its points, which ranks can write together ([`shares`])?
+    pub fn is_of_points(&self) -> bool {
+        let options = &self.options;
+        let films = self.films.iter().any(Option::is_some);
+        let more = options.writes_cells() || options.bonds || options.dump.is_some() || films;
+        options.points && !more
+    }
+
+    /// Lets ranks write the points of a frame, of which `ask` brings their answers; false: they do not, or not all of them see the folder.
+    ///
+    /// # Errors
+    /// As of [`Series::write`], of any rank.
+    pub fn write_shares(
+        &mut self,
+        (step, time): (u64, f64),
+        ask: impl FnOnce(&str) -> Option<Vec<Vec<u8>>>,
+    ) -> Result<bool, WriteError> {
+        let name = frame_of_points(step);
+        let Some(seal) = shares::write_frame(&self.dir.join(&name), ask)? else {
+            return Ok(false);
+        };
+        self.points.push(time, &name, seal)?;
+        Ok(true)
+    }
+
     /// Writes all files of a snapshot. One of the same step is replaced, but the dump keeps the first.
     pub fn write(&mut self, s: &Snapshot, bodies: &[Placed]) -> Result<(), WriteError> {
         if self.options.points {
-            let name = format!("points_{:08}.vtu", s.step);
+            let name = frame_of_points(s.step);
             let seal = write_sealed(&self.dir.join(&name), |w| write_points(w, s))?;
             self.points.push(s.time, &name, seal)?;
         }
@@ -214,6 +240,11 @@ impl Series {
     pub fn hurry(&mut self) -> bool {
         self.hurried = true;
         self.films.iter().any(Option::is_some)
+    }
+
+    /// Are there pictures or films, for which points must be in one place?
+    pub fn draws(&self) -> bool {
+        !self.options.pictures.is_empty()
     }
 
     /// Draws the last snapshot with the rigid bodies beside it, as pictures were asked for; returns their paths.
@@ -251,6 +282,10 @@ impl Series {
         }
         Ok(paths)
     }
+}
+
+fn frame_of_points(step: u64) -> String {
+    format!("points_{step:08}.vtu")
 }
 
 #[cfg(test)]

@@ -3,11 +3,14 @@
 //! Everything is streamed; nothing of the size of the body is allocated. Format: VTK file formats, "XML file
 //! formats", appended data with `encoding="raw"`; every block is its length in bytes (u64) and its bytes.
 
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::ops::Range;
 
 use peridyne::observe::{Snapshot, Values};
 
 use super::fields::{fields, invalid, positions};
+use super::grown::{Seal, Summed};
 use crate::read::Cells;
 
 const VERTEX: u8 = 1;
@@ -19,16 +22,16 @@ const SYMMETRIC: [usize; 6] = [0, 1, 2, 3, 5, 4];
 enum Block<'a> {
     Positions,
     Field(&'a Values),
-    /// 1-based numbers of the points.
-    Ids(usize),
+    /// Numbers of the points, from 1 on, of those with these ids.
+    Ids(Range<usize>),
     /// Corners of the points' cells, moved as the points are.
     Corners(&'a Shapes<'a>),
-    /// Point numbers of cells that share no points: 0, 1, 2, …
-    Vertices(usize),
+    /// Point numbers of cells that share no points.
+    Vertices(Range<usize>),
     Lines(&'a [(u32, u32)]),
-    /// Ends of `cells` cells with `width` points each.
+    /// Ends of these cells with `width` points each.
     Offsets {
-        cells: usize,
+        cells: Range<usize>,
         width: usize,
     },
     Types {
@@ -71,6 +74,7 @@ struct Topology<'a> {
     cells: usize,
     /// Where the fields of points go.
     section: &'static str,
+    ids: Block<'a>,
     places: Block<'a>,
     connectivity: Block<'a>,
     offsets: Block<'a>,
@@ -89,20 +93,90 @@ struct Array<'a> {
 /// # Errors
 /// Those of `w`; `InvalidInput` for arrays of unequal lengths.
 pub fn write_points<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
-    let n = s.reference.len();
-    let topology = Topology {
-        points: n,
-        cells: n,
+    write_grid(w, s, of_points(0..s.reference.len()))
+}
+
+/// Vertices at the points with these ids.
+fn of_points<'a>(ids: Range<usize>) -> Topology<'a> {
+    Topology {
+        points: ids.len(),
+        cells: ids.len(),
         section: "PointData",
+        ids: Block::Ids(ids.clone()),
         places: Block::Positions,
-        connectivity: Block::Vertices(n),
-        offsets: Block::Offsets { cells: n, width: 1 },
+        connectivity: Block::Vertices(ids.clone()),
         types: Block::Types {
-            cells: n,
+            cells: ids.len(),
             kind: VERTEX,
         },
+        offsets: Block::Offsets {
+            cells: ids,
+            width: 1,
+        },
+    }
+}
+
+/// Bytes of a file from a place on, and what is in them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    pub at: u64,
+    pub seal: Seal,
+}
+
+/// Writes, of the file that [`write_points`] would write of so many points, what is said of those of a snapshot, whose ids follow `first`; whoever has the first
+/// point writes what is said of all. The parts that it has written.
+///
+/// # Errors
+/// The operating system's; `InvalidInput` for arrays of unequal lengths.
+pub fn write_share(
+    file: &mut File,
+    s: &Snapshot,
+    first: usize,
+    points: usize,
+) -> io::Result<Vec<Part>> {
+    let own = s.reference.len();
+    if own == 0 {
+        return Ok(vec![]);
+    }
+    let (whole, topology) = (
+        arrays(s, of_points(0..points))?,
+        of_points(first..first + own),
+    );
+    let mut header = vec![];
+    write_header(&mut header, s, (points, (points, points)), &whole)?;
+    let mut parts = vec![];
+    let mut put = |at: u64, write: &dyn Fn(&mut dyn Write) -> io::Result<()>| {
+        file.seek(SeekFrom::Start(at))?;
+        let mut summed = Summed::new(&mut *file);
+        let mut room = BufWriter::with_capacity(1 << 18, &mut summed);
+        write(&mut room)?;
+        room.flush()?;
+        drop(room);
+        parts.push(Part {
+            at,
+            seal: summed.seal(),
+        });
+        io::Result::Ok(())
     };
-    write_grid(w, s, topology)
+    let speaks = first == 0;
+    if speaks {
+        put(0, &|w| w.write_all(&header))?;
+    }
+    let mut at = header.len() as u64;
+    for (whole, of) in whole.iter().zip(arrays(s, topology)?) {
+        let length = whole.block.bytes(points);
+        if speaks {
+            put(at, &|w| w.write_all(&length.to_le_bytes()))?;
+        }
+        // of every point as many
+        let before = length / points as u64 * first as u64;
+        put(at + 8 + before, &|w| of.block.write(&mut &mut *w, s))?;
+        at += 8 + length;
+    }
+    if speaks {
+        put(at, &|w| w.write_all(END))?;
+    }
+    Ok(parts)
 }
 
 /// Writes the cells of meshes that the points stand for, each moved as its point without turning, with all arrays the snapshot
@@ -118,8 +192,9 @@ pub fn write_cells<W: Write>(w: &mut W, s: &Snapshot, cells: &Cells) -> io::Resu
         points: corners,
         cells: s.reference.len(),
         section: "CellData",
+        ids: Block::Ids(0..s.reference.len()),
         places: Block::Corners(&shapes),
-        connectivity: Block::Vertices(corners),
+        connectivity: Block::Vertices(0..corners),
         offsets: Block::Ends(&shapes),
         types: Block::Kinds(&shapes),
     };
@@ -141,9 +216,13 @@ pub fn write_bonds<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
         points: s.reference.len(),
         cells: n,
         section: "PointData",
+        ids: Block::Ids(0..s.reference.len()),
         places: Block::Positions,
         connectivity: Block::Lines(bonds),
-        offsets: Block::Offsets { cells: n, width: 2 },
+        offsets: Block::Offsets {
+            cells: 0..n,
+            width: 2,
+        },
         types: Block::Types {
             cells: n,
             kind: LINE,
@@ -152,8 +231,22 @@ pub fn write_bonds<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
     write_grid(w, s, topology)
 }
 
+/// What comes after all arrays.
+const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
+
 fn write_grid<W: Write>(w: &mut W, s: &Snapshot, topology: Topology) -> io::Result<()> {
-    let n = s.reference.len();
+    let (n, size) = (s.reference.len(), (topology.points, topology.cells));
+    let arrays = arrays(s, topology)?;
+    write_header(w, s, (n, size), &arrays)?;
+    for array in &arrays {
+        w.write_all(&array.block.bytes(n).to_le_bytes())?;
+        array.block.write(w, s)?;
+    }
+    w.write_all(END)
+}
+
+/// The arrays of a file, in their order.
+fn arrays<'a>(s: &'a Snapshot, topology: Topology<'a>) -> io::Result<Vec<Array<'a>>> {
     let mut arrays = Vec::new();
     for column in fields(s)? {
         arrays.push(Array {
@@ -165,7 +258,7 @@ fn write_grid<W: Write>(w: &mut W, s: &Snapshot, topology: Topology) -> io::Resu
     arrays.push(Array {
         section: topology.section,
         name: "id",
-        block: Block::Ids(n),
+        block: topology.ids,
     });
     arrays.push(Array {
         section: "Points",
@@ -183,20 +276,15 @@ fn write_grid<W: Write>(w: &mut W, s: &Snapshot, topology: Topology) -> io::Resu
             block,
         });
     }
-    write_header(w, s, (topology.points, topology.cells), &arrays)?;
-    for array in &arrays {
-        array.block.write(w, s)?;
-    }
-    w.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+    Ok(arrays)
 }
 
 fn write_header<W: Write>(
     w: &mut W,
     s: &Snapshot,
-    (points, cells): (usize, usize),
+    (n, (points, cells)): (usize, (usize, usize)),
     arrays: &[Array],
 ) -> io::Result<()> {
-    let n = s.reference.len();
     writeln!(w, r#"<?xml version="1.0"?>"#)?;
     writeln!(
         w,
@@ -302,9 +390,9 @@ impl Block<'_> {
                 Values::Tensors(_) => 72 * n,
                 Values::Integers(_) | Values::Counts(_) => 4 * n,
             },
-            Block::Ids(n) | Block::Vertices(n) => 8 * n,
+            Block::Ids(ids) | Block::Vertices(ids) => 8 * ids.len(),
             Block::Lines(bonds) => 16 * bonds.len(),
-            Block::Offsets { cells, .. } => 8 * cells,
+            Block::Offsets { cells, .. } => 8 * cells.len(),
             Block::Types { cells, .. } => *cells,
             Block::Corners(shapes) => 24 * shapes.corners(),
             Block::Ends(shapes) => 8 * shapes.of.len(),
@@ -313,9 +401,9 @@ impl Block<'_> {
         bytes as u64
     }
 
+    /// Its numbers, without their length before them.
     fn write<W: Write>(&self, w: &mut W, s: &Snapshot) -> io::Result<()> {
-        w.write_all(&self.bytes(s.reference.len()).to_le_bytes())?;
-        match *self {
+        match self {
             Block::Positions => rows(w, positions(s)),
             Block::Field(values) => match values {
                 Values::Scalars(v) => rows(w, v.iter().map(|x| [*x])),
@@ -325,13 +413,15 @@ impl Block<'_> {
                 Values::Integers(v) => v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes())),
                 Values::Counts(v) => v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes())),
             },
-            Block::Ids(n) => integers(w, 1..n as i64 + 1),
-            Block::Vertices(n) => integers(w, 0..n as i64),
+            Block::Ids(ids) => integers(w, ids.clone().map(|id| id as i64 + 1)),
+            Block::Vertices(ids) => integers(w, ids.clone().map(|id| id as i64)),
             Block::Lines(bonds) => {
                 integers(w, bonds.iter().flat_map(|&(i, j)| [i.into(), j.into()]))
             }
-            Block::Offsets { cells, width } => integers(w, (1..=cells).map(|c| (c * width) as i64)),
-            Block::Types { cells, kind } => (0..cells).try_for_each(|_| w.write_all(&[kind])),
+            Block::Offsets { cells, width } => {
+                integers(w, cells.clone().map(|c| ((c + 1) * width) as i64))
+            }
+            Block::Types { cells, kind } => (0..*cells).try_for_each(|_| w.write_all(&[*kind])),
             Block::Corners(shapes) => {
                 let (x, u) = (&s.reference, s.displacement());
                 let moved = shapes.each().flat_map(|(_, corners, i)| {

@@ -4,21 +4,25 @@ use std::cell::RefCell;
 
 use peridyne::error::BuildError;
 use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, Simulation, build};
+use peridyne::run::{Options, Simulation, build, ranks};
 use peridyne::spec::Spec;
 use peridyne_io::deck::{UnitSystem, describe, sources};
+use peridyne_io::write::shares::write_share;
 
 use super::engine::{ModelEngine, in_plane};
+use super::sharing::Sharing;
 use super::spec;
 use super::types::Types;
 use crate::atoms::{Atoms, Column};
 use crate::host::{BLOCK, Engine, Host, HostError, Particles, Quantity, Setup, Style};
 
 /// Makes peridyne models of scripts.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct ModelHost {
     /// Instruction set; `None` takes the widest there is.
     pub simd: Option<Simd>,
+    /// Who shares the model; `None`: nobody.
+    pub ranks: Option<Sharing>,
 }
 
 /// A script's model as it stands at the first `run`, before any force.
@@ -41,7 +45,8 @@ impl Host for ModelHost {
             moduli,
             unbonded,
             spec,
-        } = self.prepare(&setup)?;
+        } = { self.prepare(&setup)? }
+            .ok_or_else(|| HostError::new("this rank has followed the first one"))?;
         let Setup {
             dimension,
             domain,
@@ -78,11 +83,11 @@ impl Host for ModelHost {
 }
 
 impl ModelHost {
-    /// Specification and model of a set-up.
+    /// Specification and model of a set-up; of ranks that share it the first one has it, and the others have followed it to its end.
     ///
     /// # Errors
-    /// Something that the engine has not.
-    pub fn prepare(&self, setup: &Setup) -> Result<Prepared, HostError> {
+    /// Something that the engine has not, or that ranks do not share.
+    pub fn prepare(&self, setup: &Setup) -> Result<Option<Prepared>, HostError> {
         let style = setup.pair.style();
         let types = Types::new(&setup.pair, &setup.atoms)?;
         let shelved = matches!(style, Style::Ves | Style::Eps);
@@ -99,18 +104,27 @@ impl ModelHost {
             ..Options::default()
         };
         let units = setup.units.system();
-        let mut simulation = build(&spec, options).map_err(|e| explain(&e, units))?;
+        let built = match &self.ranks {
+            None => build(&spec, options).map(Some),
+            Some(ranks) => {
+                ranks.meet(&spec)?;
+                ranks::build(&spec, options, &ranks.comm, write_share)
+            }
+        };
+        let Some(mut simulation) = built.map_err(|e| explain(&e, units))? else {
+            return Ok(None);
+        };
         write_velocities(simulation.as_mut(), setup.dimension, &setup.atoms)?;
         let highest = setup.pair.types();
         let moduli = types.moduli();
         let of = |kind: usize| moduli.get(types.material_of(kind)).copied();
-        Ok(Prepared {
+        Ok(Some(Prepared {
             notes: notes(setup, &types, simulation.as_ref()),
             moduli: (1..=highest).filter_map(of).collect(),
             unbonded: types.unbonded(),
             spec,
             simulation,
-        })
+        }))
     }
 }
 

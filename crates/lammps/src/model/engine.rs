@@ -184,7 +184,7 @@ impl ModelEngine {
             let (Some(place), Some(value)) = (place, value) else {
                 continue;
             };
-            if sim.exchange(*place, Some(&value)).is_none() {
+            if !sim.drive(*place, &value) {
                 return Err(HostError::new("the fixes changed within a run"));
             }
         }
@@ -412,7 +412,7 @@ impl Engine for ModelEngine {
 
     fn reaction(&self, index: usize) -> Reaction {
         let place = self.driven.get(index).copied().flatten();
-        let of = place.and_then(|place| self.sim.borrow_mut().exchange(place, None));
+        let of = place.and_then(|place| self.sim.borrow_mut().reaction(place));
         of.map_or_else(Reaction::default, |r| Reaction {
             energy: r.energy,
             force: r.force,

@@ -6,8 +6,10 @@
 mod build;
 mod conditions;
 mod engine;
+mod sharing;
 mod spec;
 mod types;
 
 pub use build::{ModelHost, Prepared};
 pub use engine::ModelEngine;
+pub use sharing::Sharing;

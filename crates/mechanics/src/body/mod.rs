@@ -11,7 +11,7 @@ pub mod grid;
 mod points;
 pub mod several;
 pub mod subdomain;
-mod together;
+pub mod together;
 pub mod values;
 
 pub use exchange::Exchange;
@@ -19,6 +19,7 @@ pub use field::{Column, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 pub use grid::Grid;
 pub use several::Piece;
 pub use subdomain::Subdomain;
+pub use together::RunsOfIds;
 pub use values::Values;
 
 use crate::space::Point;
@@ -202,13 +203,21 @@ impl<const D: usize> Body<D> {
         self.mark = mark;
     }
 
-    /// Loses the points whose slots are not kept; ids of the others move up, and slots stay where they are.
-    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
-        if !self.mark.is_empty() {
-            let mut stays = self.slots.iter().map(|s| keep(*s));
-            self.mark.retain(|_| stays.next().unwrap_or(false));
+    /// Loses points, by their ids in order, of those of all ranks; ids of the others move up, and slots stay where they are.
+    pub fn remove(&mut self, gone: &[u32]) {
+        let of_all: Vec<u32> = { 0..self.points() }
+            .map(|id| self.id_of_all(id) as u32)
+            .collect();
+        let mut id = of_all.iter();
+        let mut keep = || id.next().is_some_and(|id| gone.binary_search(id).is_err());
+        let stays: Vec<bool> = self.slots.iter().map(|_| keep()).collect();
+        let mut each = stays.iter();
+        self.mark.retain(|_| each.next() == Some(&true));
+        let mut each = stays.iter();
+        self.slots.retain(|_| each.next() == Some(&true));
+        if let Some(of) = &self.subdomain {
+            self.subdomain = Some(Arc::new(of.without(gone)));
         }
-        self.slots.retain(|s| keep(*s));
     }
 
     /// Gives each point its material, in order of id, and their copies theirs.

@@ -42,6 +42,24 @@ impl Subdomain {
         Subdomain { own, first, ..self }
     }
 
+    /// Without some points of the whole, by their ids in order: those above theirs move down.
+    pub(super) fn without(&self, gone: &[u32]) -> Subdomain {
+        let below = |id: u32| gone.partition_point(|g| *g < id) as u32;
+        let stays = |id: &&u32| gone.binary_search(id).is_err();
+        Subdomain {
+            comm: self.comm.clone(),
+            ids: { self.ids.iter().filter(stays) }
+                .map(|id| id - below(*id))
+                .collect(),
+            // nobody asks who is in a slot of somebody who is gone
+            of_slots: self.of_slots.iter().map(|id| id - below(*id)).collect(),
+            points: self.points - gone.len(),
+            own: self.own.clone(),
+            first: self.first,
+            ids_of_ranks: OnceLock::new(),
+        }
+    }
+
     /// The slots that points of this part of a cloud lie in.
     pub(crate) fn own_slots(&self) -> Range<usize> {
         self.own.clone()

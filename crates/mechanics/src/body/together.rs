@@ -381,6 +381,11 @@ impl RunsOfIds<'_> {
         self.of.map_or(0, |of| of.comm().rank())
     }
 
+    /// The first id of this rank's share.
+    pub fn first(&self) -> usize {
+        self.begin(self.rank())
+    }
+
     /// Points of this rank's share.
     pub fn points(&self) -> usize {
         self.begin(self.rank() + 1) - self.begin(self.rank())

@@ -16,6 +16,27 @@ pub struct Carry {
 /// A point's next place; `None`: forces move it on this axis.
 pub type Motion = [Option<Carry>; 3];
 
+/// Motions as numbers, of which [`motions`] makes them again.
+pub fn numbers(motions: &[Motion]) -> Vec<f64> {
+    let known = |carry: &Option<Carry>| match carry {
+        Some(c) => [1.0, c.displacement, c.velocity],
+        None => [0.0; 3],
+    };
+    motions.as_flattened().iter().flat_map(known).collect()
+}
+
+/// The motions of these numbers.
+pub fn motions(numbers: &[f64]) -> Vec<Motion> {
+    let known = |[is, displacement, velocity]: &[f64; 3]| {
+        (*is == 1.0).then_some(Carry {
+            displacement: *displacement,
+            velocity: *velocity,
+        })
+    };
+    let all: Vec<Option<Carry>> = numbers.as_chunks().0.iter().map(known).collect();
+    all.as_chunks().0.to_vec()
+}
+
 #[derive(Debug, Clone, Default)]
 pub struct Carried {
     slots: Vec<u32>,

@@ -35,6 +35,86 @@ pub enum Drive {
     Drag(Vec<f64>),
 }
 
+impl Drive {
+    /// Of those of its points that stand at these places.
+    pub fn pick(&self, places: &[usize]) -> Drive {
+        let of = |values: &[[Option<f64>; 3]]| places.iter().map(|n| values[*n]).collect();
+        match self {
+            Drive::ReplaceEach(values) => Drive::ReplaceEach(of(values)),
+            Drive::AddEach(values) => Drive::AddEach(of(values)),
+            Drive::Drag(gamma) => Drive::Drag(places.iter().map(|n| gamma[*n]).collect()),
+            Drive::Indent { .. } | Drive::Replace(_) | Drive::Add(_) => self.clone(),
+        }
+    }
+
+    /// As numbers, of which [`Drive::of`] makes it again.
+    pub fn numbers(&self) -> Vec<f64> {
+        let known = |x: &Option<f64>| [f64::from(x.is_some()), x.unwrap_or(0.0)];
+        let each =
+            |values: &[[Option<f64>; 3]]| values.as_flattened().iter().flat_map(known).collect();
+        let (kind, numbers): (f64, Vec<f64>) = match self {
+            Drive::Indent {
+                stiffness,
+                form,
+                push,
+                center,
+                radius,
+            } => {
+                let [kind, axis] = match form {
+                    Form::Sphere => [0, 0],
+                    Form::Cylinder(a) => [1, *a],
+                    Form::Plane(a) => [2, *a],
+                };
+                let out = f64::from(*push == Push::Out);
+                let form = [kind as f64, axis as f64, out, *stiffness, *radius];
+                (0.0, [&form[..], center].concat())
+            }
+            Drive::Replace(values) => (1.0, each(&[*values])),
+            Drive::ReplaceEach(values) => (2.0, each(values)),
+            Drive::Add(values) => (3.0, values.to_vec()),
+            Drive::AddEach(values) => (4.0, each(values)),
+            Drive::Drag(gamma) => (5.0, gamma.clone()),
+        };
+        let mut all = vec![kind, numbers.len() as f64];
+        all.extend(numbers);
+        all
+    }
+
+    /// Of the numbers that it was made of, which are taken away from the front; `None`: they are none of one.
+    pub fn of(numbers: &mut &[f64]) -> Option<Drive> {
+        let (&[kind, count], rest) = numbers.split_first_chunk()?;
+        let (own, rest) = rest.split_at_checked(count as usize)?;
+        *numbers = rest;
+        let known = |[is, x]: &[f64; 2]| (*is == 1.0).then_some(*x);
+        let rows = || -> Vec<[Option<f64>; 3]> {
+            let pairs: Vec<Option<f64>> = own.as_chunks().0.iter().map(known).collect();
+            pairs.as_chunks().0.to_vec()
+        };
+        Some(match kind as u8 {
+            0 => {
+                let [form, axis, out, stiffness, radius, x, y, z] = *own.first_chunk()?;
+                Drive::Indent {
+                    stiffness,
+                    form: match form as u8 {
+                        0 => Form::Sphere,
+                        1 => Form::Cylinder(axis as usize),
+                        _ => Form::Plane(axis as usize),
+                    },
+                    push: if out == 1.0 { Push::Out } else { Push::In },
+                    center: [x, y, z],
+                    radius,
+                }
+            }
+            1 => Drive::Replace(*rows().first()?),
+            2 => Drive::ReplaceEach(rows()),
+            3 => Drive::Add(*own.first_chunk()?),
+            4 => Drive::AddEach(rows()),
+            5 => Drive::Drag(own.to_vec()),
+            _ => return None,
+        })
+    }
+}
+
 #[derive(Debug, Clone)]
 #[allow(clippy::large_enum_variant)] // a handful, never moved
 pub enum Driven<const D: usize> {
@@ -48,12 +128,11 @@ impl<const D: usize> Driven<D> {
         match self {
             Driven::Indenter(i) => archive.within("indenter", |archive| {
                 i.archive(body, archive);
-                archive.one("energy", &mut i.reaction.energy);
-                archive.one("reaction", &mut i.reaction.force);
+                i.reaction.iter_mut().for_each(|r| r.archive(archive));
             }),
             Driven::Load(l) => archive.within("load", |archive| {
                 l.archive(body, archive);
-                archive.one("before", &mut l.before);
+                l.before.iter_mut().for_each(|r| r.archive(archive));
             }),
         }
     }
@@ -82,11 +161,14 @@ impl<const D: usize> Driven<D> {
             radius,
         } = *drive
         {
-            let surface = Indenter::driven(stiffness, (form, push), center, radius, slots);
+            let mut surface = Indenter::driven(stiffness, (form, push), center, radius, slots);
+            surface.reaction = Some(Box::default());
             return Driven::Indenter(surface);
         }
         let kind = load(drive).expect("all but indenters are loads");
-        Driven::Load(Load::new(kind, slots, points))
+        let mut load = Load::new(kind, slots, points);
+        load.before = Some(Box::default());
+        Driven::Load(load)
     }
 
     /// New values; false if they are of another kind.
@@ -133,13 +215,50 @@ impl<const D: usize> Driven<D> {
         }
     }
 
-    pub fn reaction(&self) -> Reaction {
-        match self {
-            Driven::Indenter(i) => i.reaction,
-            Driven::Load(l) => Reaction {
-                energy: 0.0,
-                force: l.before,
+    /// Of all ranks; all ask at once.
+    pub fn reaction(&self, body: &Body<D>) -> Reaction {
+        let sums = match self {
+            Driven::Indenter(i) => &i.reaction,
+            Driven::Load(l) => &l.before,
+        };
+        { sums.as_ref() }.map_or_else(Reaction::default, |sums| sums.value(body))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drives_come_back_from_their_numbers() {
+        let each = vec![
+            [Some(1.0), None, Some(f64::INFINITY)],
+            [None, Some(-0.0), None],
+        ];
+        let all = [
+            Drive::Indent {
+                stiffness: 1e17,
+                form: Form::Cylinder(2),
+                push: Push::In,
+                center: [1.0, -2.0, 0.1],
+                radius: 3.0,
             },
+            Drive::Replace([None, Some(0.0), Some(2.0)]),
+            Drive::ReplaceEach(each.clone()),
+            Drive::ReplaceEach(vec![]),
+            Drive::Add([1.0, 2.0, 3.0]),
+            Drive::AddEach(each),
+            Drive::Drag(vec![0.5, 0.0, 7.0]),
+        ];
+        let numbers: Vec<f64> = all.iter().flat_map(Drive::numbers).collect();
+        let mut left = &numbers[..];
+        for drive in &all {
+            assert_eq!(Drive::of(&mut left).as_ref(), Some(drive));
         }
+        assert!(left.is_empty() && Drive::of(&mut left).is_none());
+        assert!(Drive::of(&mut &[2.0, 9.0, 1.0][..]).is_none());
+        let gamma = |drive: &Drive| drive.pick(&[2, 0]);
+        assert_eq!(gamma(&all[6]), Drive::Drag(vec![7.0, 0.5]));
+        assert_eq!(gamma(&all[4]), all[4]);
     }
 }

@@ -4,6 +4,7 @@ use super::Program;
 use super::condensed::Condensed;
 use super::force_field::{ForceField, power};
 use super::point_force::{PointForce, Seen, Stiffness};
+use super::reaction::ReactionSums;
 use crate::body::{Body, Field};
 use crate::execute::exact::Exact;
 use crate::interaction::Evaluation;
@@ -64,8 +65,8 @@ pub struct Load<const D: usize> {
     /// Of a force that the shelf has: which of its points each of these is, what it remembers of them now and where the step began, and its
     /// stiffness in the last trial (force / volume / length).
     named: Named<D>,
-    /// Sum of the force densities on the points before this load acted, without those that a list leaves alone.
-    pub before: [f64; 3],
+    /// Of what is driven from outside: the force densities on the points before this load acted, without those that a list leaves alone.
+    pub before: Option<Box<ReactionSums>>,
     /// Work done on the points of this rank (energy).
     pub work: Exact,
 }
@@ -174,7 +175,7 @@ impl<const D: usize> Load<D> {
             of: None,
             last,
             departed: vec![],
-            before: [0.0; 3],
+            before: None,
             work: Exact::ZERO,
         }
     }
@@ -309,11 +310,17 @@ impl<const D: usize> ForceField<D> for Load<D> {
         if let (LoadKind::Body(density), Some(condensed)) = (&self.kind, &mut self.condensed) {
             condensed.evaluate(density, t);
         }
-        self.before = [0.0; 3];
+        if let Some(before) = &mut self.before {
+            **before = ReactionSums::default();
+            for (k, &s) in self.slots.iter().enumerate() {
+                if self.kind.counts(k) {
+                    before.add_force::<D>(crate::array::from_fn(|a| f[a][s as usize]));
+                }
+            }
+        }
         for (k, &s) in self.slots.iter().enumerate() {
             let i = s as usize;
             let mut power = 0.0;
-            let counts = self.kind.counts(k);
             let own = match &self.kind {
                 LoadKind::Named(force) => {
                     let point =
@@ -334,9 +341,6 @@ impl<const D: usize> ForceField<D> for Load<D> {
                 | LoadKind::Drag(_) => [0.0; 3],
             };
             for a in 0..D {
-                if counts {
-                    self.before[a] += f[a][i];
-                }
                 let added = match &self.kind {
                     LoadKind::Body(p) => match &self.condensed {
                         None => p.at(a, k, &self.points[k], t),

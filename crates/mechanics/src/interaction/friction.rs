@@ -276,10 +276,10 @@ impl<const D: usize> Friction<D> {
     }
 
     /// Points have these ids now, in the order of those that they had; what is gone touches nobody any more.
-    pub fn renumber(&mut self, moved: &[Option<u32>]) {
+    pub fn renumber(&mut self, moved: &dyn Fn(u32) -> Option<u32>) {
         for all in [&mut self.before, &mut self.now, &mut self.pressed] {
             all.retain_mut(|spring| {
-                let ends = spring.ends.map(|id| moved[id as usize]);
+                let ends = spring.ends.map(moved);
                 let [Some(one), Some(other)] = ends else {
                     return false;
                 };

@@ -3,6 +3,8 @@
 use super::words::Word;
 use bytemuck::{cast_slice, pod_read_unaligned};
 use peridyne_comm::Comm;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::sync::Arc;
 use twox_hash::XxHash3_64;
 
@@ -87,28 +89,55 @@ impl Ranks {
         said.extend(own);
         let all = self.comm.first(said);
         let all = all.unwrap_or_else(|failure| self.comm.end(failure))?;
-        let mut rows = vec![];
-        for (rank, said) in all.iter().enumerate() {
-            let count = u64::take(said) as usize;
-            let numbers = |n: usize| {
-                let bytes = said[8 + 4 * n * count..][..4 * count].chunks_exact(4);
-                bytes.map(pod_read_unaligned::<u32>)
-            };
-            let mut begin = 8 + 8 * count;
-            for (id, length) in numbers(0).zip(numbers(1)) {
-                let end = begin + each * length as usize;
-                // nothing of any: no rank has it
-                let end = end.min(said.len());
-                rows.push((id, rank, begin..end));
-                begin = end;
+        let mut parts: Vec<Rows> = all.iter().map(|said| Rows::new(said, each)).collect();
+        let mut whole = Vec::with_capacity(parts.iter().map(|part| part.rows.len()).sum());
+        // each has its ids in order: one after the other, as long as no other rank's come between
+        let first = |(rank, part): (usize, &Rows)| Some(Reverse((part.id()?, rank)));
+        let mut next: BinaryHeap<_> = parts.iter().enumerate().filter_map(first).collect();
+        while let Some(Reverse((_, rank))) = next.pop() {
+            let part = &mut parts[rank];
+            let other = next.peek().map_or(u32::MAX, |Reverse((id, _))| *id);
+            while part.id().is_some_and(|id| id <= other) {
+                whole.extend_from_slice(part.take());
             }
-        }
-        // of one rank in their order
-        rows.sort_by_key(|(id, _, _)| *id);
-        let mut whole = Vec::with_capacity(rows.iter().map(|(_, _, row)| row.len()).sum());
-        for (_, rank, row) in rows {
-            whole.extend_from_slice(&all[rank][row]);
+            next.extend(part.id().map(|id| Reverse((id, rank))));
         }
         Some(whole)
+    }
+}
+
+/// What one rank says of its points, row by row.
+struct Rows<'a> {
+    ids: &'a [u8],
+    lengths: &'a [u8],
+    rows: &'a [u8],
+    /// Bytes of a word.
+    each: usize,
+}
+
+impl<'a> Rows<'a> {
+    fn new(said: &'a [u8], each: usize) -> Rows<'a> {
+        let (count, said) = said.split_at(8);
+        let (ids, said) = said.split_at(4 * u64::take(count) as usize);
+        let (lengths, rows) = said.split_at(ids.len());
+        Rows {
+            ids,
+            lengths,
+            rows,
+            each,
+        }
+    }
+
+    /// Whose row is next.
+    fn id(&self) -> Option<u32> {
+        Some(pod_read_unaligned(self.ids.get(..4)?))
+    }
+
+    fn take(&mut self) -> &'a [u8] {
+        let words = pod_read_unaligned::<u32>(&self.lengths[..4]) as usize;
+        // nothing of any: no rank has it
+        let (row, rest) = self.rows.split_at((self.each * words).min(self.rows.len()));
+        (self.ids, self.lengths, self.rows) = (&self.ids[4..], &self.lengths[4..], rest);
+        row
     }
 }

@@ -24,6 +24,8 @@ pub(super) struct Bodies<'a, const D: usize> {
     pub body: Body<D>,
     /// The atoms, and what nodes take of them; `None`: points are what has bonds.
     pub smoothed: Option<(Body<D>, Nodes)>,
+    /// All nodes that carry atoms, where ranks share them.
+    pub whole_nodes: Option<Body<D>>,
     pub names: Names<D>,
     /// The longest of all bodies that have bonds (length).
     pub horizon: f64,
@@ -100,6 +102,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             faces: Faces::new(spec)?,
             shelf: shelf.clone(),
         };
+        let mut whole_nodes = None;
         let nearest = gaps::between(&body, reach(spec, &parts, &body, horizon));
         if let Some(ranks) = ranks {
             let ended = surface::ended(spec, &body);
@@ -108,6 +111,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             names.faces.find(spec, whole, &names.sets)?;
             if body.subdomain().is_none() {
                 // all ranks know all points until here, and find the same mistakes
+                whole_nodes = smoothed.is_some().then(|| body.clone());
                 let beside = interfaces::ends(spec, &body)?;
                 body = body.subdomain_beside(ranks, halo(spec, &body, horizon), &beside);
                 cut(&mut names, &body);
@@ -118,6 +122,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
             parts,
             body,
             smoothed,
+            whole_nodes,
             names,
             horizon,
             least_horizon,

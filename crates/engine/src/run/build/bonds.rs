@@ -6,7 +6,7 @@ use crate::constitutive::{ConstitutiveModels, breaks};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::Interaction;
-use crate::interaction::Smoothed;
+use crate::interaction::{Replicated, Smoothed};
 use crate::message;
 use crate::quantity::{Dimension, Warnings, rounded};
 use crate::run::bind::bind;
@@ -41,8 +41,13 @@ impl<const D: usize> Bonds<D> {
             None => bind(spec, parts, body, shelf, simd, warnings)?,
             Some((mut atoms, carried)) => {
                 let (constitutive, inner) = bind(spec, parts, &mut atoms, shelf, simd, warnings)?;
-                let made = Smoothed::new(body, atoms, inner, carried, breaks(spec));
-                let made: Box<dyn Interaction<D>> = Box::new(made);
+                let nodes = bodies.whole_nodes.take();
+                let of = nodes.as_ref().unwrap_or(body);
+                let made = Box::new(Smoothed::new(of, atoms, inner, carried, breaks(spec)));
+                let made: Box<dyn Interaction<D>> = match nodes {
+                    None => made,
+                    Some(nodes) => Box::new(Replicated::new(body, nodes, made)),
+                };
                 (constitutive, made)
             }
         };

@@ -1,8 +1,9 @@
 //! The model of all ranks, as the first has it: it tells the others what to do with theirs.
 
-use super::model::RankModel;
+use super::ask::{Ask, driven_of_numbers, ids, numbers_of_driven, of_ids, wall};
+use super::model::{RankModel, WriteShare};
 use crate::columns::Declaration;
-use crate::condition::carried::Motion;
+use crate::condition::carried::{Motion, motions, numbers};
 use crate::condition::driven::Drive;
 use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
@@ -19,123 +20,9 @@ use crate::spec::{AnyLinearBody, ConditionSpec, IndenterSpec, Spec};
 use crate::state::{Archive, Owner};
 use crate::statics::Solved;
 use peridyne_comm::Comm;
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::sync::Arc;
-
-/// What all ranks do at once.
-enum Ask<'a> {
-    Start(bool),
-    Step,
-    Ledger,
-    Summary,
-    Fragments,
-    Observed,
-    Forces,
-    LinearBody,
-    Modes(usize),
-    Hash,
-    Measure,
-    Watch(Watched),
-    Watched(Watched),
-    Columns,
-    Column(&'a str),
-    Snapshot(Vec<&'a str>, bool),
-    Members(&'a str),
-    Read(&'a str, usize),
-    Write(&'a str, usize, usize, &'a [f64]),
-    Save,
-    /// Within parts of this path.
-    Load(&'a str),
-    /// Nobody asks any more.
-    Leave,
-}
-
-impl<'a> Ask<'a> {
-    /// A line of words, and numbers after it.
-    fn to_bytes(&self) -> Vec<u8> {
-        let line = match self {
-            Ask::Start(bonds) => format!("start {bonds}"),
-            Ask::Step => "step".into(),
-            Ask::Ledger => "ledger".into(),
-            Ask::Summary => "summary".into(),
-            Ask::Fragments => "fragments".into(),
-            Ask::Observed => "observed".into(),
-            Ask::Forces => "forces".into(),
-            Ask::LinearBody => "linear_body".into(),
-            Ask::Modes(count) => format!("modes {count}"),
-            Ask::Hash => "hash".into(),
-            Ask::Measure => "measure".into(),
-            Ask::Watch(what) => format!("watch {what:?}"),
-            Ask::Watched(what) => format!("watched {what:?}"),
-            Ask::Columns => "columns".into(),
-            Ask::Column(name) => format!("column {name}"),
-            Ask::Snapshot(fields, bonds) => format!("snapshot {bonds} {}", fields.join(" ")),
-            Ask::Members(set) => format!("members {set}"),
-            Ask::Read(name, component) => format!("read {name} {component}"),
-            Ask::Write(name, component, first, _) => format!("write {name} {component} {first}"),
-            Ask::Save => "save".into(),
-            Ask::Load(path) => format!("load {path}"),
-            Ask::Leave => "leave".into(),
-        };
-        let mut bytes = line.into_bytes();
-        if let Ask::Write(_, _, _, values) = self {
-            bytes.push(b'\n');
-            bytes.extend(values.iter().flat_map(|x| x.to_le_bytes()));
-        }
-        bytes
-    }
-
-    /// `None`: no rank of this program says so.
-    fn of(bytes: &'a [u8], values: &'a mut Vec<f64>) -> Option<Ask<'a>> {
-        let end = bytes
-            .iter()
-            .position(|b| *b == b'\n')
-            .unwrap_or(bytes.len());
-        let line = std::str::from_utf8(&bytes[..end]).ok()?;
-        let numbers = bytes.get(end + 1..).unwrap_or_default().chunks_exact(8);
-        values.extend(numbers.map(|x| f64::from_le_bytes(x.try_into().expect("eight bytes"))));
-        let (what, of) = line.split_once(' ').unwrap_or((line, ""));
-        let mut words = of.split(' ');
-        Some(match what {
-            "start" => Ask::Start(of == "true"),
-            "step" => Ask::Step,
-            "ledger" => Ask::Ledger,
-            "summary" => Ask::Summary,
-            "fragments" => Ask::Fragments,
-            "observed" => Ask::Observed,
-            "forces" => Ask::Forces,
-            "linear_body" => Ask::LinearBody,
-            "modes" => Ask::Modes(of.parse().ok()?),
-            "hash" => Ask::Hash,
-            "measure" => Ask::Measure,
-            "watch" => Ask::Watch(watched(of)?),
-            "watched" => Ask::Watched(watched(of)?),
-            "columns" => Ask::Columns,
-            "column" => Ask::Column(of),
-            "snapshot" => {
-                let bonds = words.next()? == "true";
-                Ask::Snapshot(words.filter(|w| !w.is_empty()).collect(), bonds)
-            }
-            // names of sets may have spaces
-            "members" => Ask::Members(of),
-            "read" => Ask::Read(words.next()?, words.next()?.parse().ok()?),
-            "write" => {
-                let name = words.next()?;
-                let [component, first] = [words.next()?, words.next()?].map(|n| n.parse().ok());
-                Ask::Write(name, component?, first?, values)
-            }
-            "save" => Ask::Save,
-            "load" => Ask::Load(of),
-            "leave" => Ask::Leave,
-            _ => return None,
-        })
-    }
-}
-
-/// By its name.
-fn watched(name: &str) -> Option<Watched> {
-    let all = [Watched::Energies, Watched::Virial, Watched::Virials];
-    all.into_iter().find(|what| format!("{what:?}") == name)
-}
 
 /// Hears what the first rank says, whoever says it.
 fn heard(comm: &Comm, said: &[u8]) -> Vec<u8> {
@@ -148,7 +35,7 @@ impl<const D: usize> RankModel<D> {
     ///
     /// # Panics
     /// This is the first rank, or the first one is another program.
-    pub fn follow(mut self) {
+    pub fn follow(mut self, write: WriteShare) {
         let comm = self.subdomain().comm().clone();
         assert!(comm.rank() > 0, "the first rank follows nobody");
         loop {
@@ -172,6 +59,23 @@ impl<const D: usize> RankModel<D> {
                 Ask::Columns => drop(self.columns()),
                 Ask::Column(name) => drop(self.column(name)),
                 Ask::Snapshot(fields, bonds) => drop(self.snapshot(&fields, bonds)),
+                Ask::Depart(numbers) => drop(self.depart(&motions(numbers))),
+                Ask::Arrive => drop(self.model.arrive()),
+                Ask::Reflect(of, points) => self.reflect(&wall(of), points.map(ids).as_deref()),
+                Ask::Prescribe(way, points) => self.prescribe(way, &ids(points)),
+                Ask::Remove(points) => self.remove(&ids(points)),
+                Ask::SetTime(step, time) => self.model.set_time(step, time),
+                Ask::SetTimeStep(dt) => self.model.set_time_step(dt),
+                Ask::SetDriven(numbers) => {
+                    let driven = driven_of_numbers(numbers);
+                    self.set_driven(&driven.expect("ranks are of one program"));
+                }
+                Ask::Drive(index, mut numbers) => {
+                    let value = Drive::of(&mut numbers);
+                    _ = self.drive(index, &value.expect("ranks are of one program"));
+                }
+                Ask::Reaction(index) => _ = self.reaction(index),
+                Ask::Shares(fields, asked) => drop(self.shares(&fields, (write, asked))),
                 Ask::Members(set) => drop(self.members(set)),
                 Ask::Read(name, component) => drop(self.read(name, component)),
                 Ask::Write(name, component, first, values) => {
@@ -191,20 +95,31 @@ impl<const D: usize> RankModel<D> {
 
 /// The model of all ranks, on the first of them. The others [follow](RankModel::follow) until it is dropped.
 ///
-/// Columns, snapshots and states are gathered here. Not shared yet, and answered by a panic, is what [`Steered`] and [`Examined`] ask.
+/// Columns, snapshots and states are gathered here; shares of frames are written by all ranks. Not shared yet, and answered by a panic: other conditions than a spec has
+/// ([`Steered::set_conditions`]) and most of what [`Examined`] asks.
 pub struct AllRanks<const D: usize> {
     own: RankModel<D>,
+    write: WriteShare,
+    /// Components of columns that were read since something changed.
+    read: RefCell<HashMap<(String, usize), Vec<f64>>>,
 }
 
 impl<const D: usize> AllRanks<D> {
     /// # Panics
     /// This is not the first rank.
-    pub fn new(own: RankModel<D>) -> AllRanks<D> {
+    pub fn new(own: RankModel<D>, write: WriteShare) -> AllRanks<D> {
         assert_eq!(own.subdomain().comm().rank(), 0, "the first rank leads");
-        AllRanks { own }
+        AllRanks {
+            own,
+            write,
+            read: RefCell::default(),
+        }
     }
 
     fn ask(&self, ask: &Ask<'_>) {
+        if !matches!(ask, Ask::Read(..) | Ask::Write(..)) {
+            self.read.borrow_mut().clear();
+        }
         heard(self.own.subdomain().comm(), &ask.to_bytes());
     }
 }
@@ -284,6 +199,11 @@ impl<const D: usize> Simulation for AllRanks<D> {
         snapshot.expect("this rank gathers")
     }
 
+    fn shares(&mut self, fields: &[&str], asked: &str) -> Option<Vec<Vec<u8>>> {
+        self.ask(&Ask::Shares(fields.to_vec(), asked));
+        self.own.shares(fields, (self.write, asked))
+    }
+
     fn state_hash(&mut self) -> StateHash {
         self.ask(&Ask::Hash);
         self.own.state_hash().expect("this rank gathers")
@@ -294,16 +214,23 @@ impl<const D: usize> Simulation for AllRanks<D> {
     }
 
     fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool {
-        self.ask(&Ask::Read(name, component));
-        let Some(all) = self.own.read(name, component) else {
-            return false;
-        };
-        out.copy_from_slice(&all[first..first + out.len()]);
+        let key = (name.to_string(), component);
+        if !self.read.borrow().contains_key(&key) {
+            self.ask(&Ask::Read(name, component));
+            let Some(all) = self.own.read(name, component) else {
+                return false;
+            };
+            self.read.borrow_mut().insert(key.clone(), all);
+        }
+        out.copy_from_slice(&self.read.borrow()[&key][first..first + out.len()]);
         true
     }
 
     fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool {
         self.ask(&Ask::Write(name, component, first, values));
+        if let Some(all) = { self.read.get_mut() }.get_mut(&(name.to_string(), component)) {
+            all[first..first + values.len()].copy_from_slice(values);
+        }
         self.own.write(name, component, first, values)
     }
 
@@ -333,32 +260,42 @@ impl<const D: usize> Simulation for AllRanks<D> {
 }
 
 impl<const D: usize> Steered for AllRanks<D> {
-    fn depart(&mut self, _: &[Motion]) -> Result<f64, RunError> {
-        not_shared("halves of steps")
+    fn depart(&mut self, carried: &[Motion]) -> Result<f64, RunError> {
+        self.ask(&Ask::Depart(&numbers(carried)));
+        self.own.depart(carried)
     }
 
     fn arrive(&mut self) -> Result<(), RunError> {
-        not_shared("halves of steps")
+        self.ask(&Ask::Arrive);
+        self.own.model.arrive()
     }
 
-    fn reflect(&mut self, _: &Wall, _: Option<&[u32]>) {
-        not_shared("walls")
+    fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>) {
+        let above = f64::from(wall.above);
+        let points = ids.map(of_ids);
+        let of = [wall.axis as f64, above, wall.position];
+        self.ask(&Ask::Reflect(of, points.as_deref()));
+        self.own.reflect(wall, ids);
     }
 
-    fn prescribe(&mut self, _: Prescription, _: &[u32]) {
-        not_shared("motion from outside")
+    fn prescribe(&mut self, way: Prescription, ids: &[u32]) {
+        self.ask(&Ask::Prescribe(way, &of_ids(ids)));
+        self.own.prescribe(way, ids);
     }
 
-    fn remove(&mut self, _: &[u32]) {
-        not_shared("points that are taken away")
+    fn remove(&mut self, ids: &[u32]) {
+        self.ask(&Ask::Remove(&of_ids(ids)));
+        self.own.remove(ids);
     }
 
-    fn set_time(&mut self, _: u64, _: f64) {
-        not_shared("times from outside")
+    fn set_time(&mut self, step: u64, time: f64) {
+        self.ask(&Ask::SetTime(step, time));
+        self.own.model.set_time(step, time);
     }
 
-    fn set_time_step(&mut self, _: f64) {
-        not_shared("steps from outside")
+    fn set_time_step(&mut self, dt: f64) {
+        self.ask(&Ask::SetTimeStep(dt));
+        self.own.model.set_time_step(dt);
     }
 
     fn set_conditions(
@@ -380,12 +317,19 @@ impl<const D: usize> Steered for AllRanks<D> {
         self.own.watched(what)
     }
 
-    fn set_driven(&mut self, _: &[(Drive, Option<Vec<u32>>)]) {
-        not_shared("values from outside")
+    fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {
+        self.ask(&Ask::SetDriven(&numbers_of_driven(driven)));
+        self.own.set_driven(driven);
     }
 
-    fn exchange(&mut self, _: usize, _: Option<&Drive>) -> Option<Reaction> {
-        not_shared("values from outside")
+    fn drive(&mut self, index: usize, value: &Drive) -> bool {
+        self.ask(&Ask::Drive(index, &value.numbers()));
+        self.own.drive(index, value)
+    }
+
+    fn reaction(&mut self, index: usize) -> Option<Reaction> {
+        self.ask(&Ask::Reaction(index));
+        self.own.reaction(index)
     }
 }
 
@@ -436,7 +380,7 @@ impl<const D: usize> Examined for AllRanks<D> {
 }
 
 /// Builds the model of a spec whose body ranks share. The first rank has it; the others follow that one here until it is gone, and have nothing then.
-/// All ranks come here at once.
+/// All ranks come here at once. `write` is how each writes its share of frames ([`Simulation::shares`]).
 ///
 /// # Errors
 /// As of [`RankModel::new`].
@@ -444,12 +388,13 @@ pub fn build(
     spec: &Spec,
     options: Options,
     comm: &Arc<Comm>,
+    write: WriteShare,
 ) -> Result<Option<Box<dyn Simulation>>, BuildError> {
     agreed_among(comm, possible(spec, options.simd))?;
     match spec.space.dimension {
-        1 => built::<1>(spec, options, comm),
-        2 => built::<2>(spec, options, comm),
-        _ => built::<3>(spec, options, comm),
+        1 => built::<1>(spec, options, comm, write),
+        2 => built::<2>(spec, options, comm, write),
+        _ => built::<3>(spec, options, comm, write),
     }
 }
 
@@ -457,12 +402,13 @@ fn built<const D: usize>(
     spec: &Spec,
     options: Options,
     comm: &Arc<Comm>,
+    write: WriteShare,
 ) -> Result<Option<Box<dyn Simulation>>, BuildError> {
     let own = RankModel::<D>::new(spec, options, &Shelf::standard(), comm);
     let own = agreed_among(comm, own)?;
     if comm.rank() == 0 {
-        return Ok(Some(Box::new(AllRanks::new(own))));
+        return Ok(Some(Box::new(AllRanks::new(own, write))));
     }
-    own.follow();
+    own.follow(write);
     Ok(None)
 }

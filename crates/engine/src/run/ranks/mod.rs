@@ -4,11 +4,13 @@
 //! the other ranks [follow](RankModel::follow) it.
 
 mod all;
+mod ask;
 mod model;
 mod plan;
 mod shared;
+mod steered;
 
 pub use all::{AllRanks, build};
-pub use model::RankModel;
+pub use model::{RankModel, Share, WriteShare};
 pub use plan::{Shares, StepCost, plan};
 pub use shared::shared;

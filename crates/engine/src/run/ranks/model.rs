@@ -1,7 +1,8 @@
 //! The part of a model that one rank has.
 
 use super::shared::shared;
-use crate::body::{Body, Subdomain};
+use super::steered::Here;
+use crate::body::{Body, RunsOfIds, Subdomain};
 use crate::columns::{Declaration, On};
 use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
@@ -13,9 +14,21 @@ use crate::spec::Spec;
 use peridyne_comm::{Comm, Traffic};
 use std::sync::Arc;
 
+/// Which points of all a frame has of those of a rank: so many from a first id on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Share {
+    pub first: usize,
+    /// Of all ranks.
+    pub points: usize,
+}
+
+/// Writes a rank's share of a frame as it was asked for, and answers what the first rank should know of it.
+pub type WriteShare = fn(&str, &Snapshot, Share) -> Vec<u8>;
+
 /// The part of a model that one rank has. What is asked of all ranks at once is told there.
 pub struct RankModel<const D: usize> {
     pub(super) model: Model<D>,
+    pub(super) here: Here,
 }
 
 impl<const D: usize> RankModel<D> {
@@ -32,7 +45,8 @@ impl<const D: usize> RankModel<D> {
     ) -> Result<RankModel<D>, BuildError> {
         shared(spec)?;
         let model = made_among(spec, options, shelf, Some(comm))?;
-        Ok(RankModel { model })
+        let here = Here::default();
+        Ok(RankModel { model, here })
     }
 
     fn body(&self) -> &Body<D> {
@@ -118,6 +132,32 @@ impl<const D: usize> RankModel<D> {
             bonds: bonds.flatten(),
             ..own
         })
+    }
+
+    /// Has this rank's share of a frame written, points whose ids are in a row; what each says of it, in the order of ids, on the first.
+    pub(super) fn shares(
+        &mut self,
+        fields: &[&str],
+        (write, asked): (WriteShare, &str),
+    ) -> Option<Vec<Vec<u8>>> {
+        let own = self.model.record(fields, false);
+        let runs = self.body().runs_of_ids(1);
+        let columns = own.columns.into_iter().map(|column| Column {
+            values: share_of_values(&runs, column.values),
+            ..column
+        });
+        let frame = Snapshot {
+            columns: columns.collect(),
+            reference: runs.of(1, own.reference),
+            ..own
+        };
+        let share = Share {
+            first: runs.first(),
+            points: self.points(),
+        };
+        let said = write(asked, &frame, share);
+        let comm = self.subdomain().comm();
+        comm.first(said).unwrap_or_else(|failure| comm.end(failure))
     }
 
     /// Ids of the points of a set among all, on the first rank; `None`: there is no such set.
@@ -253,6 +293,18 @@ impl<const D: usize> RankModel<D> {
     pub fn halo(&self) -> (Traffic, usize) {
         let sent = self.subdomain().comm().traffic();
         (sent, self.model.system.body.exchange().received_slots())
+    }
+}
+
+/// This rank's share of a column.
+fn share_of_values(runs: &RunsOfIds<'_>, own: Values) -> Values {
+    match own {
+        Values::Scalars(v) => Values::Scalars(runs.of(1, v)),
+        Values::Vectors(v) => Values::Vectors(runs.of(1, v)),
+        Values::Symmetric(v) => Values::Symmetric(runs.of(1, v)),
+        Values::Tensors(v) => Values::Tensors(runs.of(1, v)),
+        Values::Integers(v) => Values::Integers(runs.of(1, v)),
+        Values::Counts(v) => Values::Counts(runs.of(1, v)),
     }
 }
 

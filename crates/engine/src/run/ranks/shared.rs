@@ -18,19 +18,11 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
         | LawSpec::Named(_) => true,
         LawSpec::Micromoduli(linear) => !linear.couples_masses() && !linear.has_carriers(),
     };
-    let limits = [
-        ("bonds", "fields on nodes", spec.bonds.smooth.is_some()),
-        (
+    match spec.materials.iter().all(|m| bonds(&m.law)) {
+        true => Ok(()),
+        false => Err(BuildError::unsupported(
             "materials",
-            "coarsened bodies whose masses are coupled, or that carry loads of a finer one",
-            !spec.materials.iter().all(|m| bonds(&m.law)),
-        ),
-    ];
-    match limits.into_iter().find(|(_, _, wrong)| *wrong) {
-        None => Ok(()),
-        Some((path, what, _)) => Err(BuildError::unsupported(
-            path,
-            format!("ranks do not share {what} yet"),
+            "ranks do not share coarsened bodies whose masses are coupled, or that carry loads of a finer one, yet",
         )
         .help("run it in one process, on as many threads as there are")),
     }

@@ -51,9 +51,9 @@ fn a_state_without_an_answer_is_known_to_all() {
         let comm = Arc::new(comm);
         let own = RankModel::<1>::new(&spec, options(None), &shelf(), &comm).unwrap();
         match comm.rank() {
-            0 => Some(fault(&mut AllRanks::new(own))),
+            0 => Some(fault(&mut AllRanks::new(own, |_, _, _| vec![]))),
             _ => {
-                own.follow();
+                own.follow(|_, _, _| vec![]);
                 None
             }
         }

@@ -117,6 +117,59 @@ fn bonds_of_potentials_break_alike_on_any_number_of_ranks() {
     assert!(broken > 8, "{broken} of 11");
 }
 
+/// Nodes that carry atoms along, at their places.
+fn smoothed(spec: &mut Spec, reach: f64) {
+    let squared = |d: [f64; 3]| d.iter().map(|x| x * x).sum::<f64>();
+    let window = move |d| (1.0 - squared(d) / (reach * reach)).max(0.0).powi(3);
+    spec.bonds.smooth = Some(SmoothSpec {
+        window: Window::new(window),
+        width: reach,
+        reach,
+        spacing: None,
+    });
+}
+
+#[test]
+fn fields_on_nodes_have_the_same_bits_on_any_number_of_ranks() {
+    let (all, fans) = (potentials(), fans());
+    let (_, morse) = { all.iter() }
+        .find(|(name, _)| *name == "morse, shifted force")
+        .unwrap();
+    let (_, silicon, edge, kinds) = &fans[0];
+    let mut broken = 0;
+    for breaks in [false, true] {
+        let mut flat = atoms(
+            LatticeKind::Square,
+            30,
+            morse,
+            FamilyChoice::Reference,
+            !breaks,
+        );
+        let BodySpec::Lattice { spacing, .. } = &flat.body else {
+            panic!("a lattice");
+        };
+        let reach = 2.3 * spacing;
+        smoothed(&mut flat, reach);
+        let mut solid = crystal(silicon, *edge, *kinds, 5, breaks);
+        (solid.bonds.family, solid.bonds.horizon) = (FamilyChoice::Reference, Horizon::Length(4.2));
+        smoothed(&mut solid, 0.85 * edge);
+        for (mut spec, speed, stretch) in [(flat, 20.0, 0.05), (solid, 30.0, 0.02)] {
+            spec.title = format!("nodes, {speed}, {breaks}");
+            thrown(&mut spec, speed);
+            if breaks {
+                broken_by(&mut spec, Criterion::Stretch(stretch));
+            }
+            broken += usize::from(same_of(&spec, &[2, 3]));
+            if !breaks {
+                spec.run.schedule.time_step = TimeStep::Fixed(1e-4);
+                spec.run.schedule.stepper = Stepper::Newmark(Newmark::default());
+                same_of(&spec, &[2]);
+            }
+        }
+    }
+    assert_eq!(broken, 2);
+}
+
 /// Atoms of two kinds anywhere in a periodic box.
 fn mixed(more: bool, mixing: Option<Mixing>) -> Spec {
     let mut noise = Noise(11);

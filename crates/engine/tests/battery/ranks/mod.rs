@@ -226,10 +226,10 @@ fn among<const D: usize>(
         let comm = Arc::new(comm);
         let own = RankModel::<D>::new(spec, options(simd), &shelf(), &comm).unwrap();
         if comm.rank() > 0 {
-            own.follow();
+            own.follow(|_, _, _| vec![]);
             return None;
         }
-        let mut sim = AllRanks::new(own);
+        let mut sim = AllRanks::new(own, |_, _, _| vec![]);
         let said = said(&mut sim, from, steps(spec));
         Some((sim.info().clone(), said))
     });
@@ -823,9 +823,9 @@ fn forces_of_pairs_beside_contact_come_in_one_order() {
         let comm = Arc::new(comm);
         let own = RankModel::<2>::new(&spec, options(None), &shelf(), &comm).unwrap();
         match comm.rank() {
-            0 => Some(told(&mut AllRanks::new(own))),
+            0 => Some(told(&mut AllRanks::new(own, |_, _, _| vec![]))),
             _ => {
-                own.follow();
+                own.follow(|_, _, _| vec![]);
                 None
             }
         }
@@ -992,9 +992,9 @@ fn a_run_that_goes_bad_does_so_on_all_ranks() {
         let comm = Arc::new(comm);
         let own = RankModel::<3>::new(&spec, options(None), &shelf(), &comm).unwrap();
         match comm.rank() {
-            0 => Some(end(&mut AllRanks::new(own))),
+            0 => Some(end(&mut AllRanks::new(own, |_, _, _| vec![]))),
             _ => {
-                own.follow();
+                own.follow(|_, _, _| vec![]);
                 None
             }
         }
@@ -1126,24 +1126,22 @@ fn factors_of_bonds_are_those_of_the_whole_body() {
 
 #[test]
 fn what_ranks_do_not_share_is_named() {
-    let spec = Case::of("pmb", place(LatticeKind::Square)).spec();
-    let refused = |change: &dyn Fn(&mut Spec)| {
-        let mut spec = spec.clone();
-        spec.run.schedule.time_step = TimeStep::Fixed(1e-3);
-        change(&mut spec);
-        shared(&spec).err().map(|e| e.path)
-    };
-    assert_eq!(refused(&|_| ()), None);
-    let of = |path: &str| Some(path.to_string());
-    let smooth = |s: &mut Spec| {
-        s.bonds.smooth = Some(SmoothSpec {
-            window: Window::new(|d| (-d.map(|x| x * x).iter().sum::<f64>()).exp()),
-            width: 3.0,
-            reach: 3.0,
-            spacing: None,
-        });
-    };
-    assert_eq!(refused(&smooth), of("bonds"));
+    let case = Case::of("pmb", place(LatticeKind::Square));
+    assert!(shared(&case.spec()).is_ok());
+    let mut sim = build(&case.spec(), Options::default()).unwrap();
+    let mut linear = sim.linear_body().of::<2>().unwrap();
+    assert!(shared(&Spec::of_linear(&linear)).is_ok());
+    let points = linear.position.len();
+    linear.mass = Some(MassMatrix {
+        start: (0..=points).collect(),
+        partner: (0..points as u32).collect(),
+        block: vec![[[1.0, 0.0], [0.0, 1.0]]; points],
+    });
+    let said = shared(&Spec::of_linear(&linear)).unwrap_err();
+    assert!(
+        said.message.to_string().contains("ranks do not share"),
+        "{said}"
+    );
 }
 
 #[test]

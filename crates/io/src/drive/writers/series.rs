@@ -1,10 +1,13 @@
 //! Frames for ParaView, the dump, pictures and films.
 
+use std::sync::Arc;
 use std::time::Instant;
 
+use peridyne::observe::Snapshot;
 use peridyne::state::{Archive, Owner};
 
 use super::writer::{Made, Now, Writer};
+use crate::drive::frame_time;
 use crate::drive::plan::DriveError;
 use crate::write::Series;
 use crate::write::picture::film::HURRY;
@@ -35,11 +38,10 @@ impl Writer for Frames {
     }
 
     fn rewind(&mut self, now: &mut Now<'_>) -> Result<(), DriveError> {
-        let snapshot = now.snapshot();
-        Ok(self
-            .open
-            .as_mut()
-            .map_or(Ok(()), |series| series.rewind(&snapshot))?)
+        let Some(series) = &mut self.open else {
+            return Ok(());
+        };
+        Ok(series.rewind(&seen(series, now))?)
     }
 
     fn look(&mut self, now: &mut Now<'_>) -> Result<(), DriveError> {
@@ -48,8 +50,7 @@ impl Writer for Frames {
             && !now.due.last
             && series.wants_frames()
         {
-            let (snapshot, placed) = (now.snapshot(), now.placed());
-            series.write(&snapshot, &placed)?;
+            write(series, now, false)?;
         }
         Ok(())
     }
@@ -58,8 +59,9 @@ impl Writer for Frames {
         let Some(mut series) = self.open else {
             return Ok(());
         };
-        let (snapshot, placed) = (now.snapshot(), now.placed());
-        series.write(&snapshot, &placed)?;
+        let draws = series.draws();
+        write(&mut series, now, draws)?;
+        let (snapshot, placed) = (seen(&series, now), now.placed());
         now.progress.phase("pictures");
         if now.hurried && series.hurry() {
             now.warn(format!(
@@ -75,4 +77,30 @@ impl Writer for Frames {
         now.spent.pictures += drawing.elapsed().as_secs_f64();
         Ok(())
     }
+}
+
+/// What pictures show of this state; nothing where none are drawn.
+fn seen(series: &Series, now: &mut Now<'_>) -> Arc<Snapshot> {
+    match series.draws() {
+        true => now.snapshot(),
+        false => Arc::default(),
+    }
+}
+
+/// Writes a frame; ranks do it together, if nothing needs all points in one place.
+fn write(series: &mut Series, now: &mut Now<'_>, is_drawn: bool) -> Result<(), DriveError> {
+    if now.plan.ranks > 1 && series.is_of_points() && !is_drawn {
+        let when = (now.sim.step_number(), frame_time(now.sim));
+        let (sim, plan) = (&mut *now.sim, now.plan);
+        let ask = |name: &str| {
+            let fields = plan.frame_fields(sim);
+            let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
+            sim.shares(&fields, name)
+        };
+        if series.write_shares(when, ask)? {
+            return Ok(());
+        }
+    }
+    let (snapshot, placed) = (now.snapshot(), now.placed());
+    Ok(series.write(&snapshot, &placed)?)
 }

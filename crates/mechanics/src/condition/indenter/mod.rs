@@ -9,7 +9,7 @@ mod rub;
 mod surface;
 
 use super::force_field::{ForceField, power};
-use super::reaction::Reaction;
+use super::reaction::ReactionSums;
 use super::rigid::{Kept, NewmarkStep, Path, Rigid, Wrench};
 use crate::body::{Body, Field, zeros};
 use crate::execute::exact::Exact;
@@ -53,7 +53,8 @@ pub struct Indenter<const D: usize> {
     /// Work of friction on both (energy), and what of it its springs hold; of the points of this rank, as what follows.
     rubbed_work: Exact,
     stored: Exact,
-    pub reaction: Reaction,
+    /// Of what is driven from outside.
+    pub reaction: Option<Box<ReactionSums>>,
     /// Of points on the rigid body (force), and about its centre (force · length).
     felt: [Exact; 6],
     /// The most that contact adds to `M⁻¹K` (1 / time²).
@@ -166,7 +167,7 @@ impl<const D: usize> Indenter<D> {
             work: Exact::ZERO,
             rubbed_work: Exact::ZERO,
             stored: Exact::ZERO,
-            reaction: Reaction::default(),
+            reaction: None,
             felt: NOTHING,
             stiff: 0.0,
             kept: None,
@@ -403,7 +404,9 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
         self.touched.clear();
         self.rubbed.clear();
         (self.felt, self.stiff) = (NOTHING, 0.0);
-        let mut reaction = Reaction::default();
+        if let Some(reaction) = &mut self.reaction {
+            **reaction = ReactionSums::default();
+        }
         let (range, mut mobile) = (self.range(), Exact::ZERO);
         let candidates = std::mem::take(&mut self.candidates);
         for &s in &candidates {
@@ -438,11 +441,11 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
                 Surface::Aligned(form, push, _) => form.force(*push, self.stiffness, &near),
                 Surface::Turned(_) => normal.map(|c| along * c),
             };
-            reaction.energy += energy;
-            for a in 0..D {
-                reaction.force[a] -= force[a];
-                f[a][i] += force[a];
+            if let Some(reaction) = &mut self.reaction {
+                reaction.add_energy(energy);
+                reaction.add_force(force.map(|f| -f));
             }
+            (0..D).for_each(|a| f[a][i] += force[a]);
             self.work.add(0.5 * dt * volume * power(&force, v, i));
             self.bear(&arm, &force, volume);
             let square: f64 = arm.iter().map(|c| c * c).sum();
@@ -461,7 +464,6 @@ impl<const D: usize> ForceField<D> for Indenter<D> {
             }
         }
         self.candidates = candidates;
-        self.reaction = reaction;
         if let Some(law) = &self.friction {
             let now = Coefficients::new(law, t);
             self.rub(body, [u, v], f, now, at);

@@ -119,7 +119,6 @@ impl<const D: usize> Indenter<D> {
             self.stored.add(0.5 * stiffness * square * volume);
             let force = touched.rub;
             for a in 0..D {
-                self.reaction.force[a] -= force[a];
                 f[a][i] += force[a];
                 self.touched[n].1[a] += force[a];
             }

@@ -116,6 +116,13 @@ impl<const D: usize> Smoothed<D> {
         self.gather(nodes, &seen.strain, out.strain);
     }
 
+    /// The node that carries most of an atom.
+    fn carrier(&self, atom: u32) -> usize {
+        let (_, row) = &self.carried.points[atom as usize];
+        let most = { row.iter() }.max_by(|a, b| a.weight.total_cmp(&b.weight));
+        most.map_or(0, |seen| seen.node as usize)
+    }
+
     /// Each atom's nodes, by slot of atoms.
     fn places(&self) -> Vec<u32> {
         let mut place = vec![u32::MAX; self.atoms.len];
@@ -219,7 +226,13 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
             self.gather_energies(body, &energies, seen);
         }
         (self.u, self.f) = (moved, own);
-        tally
+        let place = || self.places();
+        Tally {
+            fault: tally
+                .fault
+                .map(|fault| fault.at(|atom| self.carrier(place()[atom]))),
+            ..tally
+        }
     }
 
     unsafe fn energy_unchecked(&mut self, _: &Body<D>, u: FieldView<D>) -> [f64; 2] {
