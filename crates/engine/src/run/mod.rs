@@ -206,6 +206,17 @@ pub enum Prescription {
     Carried,
 }
 
+/// How far a run is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Now {
+    /// Steps done.
+    pub step: u64,
+    /// What t is: counted from the start of a stage.
+    pub time: f64,
+    /// Time as records show it: motion begins at 0, statics before it lies at times below.
+    pub clock: f64,
+}
+
 /// What is kept of an evaluation of forces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Watched {
@@ -266,11 +277,8 @@ pub trait Simulation: Steered + Examined + Owner + Send {
     /// A question that a long search for an equilibrium asks in every iteration: has somebody had enough? It then ends with
     /// [`SolveError::Stopped`], and the state is that of the increment before.
     fn stop_when(&mut self, stop: fn() -> bool);
-    fn step_number(&self) -> u64;
-    /// What t is: counted from the start of a stage.
-    fn time(&self) -> f64;
-    /// Time as records show it: motion begins at 0, statics before it lies at times below.
-    fn clock(&self) -> f64;
+    /// How far it is.
+    fn now(&self) -> Now;
     /// Energies now; an error if the balance shows that the run has gone unstable.
     fn ledger(&mut self) -> Result<Ledger, RunError>;
     /// Everything that points and bonds have a value of: observables, and what laws declare.
@@ -331,8 +339,8 @@ pub trait Steered {
     /// Takes points away for ever, these ids in order: their bonds break without a force, all ids above theirs move down. Driven values must
     /// be set anew before the next forces.
     fn remove(&mut self, ids: &[u32]);
-    fn set_time(&mut self, step: u64, time: f64);
-    fn set_time_step(&mut self, dt: f64);
+    /// The number of steps and the time, and the length of a step, are these; `None`: stay as they are.
+    fn set_clock(&mut self, now: Option<(u64, f64)>, time_step: Option<f64>);
     /// Replace loads, constraints and indenters; driven conditions go.
     fn set_conditions(
         &mut self,
@@ -388,6 +396,31 @@ pub trait Examined {
 }
 
 impl dyn Simulation + '_ {
+    /// [`Now::step`].
+    pub fn step_number(&self) -> u64 {
+        self.now().step
+    }
+
+    /// [`Now::time`].
+    pub fn time(&self) -> f64 {
+        self.now().time
+    }
+
+    /// [`Now::clock`].
+    pub fn clock(&self) -> f64 {
+        self.now().clock
+    }
+
+    /// As [`Steered::set_clock`].
+    pub fn set_time(&mut self, step: u64, time: f64) {
+        self.set_clock(Some((step, time)), None);
+    }
+
+    /// The same of the length of a step.
+    pub fn set_time_step(&mut self, dt: f64) {
+        self.set_clock(None, Some(dt));
+    }
+
     /// Values of a column of vectors by point id; none if there is no such column.
     pub fn vectors(&mut self, name: &str) -> Vec<Point> {
         match self.column(name).map(|c| c.values) {

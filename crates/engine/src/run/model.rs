@@ -5,7 +5,7 @@ use super::probes::state::Probe;
 use super::stages::Stages;
 use super::state_hash::hashed;
 use super::system::System;
-use super::{Info, Simulation, Summary};
+use super::{Info, Now, Simulation, Summary};
 use crate::columns::Declaration;
 use crate::error::RunError;
 use crate::fracture::fragments::Fragments;
@@ -61,16 +61,12 @@ impl<const D: usize> Simulation for Model<D> {
         self.system.stop = stop;
     }
 
-    fn step_number(&self) -> u64 {
-        self.system.clock.step()
-    }
-
-    fn time(&self) -> f64 {
-        self.system.clock.time()
-    }
-
-    fn clock(&self) -> f64 {
-        self.system.clock.shown()
+    fn now(&self) -> Now {
+        Now {
+            step: self.system.clock.step(),
+            time: self.system.clock.time(),
+            clock: self.system.clock.shown(),
+        }
     }
 
     fn ledger(&mut self) -> Result<Ledger, RunError> {

@@ -415,3 +415,25 @@ pub(super) fn initial<const D: usize>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Drawn, SplitMix};
+
+    #[test]
+    fn those_with_the_least_numbers_are_drawn() {
+        for (points, seed) in [(1, 0), (10, 3), (1000, 7), (200_000, u64::MAX)] {
+            let mut random = SplitMix(seed);
+            let numbers: Vec<f64> = (0..points).map(|_| random.unit()).collect();
+            let mut order: Vec<usize> = (0..points).collect();
+            order.sort_by(|a, b| numbers[*a].total_cmp(&numbers[*b]));
+            for part in [0.0, 1e-9, 0.3, 0.5, 0.999, 1.0] {
+                let count = (part * points as f64).round() as usize;
+                let drawn = Drawn::new(points, part, seed);
+                let mut all: Vec<usize> = (0..points).filter(|id| drawn.holds(*id)).collect();
+                all.sort_by(|a, b| numbers[*a].total_cmp(&numbers[*b]));
+                assert_eq!(all, order[..count], "{points} {seed} {part}");
+            }
+        }
+    }
+}

@@ -61,15 +61,16 @@ impl<const D: usize> Steered for Model<D> {
         self.names.renumber(&moved);
     }
 
-    fn set_time(&mut self, step: u64, time: f64) {
-        self.system.clock.set_step(step);
-        self.system.clock.set(time);
-    }
-
-    fn set_time_step(&mut self, dt: f64) {
-        self.finish();
-        self.system.clock.set_time_step(dt);
-        self.system.info.time_step = dt;
+    fn set_clock(&mut self, now: Option<(u64, f64)>, time_step: Option<f64>) {
+        if let Some(dt) = time_step {
+            self.finish();
+            self.system.clock.set_time_step(dt);
+            self.system.info.time_step = dt;
+        }
+        if let Some((step, time)) = now {
+            self.system.clock.set_step(step);
+            self.system.clock.set(time);
+        }
     }
 
     fn set_conditions(

@@ -9,17 +9,18 @@ pub mod exchange;
 pub mod field;
 pub mod grid;
 mod points;
+mod runs;
 pub mod several;
 pub mod subdomain;
-pub mod together;
+mod together;
 pub mod values;
 
 pub use exchange::Exchange;
 pub use field::{Column, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 pub use grid::Grid;
+pub use runs::RunsOfIds;
 pub use several::Piece;
 pub use subdomain::Subdomain;
-pub use together::RunsOfIds;
 pub use values::Values;
 
 use crate::space::Point;

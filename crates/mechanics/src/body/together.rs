@@ -1,11 +1,12 @@
 //! What a body says as a whole, whoever has its parts: all ranks ask at once, and hear the same bits on any number of them.
 
-use super::subdomain::{Subdomain, numbers};
+use super::runs::{RunsOfIds, put};
+use super::subdomain::numbers;
 use super::{Body, Field, Layout, cut};
 use crate::execute::exact::Exact;
 use crate::space::Point;
 use crate::state::{Archive, Whose, Word};
-use bytemuck::{Pod, cast_slice, cast_slice_mut, pod_read_unaligned};
+use bytemuck::{Pod, cast_slice};
 use std::borrow::Cow;
 
 impl<const D: usize> Body<D> {
@@ -171,9 +172,7 @@ impl<const D: usize> Body<D> {
     /// A rank's share of all ids, in runs of so many of which none is divided.
     pub fn runs_of_ids(&self, run: usize) -> RunsOfIds<'_> {
         let (points, of) = (self.all_points(), self.subdomain());
-        let ranks = of.map_or(1, |of| of.comm().ranks());
-        let share = points.div_ceil(run).div_ceil(ranks) * run;
-        RunsOfIds { of, points, share }
+        RunsOfIds::new(of, points, run)
     }
 
     /// Those of the points that are here, of what the first rank has of all points.
@@ -360,72 +359,5 @@ impl<const D: usize> Body<D> {
             Some(of) => Cow::Borrowed(of.of_slots()),
             None => Cow::Owned(self.ids_by_slot()),
         }
-    }
-}
-
-/// Each rank's share of all ids, whoever has their points: as many in a row.
-pub struct RunsOfIds<'a> {
-    of: Option<&'a Subdomain>,
-    points: usize,
-    /// Of each rank but the last ones.
-    share: usize,
-}
-
-impl RunsOfIds<'_> {
-    /// The first id of a rank's share.
-    fn begin(&self, rank: usize) -> usize {
-        (rank * self.share).min(self.points)
-    }
-
-    fn rank(&self) -> usize {
-        self.of.map_or(0, |of| of.comm().rank())
-    }
-
-    /// The first id of this rank's share.
-    pub fn first(&self) -> usize {
-        self.begin(self.rank())
-    }
-
-    /// Points of this rank's share.
-    pub fn points(&self) -> usize {
-        self.begin(self.rank() + 1) - self.begin(self.rank())
-    }
-
-    /// `each` numbers of every point of this rank's share by id, of those of the points that are here. All ask at once.
-    pub fn of<T: Pod>(&self, each: usize, own: Vec<T>) -> Vec<T> {
-        let Some(of) = self.of else {
-            return own;
-        };
-        let (ids, comm) = (of.ids(), of.comm());
-        let place = |rank: usize| ids.partition_point(|id| (*id as usize) < self.begin(rank));
-        let said = (0..comm.ranks()).map(|rank| {
-            let own_ids = &ids[place(rank)..place(rank + 1)];
-            let numbers = &own[each * place(rank)..each * place(rank + 1)];
-            [cast_slice::<u32, u8>(own_ids), cast_slice(numbers)].concat()
-        });
-        let said = comm.to_each(said.collect());
-        drop(own);
-        let mut share = vec![T::zeroed(); each * self.points()];
-        for bytes in said.unwrap_or_else(|failure| comm.end(failure)) {
-            let points = bytes.len() / (size_of::<u32>() + each * size_of::<T>());
-            let (ids, numbers) = bytes.split_at(points * size_of::<u32>());
-            let ids = ids.chunks_exact(4).map(pod_read_unaligned::<u32>);
-            put(&mut share, (each, self.begin(self.rank())), ids, numbers);
-        }
-        share
-    }
-}
-
-/// Puts `each` numbers of points by their ids, counted from a first one, wherever their bytes lie.
-fn put<T: Pod>(
-    all: &mut [T],
-    (each, first): (usize, usize),
-    ids: impl Iterator<Item = u32>,
-    bytes: &[u8],
-) {
-    let each_of = bytes.chunks_exact(each * size_of::<T>());
-    for (id, numbers) in ids.zip(each_of) {
-        let to = &mut all[each * (id as usize - first)..][..each];
-        cast_slice_mut(to).copy_from_slice(numbers);
     }
 }

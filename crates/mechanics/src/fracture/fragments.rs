@@ -166,9 +166,11 @@ impl Parts {
         let mut joined = vec![];
         for slot in body.exchange.copies() {
             let (root, name) = (sets.root(slot as u32) as usize, of_slots[slot]);
-            match first[root] {
-                NONE => first[root] = name,
-                other => joined.push([other, name]),
+            match (first[root], name) {
+                // of a point that was taken away
+                (_, NONE) => {}
+                (NONE, name) => first[root] = name,
+                (other, name) => joined.push([other, name]),
             }
         }
         if body.exchange.any(!away.is_empty()) {

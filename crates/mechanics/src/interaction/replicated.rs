@@ -150,8 +150,7 @@ impl<const D: usize> Interaction<D> for Replicated<D> {
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
         let u = self.spread(body, u);
-        let energy = self.inner.energy(&self.whole, view(&u));
-        energy.map(|e| if body.is_first() { e } else { 0.0 })
+        self.inner.energy(&self.whole, view(&u))
     }
 
     unsafe fn observe_unchecked(

@@ -143,6 +143,10 @@ fn reach<const D: usize>(spec: &Spec, parts: &[Part], body: &Body<D>, horizon: f
 
 /// How far the points are of which a part of a body has copies (length). Atoms find who is near by themselves, but for those that they are bonded to.
 fn halo<const D: usize>(spec: &Spec, body: &Body<D>, horizon: f64) -> f64 {
+    if let Some(smooth) = &spec.bonds.smooth {
+        // nodes feel each other through two atoms of a family, each within reach of one of them
+        return horizon + 2.0 * smooth.reach + body.spacing();
+    }
     let given = spec.micromoduli().map_or(0.0, |l| 1.001 * l.longest());
     if !current_neighbours(spec) {
         // volumes of partners fade over a spacing at the horizon

@@ -12,8 +12,8 @@ use crate::run::agreed::agreed_among;
 use crate::run::examined::{linear_of_all, modes_of_all};
 use crate::run::feasible::possible;
 use crate::run::{
-    AtomBond, Examined, Families, Info, ModeShape, Options, Prescription, Seen, Shelf, Simulation,
-    Steered, Summary, Wall, Watched,
+    AtomBond, Examined, Families, Info, ModeShape, Now, Options, Prescription, Seen, Shelf,
+    Simulation, Steered, Summary, Wall, Watched,
 };
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, ConditionSpec, IndenterSpec, Spec};
@@ -64,8 +64,7 @@ impl<const D: usize> RankModel<D> {
                 Ask::Reflect(of, points) => self.reflect(&wall(of), points.map(ids).as_deref()),
                 Ask::Prescribe(way, points) => self.prescribe(way, &ids(points)),
                 Ask::Remove(points) => self.remove(&ids(points)),
-                Ask::SetTime(step, time) => self.model.set_time(step, time),
-                Ask::SetTimeStep(dt) => self.model.set_time_step(dt),
+                Ask::SetClock(now, time_step) => self.model.set_clock(now, time_step),
                 Ask::SetDriven(numbers) => {
                     let driven = driven_of_numbers(numbers);
                     self.set_driven(&driven.expect("ranks are of one program"));
@@ -166,16 +165,8 @@ impl<const D: usize> Simulation for AllRanks<D> {
         self.own.model.stop_when(stop);
     }
 
-    fn step_number(&self) -> u64 {
-        self.own.model.step_number()
-    }
-
-    fn time(&self) -> f64 {
-        self.own.model.time()
-    }
-
-    fn clock(&self) -> f64 {
-        self.own.model.clock()
+    fn now(&self) -> Now {
+        self.own.model.now()
     }
 
     fn ledger(&mut self) -> Result<Ledger, RunError> {
@@ -288,14 +279,9 @@ impl<const D: usize> Steered for AllRanks<D> {
         self.own.remove(ids);
     }
 
-    fn set_time(&mut self, step: u64, time: f64) {
-        self.ask(&Ask::SetTime(step, time));
-        self.own.model.set_time(step, time);
-    }
-
-    fn set_time_step(&mut self, dt: f64) {
-        self.ask(&Ask::SetTimeStep(dt));
-        self.own.model.set_time_step(dt);
+    fn set_clock(&mut self, now: Option<(u64, f64)>, time_step: Option<f64>) {
+        self.ask(&Ask::SetClock(now, time_step));
+        self.own.model.set_clock(now, time_step);
     }
 
     fn set_conditions(

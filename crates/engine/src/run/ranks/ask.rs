@@ -28,8 +28,7 @@ pub(super) enum Ask<'a> {
     Reflect([f64; 3], Option<&'a [f64]>),
     Prescribe(Prescription, &'a [f64]),
     Remove(&'a [f64]),
-    SetTime(u64, f64),
-    SetTimeStep(f64),
+    SetClock(Option<(u64, f64)>, Option<f64>),
     /// Of each one the number of its points, −1 of all, their ids and its numbers.
     SetDriven(&'a [f64]),
     Drive(usize, &'a [f64]),
@@ -73,8 +72,12 @@ impl<'a> Ask<'a> {
             }
             Ask::Prescribe(way, _) => format!("prescribe {way:?}"),
             Ask::Remove(_) => "remove".into(),
-            Ask::SetTime(step, time) => format!("set_time {step} {time:e}"),
-            Ask::SetTimeStep(dt) => format!("set_time_step {dt:e}"),
+            Ask::SetClock(now, time_step) => {
+                let now = now.map(|(step, time)| format!("{step}/{time:e}"));
+                let time_step = time_step.map(|dt| format!("{dt:e}"));
+                let [now, time_step] = [now, time_step].map(|x| x.unwrap_or("-".into()));
+                format!("set_clock {now} {time_step}")
+            }
             Ask::SetDriven(_) => "set_driven".into(),
             Ask::Drive(index, _) => format!("drive {index}"),
             Ask::Reaction(index) => format!("reaction {index}"),
@@ -145,8 +148,17 @@ impl<'a> Ask<'a> {
                 Ask::Prescribe(way, values)
             }
             "remove" => Ask::Remove(values),
-            "set_time" => Ask::SetTime(words.next()?.parse().ok()?, words.next()?.parse().ok()?),
-            "set_time_step" => Ask::SetTimeStep(of.parse().ok()?),
+            "set_clock" => {
+                let now = match words.next()?.split_once('/') {
+                    Some((step, time)) => Some((step.parse().ok()?, time.parse().ok()?)),
+                    None => None,
+                };
+                let time_step = match words.next()? {
+                    "-" => None,
+                    dt => Some(dt.parse().ok()?),
+                };
+                Ask::SetClock(now, time_step)
+            }
             "set_driven" => Ask::SetDriven(values),
             "drive" => Ask::Drive(of.parse().ok()?, values),
             "reaction" => Ask::Reaction(of.parse().ok()?),

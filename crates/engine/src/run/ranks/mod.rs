@@ -5,6 +5,7 @@
 
 mod all;
 mod ask;
+mod here;
 mod model;
 mod plan;
 mod shared;

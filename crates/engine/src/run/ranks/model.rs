@@ -1,7 +1,7 @@
 //! The part of a model that one rank has.
 
+use super::here::Here;
 use super::shared::shared;
-use super::steered::Here;
 use crate::body::{Body, RunsOfIds, Subdomain};
 use crate::columns::{Declaration, On};
 use crate::error::{BuildError, RunError};

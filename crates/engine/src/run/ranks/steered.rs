@@ -1,20 +1,12 @@
 //! The part of a model that one rank has, led step by step: what is told of points of all ranks is of those that are here.
 
+use super::here::Here;
 use super::model::RankModel;
 use crate::condition::carried::Motion;
 use crate::condition::driven::Drive;
 use crate::condition::reaction::Reaction;
 use crate::error::RunError;
 use crate::run::{Prescription, Steered, Wall};
-
-/// Which points, of lists of those of all ranks, are here.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Here {
-    /// Places in the list of those that are carried.
-    carried: Vec<usize>,
-    /// In that of each driven condition.
-    driven: Vec<Vec<usize>>,
-}
 
 impl<const D: usize> RankModel<D> {
     /// Those of these points that are here: places in the list, and ids here.

@@ -145,11 +145,7 @@ fn fields_on_nodes_have_the_same_bits_on_any_number_of_ranks() {
             FamilyChoice::Reference,
             !breaks,
         );
-        let BodySpec::Lattice { spacing, .. } = &flat.body else {
-            panic!("a lattice");
-        };
-        let reach = 2.3 * spacing;
-        smoothed(&mut flat, reach);
+        smoothed(&mut flat, 2.3 * 1.02);
         let mut solid = crystal(silicon, *edge, *kinds, 5, breaks);
         (solid.bonds.family, solid.bonds.horizon) = (FamilyChoice::Reference, Horizon::Length(4.2));
         smoothed(&mut solid, 0.85 * edge);
