@@ -146,7 +146,7 @@ pub fn run_among(
             note(&format!("{} ranks: {}", comm.ranks(), comm.carrier()));
             run(place, (Some((&sharing, comm.ranks())), threads), from)
         }
-        _ => follow(place.input, &sharing),
+        _ => follow(place.input, from.as_ref().map(|(asked, _)| asked), &sharing),
     };
     match sharing.leave(ended.is_ok()) {
         // there was no run to follow
@@ -159,11 +159,11 @@ pub fn run_among(
 }
 
 /// Follows the model of a script.
-fn follow(input: &Input, sharing: &Sharing) -> Result<(), Failure> {
+fn follow(input: &Input, asked: Option<&Asked>, sharing: &Sharing) -> Result<(), Failure> {
     // what is wrong the first rank says
     let elsewhere = |_| Failure::Elsewhere;
     let text = deck::text(input).map_err(elsewhere)?;
-    let name = input.file.display().to_string();
+    let name = name(input, asked);
     let options = Options {
         dry: true,
         ..options(input, Path::new("")).map_err(elsewhere)?

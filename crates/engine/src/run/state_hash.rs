@@ -17,6 +17,9 @@ use std::collections::HashMap;
 /// Ids of a block, which has a digest of its own.
 const BLOCK: usize = 1024;
 
+/// The id of nobody.
+const GONE: u32 = u32::MAX;
+
 /// Who has a column of points.
 enum Owner {
     Displacement,
@@ -43,8 +46,8 @@ fn chain(digests: &mut [u64], (name, each): (&str, usize), values: &[f64]) {
 /// What bonds add to the blocks of their points, in any order.
 struct Bonds<'a, const D: usize> {
     system: &'a System<D>,
-    /// By slot.
-    id: Cow<'a, [u32]>,
+    /// By slot; [`GONE`] of who was taken away.
+    id: Vec<u32>,
     /// Of blocks, where there is anything.
     sums: HashMap<u64, u64>,
     words: Words,
@@ -53,6 +56,9 @@ struct Bonds<'a, const D: usize> {
 impl<const D: usize> Bonds<'_, D> {
     /// A directed bond between two slots, with numbers of its own in the column of this hash.
     fn add(&mut self, column: u64, [i, j]: [usize; 2], xi: [f64; D], numbers: &[f64]) {
+        if [i, j].iter().any(|slot| self.id[*slot] == GONE) {
+            return;
+        }
         let body = &self.system.body;
         let [from, to] = [i, j].map(|slot| body.home(slot));
         let image = (0..D).map(|a| {
@@ -153,9 +159,13 @@ fn of_law<const D: usize>(system: &System<D>, name: &str) -> Vec<f64> {
 
 /// Of each block, which bonds of its points are broken or were never there, and what the others of its bonds' columns say; on the first rank.
 fn sums_of_bonds<const D: usize>(system: &System<D>) -> Option<Vec<u64>> {
+    let mut id = vec![GONE; system.body.len()];
+    let number = |id: usize| system.body.id_of_all(id) as u32;
+    { system.body.slots().iter().enumerate() }.for_each(|(n, s)| id[*s as usize] = number(n));
+    system.body.exchange().fill(&mut id);
     let mut bonds = Bonds {
         system,
-        id: system.body.ids_of_all(),
+        id,
         sums: HashMap::new(),
         words: Words::default(),
     };

@@ -124,10 +124,14 @@ impl<const D: usize> Steered for Model<D> {
             Driven::new(drive, slots, points)
         });
         let new: Vec<_> = new.collect();
-        for old in std::mem::replace(&mut self.system.applied.driven, new) {
-            match old {
-                Driven::Load(l) => self.system.accounts.past.conditions += l.work.value(),
-                Driven::Indenter(i) => self.system.accounts.past.indenters += i.work.value(),
+        // what those of before did on the points of all ranks
+        let old = std::mem::replace(&mut self.system.applied.driven, new);
+        let (body, past) = (&self.system.body, &mut self.system.accounts.past);
+        let works = body.sums_of(old.iter().map(|of| of.work().clone()).collect());
+        for (of, work) in old.iter().zip(works) {
+            match of {
+                Driven::Load(_) => past.conditions += work,
+                Driven::Indenter(_) => past.indenters += work,
             }
         }
     }

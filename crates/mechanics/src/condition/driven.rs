@@ -7,6 +7,7 @@ use super::indenter::{Form, Indenter, Push};
 use super::load::{Load, LoadKind};
 use super::reaction::Reaction;
 use crate::body::Body;
+use crate::execute::exact::Exact;
 use crate::space::Point;
 use crate::state::Archive;
 
@@ -204,6 +205,14 @@ impl<const D: usize> Driven<D> {
         match self {
             Driven::Indenter(i) => i,
             Driven::Load(l) => l,
+        }
+    }
+
+    /// Work done on the points of this rank (energy).
+    pub fn work(&self) -> &Exact {
+        match self {
+            Driven::Indenter(i) => &i.work,
+            Driven::Load(l) => &l.work,
         }
     }
 
