@@ -48,7 +48,6 @@ impl Writer for Frames {
         if let Some(series) = &mut self.open
             && now.due.frame
             && !now.due.last
-            && series.wants_frames()
         {
             write(series, now, false)?;
         }
@@ -89,6 +88,9 @@ fn seen(series: &Series, now: &mut Now<'_>) -> Arc<Snapshot> {
 
 /// Writes a frame; ranks do it together, if nothing needs all points in one place.
 fn write(series: &mut Series, now: &mut Now<'_>, is_drawn: bool) -> Result<(), DriveError> {
+    if !series.wants_frames() {
+        return Ok(());
+    }
     if now.plan.ranks > 1 && series.is_of_points() && !is_drawn {
         let when = (now.sim.step_number(), frame_time(now.sim));
         let (sim, plan) = (&mut *now.sim, now.plan);
