@@ -170,8 +170,12 @@ mod tests {
             first: 0,
             points: 3,
         };
-        let written = |name: &str| write_share(name, &small(), whole);
-        let elsewhere = |_: &str| write_share("/nowhere/frame.vtu", &small(), whole);
+        let s = Snapshot {
+            bonds: None,
+            ..small()
+        };
+        let written = |name: &str| write_share(name, &s, whole);
+        let elsewhere = |_: &str| write_share("/nowhere/frame.vtu", &s, whole);
         let none = write_frame(&path, |name| Some(vec![written(name), elsewhere(name)]));
         assert_eq!(none.unwrap(), None);
         assert_eq!(write_frame(&path, |_| None).unwrap(), None);
@@ -183,7 +187,7 @@ mod tests {
         );
         let half = |name: &str| {
             let second = Share { first: 1, ..whole };
-            Some(vec![write_share(name, &part(&small(), 1..3), second)])
+            Some(vec![write_share(name, &part(&s, 1..3), second)])
         };
         let text = write_frame(&path, half).unwrap_err().to_string();
         assert!(text.contains("nobody wrote from byte 0 on"), "{text}");
