@@ -1,7 +1,7 @@
 //! Cuts bodies into the parts that ranks have.
 //!
 //! Ranks own whole blocks, the same ones that sums are made of, in their order: of lattices blocks of tiles, of clouds blocks of points, of several bodies those of
-//! one after the other. What is near by but somebody else's is a copy, as periodic images are ([`Exchange`]).
+//! one after the other. What is near by but somebody else's is a copy, as periodic images are ([`Exchange`](super::exchange::Exchange)).
 //!
 //! A part of a lattice has the cells of the whole grid from one to another, in the order of memory, so that a neighbour is as many cells away as in the whole:
 //! slabs across the axis that is slowest in memory, whose borders may lie within a layer. What a region says of cells one by one needs no whole body: no rank
