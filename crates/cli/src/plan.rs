@@ -47,14 +47,25 @@ struct Network {
     bandwidth: f64,
 }
 
-/// Seconds of a step of ranks that share a body so, whose points take so long each: work of the one that has most, then what it tells its neighbours,
-/// then what all hear of all, in `⌈log₂ N⌉` exchanges of two messages. Nothing is done meanwhile.
+/// Seconds of a step of ranks that share a body so, whose points take so long each: work of the one that has most, what it tells its neighbours as far as that
+/// takes longer than what it does meanwhile, then what all hear of all, in `⌈log₂ N⌉` exchanges of two messages.
 fn step(shares: &Shares, per_point: f64, cost: &StepCost, network: Network) -> f64 {
-    let work = per_point * shares.points as f64;
-    let told = cost.messages * shares.neighbours() as f64 * network.latency
-        + cost.bytes_per_copy * shares.copies as f64 / network.bandwidth;
+    let (points, copies) = (shares.points as f64, shares.copies as f64);
+    let during = &cost.meanwhile;
+    let told = |messages: f64, bytes: f64| {
+        let neighbours = shares.neighbours() as f64;
+        messages * neighbours * network.latency + bytes * copies / network.bandwidth
+    };
+    let ahead = told(during.messages, during.bytes_per_copy);
+    let rest = told(
+        cost.messages - during.messages,
+        cost.bytes_per_copy - during.bytes_per_copy,
+    );
+    // as many points have partners elsewhere as there are copies of others'
+    let inside = during.part * per_point * (points - copies).max(0.0);
     let deep = (shares.ranks as f64).log2().ceil();
-    work + told + cost.rounds * 2.0 * deep * network.latency
+    let rounds = cost.rounds * 2.0 * deep * network.latency;
+    per_point * points + (ahead - inside).max(0.0) + rest + rounds
 }
 
 /// Of a step.
@@ -134,6 +145,7 @@ impl Plan {
         json!({
             "points": self.info.points, "directed_bonds": self.info.directed_bonds, "steps": self.steps, "threads": self.threads, "cores": self.cores,
             "seconds_per_step": cost.seconds, "messages": cost.messages, "bytes_per_copy": cost.bytes_per_copy, "rounds": cost.rounds,
+            "meanwhile": { "messages": cost.meanwhile.messages, "bytes_per_copy": cost.meanwhile.bytes_per_copy, "part": cost.meanwhile.part },
             "two_ranks": { "seconds_per_step": cost.seconds_of_two, "foreseen": self.foreseen },
             "nodes": rows.collect::<Vec<_>>(),
         })
@@ -151,8 +163,12 @@ impl Plan {
         );
         let _ = writeln!(
             text,
-            "tells     each neighbour {:.1} messages, {:.0} bytes per copy; all hear of all {:.1} times",
-            cost.messages, cost.bytes_per_copy, cost.rounds
+            "tells     each neighbour {:.1} messages, {:.0} bytes per copy, of which {:.1} and {:.0} while it works; all hear of all {:.1} times",
+            cost.messages,
+            cost.bytes_per_copy,
+            cost.meanwhile.messages,
+            cost.meanwhile.bytes_per_copy,
+            cost.rounds
         );
         let _ = writeln!(
             text,

@@ -1,6 +1,6 @@
 //! `peridyne ranks`: which MPI this program finds under a launcher, whether messages between all ranks come as they were sent, and how fast.
 
-use crate::failure::{Failure, say};
+use crate::failure::{Failure, note, say};
 use peridyne_comm::{Comm, launcher};
 use peridyne_io::drive::refused_threads;
 use serde_json::json;
@@ -78,6 +78,24 @@ pub fn alone(comm: &Comm, what: &str) -> Result<(), Failure> {
             ))),
         ),
     }
+}
+
+/// Work that ranks do not share: the first one does it, and the others wait for it.
+pub fn by_the_first(
+    comm: &Comm,
+    what: &str,
+    work: impl FnOnce() -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    if comm.rank() > 0 {
+        return agreed(comm, Ok(()));
+    }
+    if comm.ranks() > 1 {
+        let others = comm.ranks() - 1;
+        note(&format!(
+            "warning: ranks do not share {what}: the first one does all of it, {others} wait"
+        ));
+    }
+    agreed(comm, work())
 }
 
 /// Can so many threads be begun?

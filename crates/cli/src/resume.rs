@@ -6,7 +6,7 @@ use crate::early::{Early, same_files};
 use crate::failure::{Failure, note};
 use crate::initial::InitialState;
 use crate::law;
-use crate::ranks::{agreed, alone, shared, threads_here};
+use crate::ranks::{agreed, alone, by_the_first, shared, threads_here};
 use crate::run::{Begin, RunArguments, run_deck, with_threads};
 use crate::script;
 use peridyne_comm::Comm;
@@ -78,10 +78,11 @@ fn resume_among(arguments: &ResumeArguments, comm: &Arc<Comm>) -> Result<(), Fai
     if anew.is_none()
         && let Some(law) = agreed(comm, law::read(&run.input))?
     {
-        alone(comm, "conservation laws")?;
-        same_deck(&asked, law.text())?;
-        going_on(&asked);
-        return with_threads(run.threads, |_| law::run(&run.place(), law, Some(from)));
+        return by_the_first(comm, "conservation laws", || {
+            same_deck(&asked, law.text())?;
+            going_on(&asked);
+            with_threads(run.threads, |_| law::run(&run.place(), law, Some(from)))
+        });
     }
     let read = || {
         let deck = deck::read(&run.input)?;

@@ -8,7 +8,7 @@ use crate::failure::{Failure, note, say};
 use crate::initial::InitialState;
 use crate::law;
 use crate::progress::Terminal;
-use crate::ranks::{agreed, alone, shared, some_threads, threads_here};
+use crate::ranks::{agreed, by_the_first, shared, some_threads, threads_here};
 use crate::report;
 use crate::script;
 use crate::signals;
@@ -83,9 +83,10 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
             });
         }
         if let Some(deck) = agreed(comm, law::read(&arguments.input))? {
-            alone(comm, "conservation laws")?;
-            return with_threads(arguments.threads, |_| {
-                law::run(&arguments.place(), deck, None)
+            return by_the_first(comm, "conservation laws", || {
+                with_threads(arguments.threads, |_| {
+                    law::run(&arguments.place(), deck, None)
+                })
             });
         }
         let read = || {

@@ -346,10 +346,16 @@ fn a_plan_is_of_what_a_step_costs_and_how_the_body_is_cut() {
         "{copies:?}"
     );
     assert!(copies[2] >= 6 * 256 && copies[2] < 8 * 256, "{copies:?}");
-    // displacements and velocities are told once in a step, and how far the fastest point went
-    assert_eq!(found["messages"], 2.0);
+    // displacements and velocities are told once in a step, in one message, and how far the fastest point went
+    assert_eq!(found["messages"], 1.0);
     assert_eq!(found["bytes_per_copy"], 48.0);
     assert_eq!(found["rounds"], 1.0);
+    // nobody waits for them who has points inside
+    let meanwhile = &found["meanwhile"];
+    assert_eq!(meanwhile["messages"], 1.0);
+    assert_eq!(meanwhile["bytes_per_copy"], 48.0);
+    let part = meanwhile["part"].as_f64().unwrap();
+    assert!(part > 0.0 && part <= 1.0, "{part}");
     let number = |n: usize, key: &str| nodes[n][key].as_f64().unwrap();
     let step = found["seconds_per_step"].as_f64().unwrap();
     assert!((number(0, "seconds_per_step") / (step / 8.0) - 1.0).abs() < 1e-12);

@@ -25,14 +25,8 @@ const CLOCK_OF_LAMMPS: [&str; 2] = ["Loop time of ", "Per MPI rank memory"];
 /// The same of a conservation law.
 const CLOCK_OF_LAW: [&str; 3] = ["seconds_stepping", "ns_per_point_step", "peak_memory_bytes"];
 
-/// What ranks do not look for.
-const GAP: &str = "join across a gap";
-
 /// Takes that away.
 fn stop_clock(run: &mut Value) {
-    if let Some(warnings) = run["warnings"].as_array_mut() {
-        warnings.retain(|text| !text.to_string().contains(GAP));
-    }
     let clock = match run["kind"] == "conservation_law" {
         true => &CLOCK_OF_LAW[..],
         false => &CLOCK,
@@ -224,38 +218,16 @@ fn printed(stdout: Vec<u8>) -> String {
     without_clock_of_lammps(text.lines().take_while(|line| !ours(line)))
 }
 
-/// Begins a case on ranks where these can share it, and says whether they do.
-fn begun(case: &Case, arguments: &[&str]) -> (String, bool) {
-    let on_ranks = [arguments, &["--on-threads", "3"]].concat();
-    let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
-        .args(&on_ranks)
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&done.stderr).replace(['│', '\n'], " ");
-    let said: Vec<&str> = said.split_whitespace().collect();
-    let said = said.join(" ");
-    if !said.contains("ranks do not share") {
-        assert_eq!(done.status.code(), Some(0), "{}: {said}", case.name);
-        SHARED.fetch_add(1, Ordering::Relaxed);
-        return (printed(done.stdout), true);
-    }
-    assert_eq!(done.status.code(), Some(2), "{}: {said}", case.name);
-    (program(case, arguments), false)
-}
-
-/// Cases that ran on ranks.
-static SHARED: AtomicUsize = AtomicUsize::new(0);
-
 /// Runs a case; all that it wrote.
 fn run(dir: &Path, case: &Case, threads: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let out = dir.join(format!("{}-{threads}", case.name));
     let to = out.to_str().unwrap();
     let deck = case.path.to_str().unwrap();
-    let arguments = ["run", deck, "--threads", threads, "--out", to];
-    let said = match threads {
-        "1" => program(case, &arguments),
-        _ => begun(case, &arguments).0,
-    };
+    let mut arguments = vec!["run", deck, "--threads", threads, "--out", to];
+    if threads != "1" {
+        arguments.extend(["--on-threads", "3"]);
+    }
+    let said = program(case, &arguments);
     with_output(case, files(&out), said)
 }
 
@@ -271,36 +243,27 @@ fn with_output(
     files
 }
 
-/// The same in parts: on one thread to the first stop, as if it were cut off there, from there on three to the next, and so on. Of what ranks share each
-/// part is of another number of them.
+/// The same in parts, each on another number of threads and of ranks: to the first stop, as if it were cut off there, from there to the next, and so on.
 fn run_in_parts(dir: &Path, case: &Case, stops: &[u64]) -> BTreeMap<PathBuf, Vec<u8>> {
     let out = dir.join(format!("{}-parts", case.name));
     let to = out.to_str().unwrap();
     let deck = case.path.to_str().unwrap();
-    let (mut said, mut shared) = (String::new(), false);
+    let mut said = String::new();
     for part in 0..=stops.len() {
         let mut arguments = match part {
             0 => vec!["run", deck, "--out", to],
             _ => vec!["resume", to],
         };
         arguments.extend(["--threads", ["1", "3", "2"][part % 3]]);
-        if shared {
-            let ranks: [&[&str]; 3] = [&["--on-threads", "4"], &[], &["--on-threads", "2"]];
-            arguments.extend(ranks[part % 3]);
+        if let Some(ranks) = [Some("3"), None, Some("2"), Some("4")][part % 4] {
+            arguments.extend(["--on-threads", ranks]);
         }
         let stop = stops.get(part).map(u64::to_string);
         if let Some(stop) = &stop {
             arguments.extend(["--stop-after", stop]);
         }
         let before = last_state(&out);
-        let printed = match part {
-            0 => {
-                let printed;
-                (printed, shared) = begun(case, &arguments);
-                printed
-            }
-            _ => program(case, &arguments),
-        };
+        let printed = program(case, &arguments);
         // where no state was written the next part begins where this one did
         if stop.is_none() || last_state(&out) != before {
             said += &printed;
@@ -328,8 +291,7 @@ fn last_state(out: &Path) -> Option<String> {
     steps.max().map(|step| step.to_string())
 }
 
-/// One case on one thread and on three, which halve no work evenly, in parts where it has some, and on ranks where these share it. How it ended: a line
-/// of the table.
+/// One case on one thread, and on ranks of three, which halve no work evenly, in parts where it has some. How it ended: a line of the table.
 fn compare(dir: &Path, case: &Case) -> String {
     let (line, report) = compare_cut(dir, case, &|steps| case.stops(steps));
     let warned = report["warnings"].to_string();
@@ -420,11 +382,6 @@ fn every_good_deck_writes_the_same_bytes_on_any_number_of_threads_and_ends_as_it
     cases.extend(laws());
     cases.extend(scripts());
     let lines = each(&cases, &|case| compare(dir.path(), case));
-    println!(
-        "{} of {} on ranks",
-        SHARED.load(Ordering::Relaxed),
-        cases.len()
-    );
     if std::env::var_os("PERIDYNE_RENEW_HASHES").is_some() {
         let text = format!("{}\n{HEADER}{}\n", features(), lines.join("\n"));
         return std::fs::write(table(), text).unwrap();

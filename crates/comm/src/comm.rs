@@ -6,6 +6,7 @@ use crate::launcher;
 use crate::mpi;
 use crate::threads;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 /// This rank among the others.
 #[derive(Debug)]
@@ -22,6 +23,8 @@ pub struct Traffic {
     pub bytes: u64,
     /// How often all heard what each had ([`Comm::all`]).
     pub rounds: u64,
+    /// Nanoseconds that it worked while messages were on their way.
+    pub worked: u64,
 }
 
 #[derive(Debug, Default)]
@@ -29,6 +32,7 @@ struct Counted {
     messages: AtomicU64,
     bytes: AtomicU64,
     rounds: AtomicU64,
+    worked: AtomicU64,
 }
 
 #[derive(Debug)]
@@ -75,17 +79,19 @@ impl Comm {
 
     /// What this rank has sent so far.
     pub fn traffic(&self) -> Traffic {
-        let Counted {
-            messages,
-            bytes,
-            rounds,
-        } = &self.counted;
-        let [messages, bytes, rounds] =
-            [messages, bytes, rounds].map(|n| n.load(Ordering::Relaxed));
+        let counted = &self.counted;
+        let [messages, bytes, rounds, worked] = [
+            &counted.messages,
+            &counted.bytes,
+            &counted.rounds,
+            &counted.worked,
+        ]
+        .map(|n| n.load(Ordering::Relaxed));
         Traffic {
             messages,
             bytes,
             rounds,
+            worked,
         }
     }
 
@@ -143,7 +149,13 @@ impl Comm {
                 .bytes
                 .fetch_add(bytes.len() as u64, Ordering::Relaxed);
         }
-        self.trade(send, receive, work)
+        self.trade(send, receive, || {
+            let begun = Instant::now();
+            let answer = work();
+            let worked = begun.elapsed().as_nanos() as u64;
+            self.counted.worked.fetch_add(worked, Ordering::Relaxed);
+            answer
+        })
     }
 
     /// [`Comm::exchange`], of which nobody keeps count.

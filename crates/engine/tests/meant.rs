@@ -1,10 +1,12 @@
 //! Warnings of bodies that are likely not what was meant, beside the same bodies put right.
 
 use peridyne::expression::Expression;
-use peridyne::run::{Options, build};
+use peridyne::run::{Options, Simulation, build, ranks};
 use peridyne::space::lattice::{Ends, Lattice, LatticeKind};
 use peridyne::space::region::Region;
 use peridyne::spec::*;
+use peridyne_comm::on_threads;
+use std::sync::Arc;
 
 fn block(low: [f64; 2], high: [f64; 2]) -> Region {
     Region::Block {
@@ -31,9 +33,20 @@ fn whole() -> Spec {
     plate(block([0.0; 2], [20.0, 10.0]))
 }
 
+/// The same of one process and of ranks.
 fn told(spec: &Spec) -> Vec<String> {
-    let sim = build(spec, Options::default()).unwrap();
-    sim.info().warnings.iter().map(|w| w.to_string()).collect()
+    let warnings = |sim: &dyn Simulation| -> Vec<String> {
+        sim.info().warnings.iter().map(|w| w.to_string()).collect()
+    };
+    let one = warnings(build(spec, Options::default()).unwrap().as_ref());
+    for count in [2, 3] {
+        let all = on_threads(count, |comm| {
+            let made = ranks::build(spec, Options::default(), &Arc::new(comm), |_, _, _| vec![]);
+            made.unwrap().map(|sim| warnings(sim.as_ref()))
+        });
+        assert_eq!(all[0].as_ref(), Some(&one));
+    }
+    one
 }
 
 /// One warning with these words.
@@ -386,6 +399,47 @@ fn a_slot_that_bonds_bridge() {
         center: [10.0, 5.0, 0.0],
         radius: 3.2,
     }));
+}
+
+/// Slots and pieces that several blocks of 256 cells have parts of, on and beside their borders.
+#[test]
+fn gaps_of_large_bodies() {
+    let large = |part: Region| {
+        plate(Region::Difference(
+            Box::new(block([0.0; 2], [60.0, 50.0])),
+            vec![part],
+        ))
+    };
+    for x in [10.0, 25.0, 30.0, 41.0] {
+        let along = block([x, 5.0], [x + 1.0, 51.0]);
+        warns(&large(along), "bonds reach across a gap in the body");
+        let across = block([8.0, x], [61.0, x + 1.0]);
+        warns(&large(across), "bonds reach across a gap in the body");
+        let pieces = large(block([x, -1.0], [x + 1.0, 51.0]));
+        warns(
+            &pieces,
+            "the body is in separate pieces that 294 bonds join",
+        );
+    }
+}
+
+#[test]
+fn corners_of_a_large_body_that_a_traction_tears_off() {
+    let mut spec = plate(block([0.0; 2], [60.0, 50.0]));
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.01)));
+    for (name, low, high) in [("left", 0.0, 1.0), ("right", 59.0, 60.0)] {
+        spec.sets.push(SetSpec {
+            name: name.into(),
+            members: Members::Region(block([low, 0.0], [high, 50.0])),
+        });
+        let value = [Some(Expression::parse("0.1", &[]).unwrap()), None, None];
+        spec.loading.conditions.push(ConditionSpec {
+            set: name.into(),
+            kind: ConditionKind::Traction { value, area: None },
+        });
+    }
+    // a quarter of the 28 bonds that are 3 long at most, and half of those along the edges
+    warns(&spec, "at once: that at (0.5, 0.5) has 10,");
 }
 
 #[test]

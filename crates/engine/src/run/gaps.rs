@@ -1,7 +1,7 @@
 //! Gaps between bodies, and gaps inside one that bonds reach across.
 
 use super::Gap;
-use crate::body::Body;
+use crate::body::{Body, zeros};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::{BondStatus, Interaction};
 use crate::message;
@@ -113,6 +113,42 @@ pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64
     told.collect()
 }
 
+/// The shortest of bonds that somebody found, of equally long ones that of the first points, and how many there are.
+#[derive(Default)]
+struct Shortest {
+    bonds: u64,
+    /// Length and ids of the ends.
+    first: Option<(f64, [u32; 2])>,
+}
+
+impl Shortest {
+    fn take(&mut self, r: f64, mut ends: [u32; 2]) {
+        ends.sort_unstable();
+        self.bonds += 1;
+        let found = (r, ends);
+        self.first = Some(self.first.map_or(found, |first| sooner(first, found)));
+    }
+
+    /// Of all ranks: how many, the length of the shortest and where its ends are. All ask at once.
+    fn of_all<const D: usize>(self, body: &Body<D>) -> Option<(u64, f64, [usize; 2])> {
+        let bonds = body.count(self.bonds);
+        let own = self
+            .first
+            .map(|(r, [i, j])| [r, f64::from(i), f64::from(j)]);
+        let all = body.all_of(own.as_slice()).concat().into_iter();
+        let all = all.map(|[r, i, j]| (r, [i as u32, j as u32]));
+        let (r, ends) = all.reduce(sooner)?;
+        Some((bonds, r, ends.map(|id| id as usize)))
+    }
+}
+
+fn sooner(one: (f64, [u32; 2]), other: (f64, [u32; 2])) -> (f64, [u32; 2]) {
+    match one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)) {
+        std::cmp::Ordering::Greater => other,
+        _ => one,
+    }
+}
+
 /// Whole bonds between surfaces that face each other: across a slot or hole that is narrower than the horizon. Call after bonds are cut.
 pub(super) fn bridged<const D: usize>(
     body: &Body<D>,
@@ -121,29 +157,29 @@ pub(super) fn bridged<const D: usize>(
     let length = |s: usize| body.spacing_at(s);
     let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
     // mean direction to the nearest neighbours
-    let mut inward = vec![[0.0; D]; body.len()];
+    let mut inward = zeros::<D>(body.len());
     let mut count = vec![0u32; body.len()];
-    interaction.each_bond(body, &mut |i, j, xi, _| {
+    interaction.each_partner(body, &mut |i, j, xi, _| {
         let (reach, r2) = (NEXT * length(i).max(length(j)), square(&xi));
         if r2 < reach * reach {
             let r = r2.sqrt();
-            for (s, way) in [(i, 1.0), (j, -1.0)] {
-                count[s] += 1;
-                for a in 0..D {
-                    inward[s][a] += way * xi[a] / r;
-                }
-            }
+            count[i] += 1;
+            (0..D).for_each(|a| inward[a][i] += xi[a] / r);
         }
     });
-    for (x, n) in inward.iter_mut().zip(&count) {
-        let size = square(x).sqrt();
-        let surface = size > SURFACE * f64::from(*n);
-        *x = x.map(|c| if surface { c / size } else { 0.0 });
+    for &slot in body.slots() {
+        let s = slot as usize;
+        let size = square(&crate::array::from_fn(|a| inward[a][s])).sqrt();
+        let surface = size > SURFACE * f64::from(count[s]);
+        for x in &mut inward {
+            x[s] = if surface { x[s] / size } else { 0.0 };
+        }
     }
-    let mut shortest: Option<(f64, usize, usize)> = None;
-    let mut bonds = 0u64;
+    body.exchange().fill_field(&mut inward);
+    let id = body.id_of();
+    let mut found = Shortest::default();
     interaction.each_bond(body, &mut |i, j, xi, state| {
-        let along = |s: usize| (0..D).map(|a| inward[s][a] * xi[a]).sum::<f64>();
+        let along = |s: usize| (0..D).map(|a| inward[a][s] * xi[a]).sum::<f64>();
         // most points are inside
         let [from, to] = [-along(i), along(j)];
         if !(from > 0.0 && to > 0.0 && state == BondStatus::Whole) {
@@ -151,23 +187,20 @@ pub(super) fn bridged<const D: usize>(
         }
         let r = square(&xi).sqrt();
         if from.min(to) > FACING * r && r > NEXT * length(i).max(length(j)) {
-            bonds += 1;
-            if shortest.is_none_or(|(least, ..)| r < least) {
-                shortest = Some((r, i, j));
-            }
+            found.take(r, [id(i), id(j)]);
         }
     });
-    let (r, i, j) = shortest.filter(|_| bonds >= FEW)?;
-    let at = |s: usize| place(&body.position(s)[..D]);
+    let (bonds, r, ends) = found.of_all(body).filter(|(bonds, ..)| *bonds >= FEW)?;
+    let [from, to] = ends.map(|id| body.position_of(id));
     Some(message![
         format!(
             "{bonds} bonds reach across a gap in the body that is narrower than the horizon, the shortest of them ("
         ),
         Dimension::LENGTH.of(r),
         ") from ",
-        at(i),
+        place(&from[..D]),
         " to ",
-        at(j),
+        place(&to[..D]),
         ": for them there is no gap. Cut them by a pre-crack in its middle, or choose a smaller spacing",
     ])
 }
@@ -183,10 +216,9 @@ pub(super) fn across<const D: usize>(
         body.spacing_at(s).max(own)
     };
     let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
-    let next =
-        |i: usize, j: usize, xi: &[f64; D]| square(xi) < (NEXT * length(i).max(length(j))).powi(2);
-    let near = Fragments::by(body, interaction, |i, j, xi, state| {
-        state == BondStatus::Whole && next(i, j, xi)
+    let near = Fragments::by(body, interaction, &|i, j, xi, state| {
+        let next = NEXT * length(i).max(length(j));
+        state == BondStatus::Whole && square(xi) < next * next
     });
     if near.count() == 1 || near.count() == Fragments::of(body, interaction).count() {
         return vec![];
@@ -195,37 +227,40 @@ pub(super) fn across<const D: usize>(
     for (l, s) in near.label.iter().zip(body.slots()) {
         label[*s as usize] = *l;
     }
-    let mut shortest: Option<(f64, usize, usize)> = None;
-    let mut bonds = 0u64;
+    body.exchange().fill(&mut label);
+    let id = body.id_of();
+    let mut found = Shortest::default();
     interaction.each_bond(body, &mut |i, j, xi, state| {
         if state == BondStatus::Whole && label[i] != label[j] {
-            bonds += 1;
-            let r = square(&xi).sqrt();
-            if shortest.is_none_or(|(least, ..)| r < least) {
-                shortest = Some((r, i, j));
-            }
+            found.take(square(&xi).sqrt(), [id(i), id(j)]);
         }
     });
-    let Some((r, i, j)) = shortest else {
+    let Some((bonds, r, ends)) = found.of_all(body) else {
         return vec![];
     };
+    // lengths and body are those of whoever has the points
+    let of = body.whose();
+    let here = ends.map(|id| of.place(id as u32).map(|n| body.slots()[n] as usize));
+    let longest = here.iter().flatten().map(|s| length(*s));
+    let spacing = body.most(longest.fold(0.0, f64::max));
+    let piece = body.most(here[0].map_or(0.0, |s| body.piece_of(s) as f64)) as usize;
+    let [from, to] = ends.map(|id| body.position_of(id));
     let of = match &spec.body {
-        BodySpec::Several(pieces) => format!("body `{}`", pieces[body.piece_of(i)].name),
+        BodySpec::Several(pieces) => format!("body `{}`", pieces[piece].name),
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => "the body".into(),
     };
-    let at = |s: usize| place(&body.position(s)[..D]);
     vec![message![
         format!(
             "{of} is in separate pieces that {bonds} bonds join across a gap: the shortest of them, from "
         ),
-        at(i),
+        place(&from[..D]),
         " to ",
-        at(j),
+        place(&to[..D]),
         ", is ",
         Dimension::LENGTH.of(r),
         format!(
             " long, {:.2} spacings. If the pieces should only touch, write [[body]] for each",
-            r / length(i).max(length(j))
+            r / spacing
         ),
     ]]
 }

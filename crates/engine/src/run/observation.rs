@@ -134,7 +134,7 @@ impl<const D: usize> State for View<'_, D> {
     }
 
     fn fragments(&mut self) -> Vec<u32> {
-        Fragments::of_all(&self.system.body, self.system.interaction.as_ref()).label
+        Fragments::of(&self.system.body, self.system.interaction.as_ref()).label
     }
 
     fn each_bond(&mut self, visit: &mut dyn FnMut(FamilyBond)) {

@@ -6,7 +6,7 @@ use crate::interaction::{BondStatus, Sweep};
 use crate::law::material::tensor::{inverse, times};
 use crate::message;
 use crate::quantity::{Message, place, rounded};
-use crate::space::full;
+use crate::space::{Point, full};
 use std::collections::{HashMap, HashSet};
 
 /// So many points with the fewest bonds are looked at, that far apart in horizons that none feels another.
@@ -17,8 +17,9 @@ const TIMES: u32 = 8;
 /// Of a spacing: a displacement in which laws are linear.
 const SMALL: f64 = 1e-6;
 
-/// A point under a load.
+/// A point under a load that is here, the how-manieth of those that were chosen.
 struct Loaded<const D: usize> {
+    chosen: usize,
     slot: usize,
     bonds: usize,
     /// Force density.
@@ -30,42 +31,46 @@ struct Loaded<const D: usize> {
 }
 
 /// Of the points under tractions those with the fewest bonds that these do not hold, as long as all others stand still: `K u = f` with
-/// the stiffness K of the bonds of the point, torn off where u stretches one of them beyond its limit.
+/// the stiffness K of the bonds of the point, torn off where u stretches one of them beyond its limit. All ranks ask at once.
 pub(super) fn torn<const D: usize>(system: &mut System<D>, end: f64) -> Option<Message> {
     if system.info.critical_stretch.iter().all(|s| !s.is_finite()) {
         return None;
     }
-    let mut all = loosest(system, end);
-    push_alone(system, &mut all);
-    stretch_alone(system, &mut all);
-    let limit = |p: &Loaded<D>| {
+    let (chosen, mut here) = loosest(system, end);
+    if chosen == 0 {
+        return None;
+    }
+    push_alone(system, &mut here);
+    stretch_alone(system, &mut here);
+    let torn = here.iter().filter_map(|p| {
         let limits = &system.info.critical_stretch;
-        limits
-            .get(system.body.material_of(p.slot))
-            .copied()
-            .unwrap_or(f64::INFINITY)
-    };
-    let torn: Vec<&Loaded<D>> = all.iter().filter(|p| p.stretch >= limit(p)).collect();
-    let first = torn.first()?;
+        let limit = limits.get(system.body.material_of(p.slot)).copied();
+        let limit = limit.unwrap_or(f64::INFINITY);
+        let [x, y, z] = system.body.position(p.slot);
+        let told = [p.chosen as f64, p.bonds as f64, p.stretch, limit, x, y, z];
+        (p.stretch >= limit).then_some(told)
+    });
+    let torn = system.body.all_of(&torn.collect::<Vec<_>>()).concat();
+    let first = torn.iter().min_by(|a, b| a[0].total_cmp(&b[0]))?;
+    let [_, bonds, stretch, limit, x @ ..] = *first;
     let many = match torn.len() {
         1 => "a point with few bonds".to_string(),
         n => format!("{n} points with few bonds"),
     };
-    let x = system.body.position(first.slot);
     Some(message![
         format!("a traction tears off {many} at once: that at "),
         place(&x[..D]),
         format!(
             " has {}, the load stretches one by {} % while all others stand still, and they break at {} %. Leave corners out of the set, or let points there not break ([[toughness]])",
-            first.bonds,
-            rounded(100.0 * first.stretch, 2),
-            rounded(100.0 * limit(first), 2)
+            bonds,
+            rounded(100.0 * stretch, 2),
+            rounded(100.0 * limit, 2)
         ),
     ])
 }
 
-/// Points under tractions with the fewest bonds, far from each other.
-fn loosest<const D: usize>(system: &System<D>, end: f64) -> Vec<Loaded<D>> {
+/// Points under tractions with the fewest bonds, far from each other: how many, and those that are here.
+fn loosest<const D: usize>(system: &System<D>, end: f64) -> (usize, Vec<Loaded<D>>) {
     let mut force: HashMap<usize, [f64; D]> = HashMap::new();
     let tractions = system
         .applied
@@ -79,37 +84,52 @@ fn loosest<const D: usize>(system: &System<D>, end: f64) -> Vec<Loaded<D>> {
     let mut held = HashSet::new();
     let mut hold = |slot, _| held.extend([slot]);
     system.prescribed.all().for_each(|p| p.each_held(&mut hold));
-    let mut few: Vec<(usize, usize)> = { force.keys() }
-        .filter(|slot| !held.contains(slot))
-        .map(|slot| (system.interaction.family_size(&system.body, *slot), *slot))
-        .collect();
+    let body = &system.body;
+    // fewest bonds first, then in the order of the whole
+    let key = |slot: usize| {
+        let bonds = system.interaction.family_size(body, slot);
+        (bonds as u64, body.order(slot))
+    };
+    let loaded = force.keys().filter(|slot| !held.contains(slot));
+    let mut few: Vec<_> = loaded.map(|slot| (key(*slot), *slot)).collect();
     few.sort_unstable();
-    let mut found: Vec<Loaded<D>> = vec![];
+    let mut few = few.into_iter().peekable();
     let apart = APART * system.info.horizon;
-    for (bonds, slot) in few {
-        let x = system.body.position(slot);
-        let near = |p: &Loaded<D>| {
-            let y = system.body.position(p.slot);
-            (0..3).map(|a| (x[a] - y[a]).powi(2)).sum::<f64>() < apart * apart
+    let (mut found, mut here) = (Vec::<Point>::new(), vec![]);
+    while found.len() < LOOKS {
+        let near = |slot: usize| {
+            let x = body.position(slot);
+            let square = |y: &Point| (0..3).map(|a| (x[a] - y[a]).powi(2)).sum::<f64>();
+            found.iter().any(|y| square(y) < apart * apart)
         };
-        if found.len() < LOOKS && !found.iter().any(near) {
-            found.push(Loaded {
+        while few.next_if(|(_, slot)| near(*slot)).is_some() {}
+        let own = few.peek().map(|((bonds, order), slot)| {
+            let x = body.position(*slot).map(f64::to_bits);
+            [*bonds, *order, x[0], x[1], x[2]]
+        });
+        let all = body.all_of(own.as_slice()).concat();
+        let Some(first) = all.into_iter().min() else {
+            break;
+        };
+        if own == Some(first)
+            && let Some(((bonds, _), slot)) = few.next()
+        {
+            here.push(Loaded {
+                chosen: found.len(),
                 slot,
-                bonds,
+                bonds: bonds as usize,
                 force: force[&slot],
                 goes: [0.0; D],
                 stretch: 0.0,
             });
         }
+        found.push([first[2], first[3], first[4]].map(f64::from_bits));
     }
-    found
+    (found.len(), here)
 }
 
 /// Where they go.
 fn push_alone<const D: usize>(system: &mut System<D>, all: &mut [Loaded<D>]) {
-    if all.is_empty() {
-        return;
-    }
     let small = SMALL * system.body.spacing();
     let mut u = system.body.at_rest();
     let mut f = zeros(system.body.len());
@@ -143,18 +163,14 @@ fn stretch_alone<const D: usize>(system: &System<D>, all: &mut [Loaded<D>]) {
     }
     system
         .interaction
-        .each_bond(&system.body, &mut |i, j, xi, state| {
-            if state != BondStatus::Whole {
+        .each_partner(&system.body, &mut |i, _, xi, state| {
+            let Some(k) = place.get(&i).filter(|_| state == BondStatus::Whole) else {
                 return;
-            }
+            };
+            let p = &mut all[*k];
             let xi = full(&xi);
             let square: f64 = xi.iter().map(|c| c * c).sum();
-            for (end, way) in [(i, -1.0), (j, 1.0)] {
-                if let Some(k) = place.get(&end) {
-                    let p = &mut all[*k];
-                    let along: f64 = (0..D).map(|a| xi[a] * p.goes[a]).sum();
-                    p.stretch = p.stretch.max(way * along / square);
-                }
-            }
+            let along: f64 = (0..D).map(|a| xi[a] * p.goes[a]).sum();
+            p.stretch = p.stretch.max(-along / square);
         });
 }

@@ -18,7 +18,9 @@
 //! # What ranks must keep
 //!
 //! - *One fill is enough.* What a copy repeats is a point of the body, never a copy: in corners, too. Copies come in the order of their slots.
-//! - *One fill is one message* to each neighbour: fields, numbers of points and memories are filled as a whole.
+//! - *One fill is one message* to each neighbour: fields, numbers of points and memories are filled as a whole, displacements and velocities together.
+//! - *Nobody waits who can work.* What needs no copies of others' points is computed while these are on their way ([`Exchange::fill_during`]): of laws on
+//!   stencils all blocks but those whose bonds lead there.
 //! - *All ranks fill, or none.* Whether there is a fill must follow from the model and from what all ranks know. What is left out where no bond
 //!   breaks (`BondState::find_breaking`) follows from the broken bonds of all of them ([`Exchange::any`]).
 //! - *Nothing is added back.* Every point gathers all its bonds, so a bond across a border is computed at both ends, from the same numbers and in the
@@ -124,9 +126,13 @@ impl Exchange {
 
     /// Slots of copies, those of points that other ranks have among them.
     pub fn copies(&self) -> impl Iterator<Item = usize> {
-        let of_others = { self.others.iter() }.flat_map(|o| o.receive.iter());
-        let of_others = of_others.flat_map(|m| m.spans.iter().cloned().flatten());
-        self.pairs().map(|(copy, _)| copy).chain(of_others)
+        self.pairs().map(|(copy, _)| copy).chain(self.received())
+    }
+
+    /// Slots of copies of points that other ranks have.
+    pub(crate) fn received(&self) -> impl Iterator<Item = usize> {
+        let messages = { self.others.iter() }.flat_map(|o| o.receive.iter());
+        messages.flat_map(|m| m.spans.iter().cloned().flatten())
     }
 
     /// Of a body of so many slots, in each that is a copy of another rank's point that rank.
@@ -156,11 +162,8 @@ impl Exchange {
     }
 
     /// Fills the copies in a column, `[slots]`.
-    pub fn fill<T: Pod>(&self, column: &mut [T]) {
-        self.fill_here(column);
-        if let Some(others) = &self.others {
-            others.fill(&mut [column]);
-        }
+    pub fn fill<T: Pod>(&self, mut column: &mut [T]) {
+        self.fill_during(&mut column, |column| vec![&mut **column], |_| ());
     }
 
     fn fill_here<T: Copy>(&self, column: &mut [T]) {
@@ -171,9 +174,24 @@ impl Exchange {
 
     /// In all columns of a field, or of what is seen of one, `[D][slots]`.
     pub fn fill_field<const D: usize>(&self, field: &mut [impl DerefMut<Target = [f64]>; D]) {
-        field.iter_mut().for_each(|column| self.fill_here(column));
+        self.fill_during(
+            field,
+            |field| field.iter_mut().map(|column| &mut **column).collect(),
+            |_| (),
+        );
+    }
+
+    /// Fills the copies in columns of something. Where other ranks have parts of the body `work` is done with it while what they tell is on its way: copies of
+    /// points that are here are filled by then, those of others are not.
+    pub fn fill_during<S, T: Pod>(
+        &self,
+        of: &mut S,
+        columns: impl Fn(&mut S) -> Vec<&mut [T]>,
+        work: impl FnOnce(&mut S),
+    ) {
+        { columns(of).into_iter() }.for_each(|column| self.fill_here(column));
         if let Some(others) = &self.others {
-            others.fill(&mut field.each_mut().map(|column| &mut **column));
+            others.fill_during(of, &columns, work);
         }
     }
 
@@ -387,13 +405,14 @@ impl Others {
     }
 
     /// Sends so many bytes of every slot that others want, as they are packed, and unpacks what they send. Slots lie in runs here and there that need not
-    /// be alike: what is sent goes by their order alone.
+    /// be alike: what is sent goes by their order alone. `work` is done meanwhile.
     fn trade<All: ?Sized>(
         &self,
         all: &mut All,
         bytes: usize,
-        pack: impl Fn(&All, &[Range<usize>], &mut Vec<u8>),
+        pack: impl Fn(&mut All, &[Range<usize>], &mut Vec<u8>),
         unpack: impl Fn(&mut All, &[Range<usize>], &[u8]),
+        work: impl FnOnce(&mut All),
     ) {
         // taken, not held: another fill may wait for the same ranks
         let mut room = std::mem::take(&mut *self.room());
@@ -417,7 +436,7 @@ impl Others {
             receive.push((message.rank, of));
             rest = others;
         }
-        let done = self.comm.exchange(&send, &mut receive, || ());
+        let done = self.comm.exchange(&send, &mut receive, || work(all));
         done.unwrap_or_else(|failure| self.comm.end(failure));
         let mut rest = &into[..];
         for message in &self.receive {
@@ -433,18 +452,24 @@ impl Others {
     }
 
     /// One column after the other.
-    fn fill<T: Pod>(&self, columns: &mut [&mut [T]]) {
+    fn fill_during<S, T: Pod>(
+        &self,
+        of: &mut S,
+        columns: &impl Fn(&mut S) -> Vec<&mut [T]>,
+        work: impl FnOnce(&mut S),
+    ) {
+        let count = columns(of).len();
         self.trade(
-            columns,
-            columns.len() * size_of::<T>(),
-            |columns, spans, out| {
-                for column in columns {
+            of,
+            count * size_of::<T>(),
+            |of, spans, out| {
+                for column in columns(of) {
                     let each = spans.iter().map(|span| cast_slice(&column[span.clone()]));
                     each.for_each(|bytes| out.extend_from_slice(bytes));
                 }
             },
-            |columns, spans, mut from| {
-                for column in columns {
+            |of, spans, mut from| {
+                for column in columns(of) {
                     for span in spans {
                         let into = cast_slice_mut(&mut column[span.clone()]);
                         let (of, others) = from.split_at(into.len());
@@ -453,6 +478,7 @@ impl Others {
                     }
                 }
             },
+            work,
         );
     }
 
@@ -481,6 +507,7 @@ impl Others {
                     }
                 }
             },
+            |_| (),
         );
     }
 

@@ -17,19 +17,54 @@ fn spread(count: usize, work: &(dyn Fn(usize) + Sync)) {
     }
 }
 
+/// Blocks of work, in ascending order.
+#[derive(Debug, Clone, Copy)]
+pub enum Which<'a> {
+    All,
+    These(&'a [u32]),
+}
+
+impl Which<'_> {
+    /// Do `work` for each of these of so many.
+    fn spread(self, all: usize, work: &(dyn Fn(usize) + Sync)) {
+        match self {
+            Which::All => spread(all, work),
+            Which::These(blocks) => {
+                let ascend = blocks.is_sorted_by(|a, b| a < b);
+                assert!(ascend && blocks.last().is_none_or(|b| (*b as usize) < all));
+                spread(blocks.len(), &|n| work(blocks[n] as usize));
+            }
+        }
+    }
+}
+
 /// Run `kernel` on every block and leave block `b`'s result in `out[b]`.
 pub fn for_each_block<K: Kernel>(simd: Simd, kernel: &K, out: &mut [K::Out]) {
+    for_which_blocks(simd, kernel, Which::All, out);
+}
+
+fn for_which_blocks<K: Kernel>(simd: Simd, kernel: &K, which: Which<'_>, out: &mut [K::Out]) {
     let place = Shared(out.as_mut_ptr());
-    spread(out.len(), &|b| {
+    which.spread(out.len(), &|b| {
         let result = simd.run(kernel, b);
-        // SAFETY: each number below the length is asked for once, by one thread
+        // SAFETY: each number below the length is asked for at most once, by one thread
         unsafe { *place.at(b) = result };
     });
 }
 
 /// Run `kernel`, which returns nothing, on so many blocks.
 pub fn run_blocks<K: Kernel<Out = ()>>(simd: Simd, kernel: &K, blocks: usize) {
-    spread(blocks, &|b| simd.run(kernel, b));
+    run_which_blocks(simd, kernel, Which::All, blocks);
+}
+
+/// The same on some of so many.
+pub fn run_which_blocks<K: Kernel<Out = ()>>(
+    simd: Simd,
+    kernel: &K,
+    which: Which<'_>,
+    blocks: usize,
+) {
+    which.spread(blocks, &|b| simd.run(kernel, b));
 }
 
 /// Room for a result per block, kept from sweep to sweep so that sweeps do not allocate.
@@ -70,15 +105,22 @@ impl<T: Copy + Send> PerBlock<T> {
     /// Run `kernel` on every block of this rank and fold its results, in the order of blocks.
     pub fn fold<K: Kernel<Out = T>>(&self, simd: Simd, kernel: &K, add: impl Fn(&mut T, T)) -> T {
         let mut total = self.empty;
-        self.each(&|room| for_each_block(simd, kernel, room), &mut |result| {
-            add(&mut total, *result);
-        });
+        self.for_each(simd, kernel, Which::All, |result| add(&mut total, *result));
         total
     }
 
-    /// Run `kernel` on every block of this rank and look at its results, in the order of blocks.
-    pub fn for_each<K: Kernel<Out = T>>(&self, simd: Simd, kernel: &K, mut look: impl FnMut(&T)) {
-        self.each(&|room| for_each_block(simd, kernel, room), &mut look);
+    /// Run `kernel` on blocks of this rank and look at the last results of all, in the order of blocks.
+    pub fn for_each<K: Kernel<Out = T>>(
+        &self,
+        simd: Simd,
+        kernel: &K,
+        which: Which<'_>,
+        mut look: impl FnMut(&T),
+    ) {
+        self.each(
+            &|room| for_which_blocks(simd, kernel, which, room),
+            &mut look,
+        );
     }
 
     /// The same of who fills the room: the kernel does not show in this code.

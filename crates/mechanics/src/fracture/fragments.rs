@@ -3,6 +3,9 @@
 use crate::body::Body;
 use crate::interaction::{BondStatus, Interaction};
 
+/// Does a bond (slots, ξ, state) join its ends?
+pub type Joins<'a, const D: usize> = dyn Fn(usize, usize, &[f64; D], BondStatus) -> bool + 'a;
+
 /// The pieces of a body, the one with the most points first (ties: the one that holds the lowest point id).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fragments {
@@ -15,19 +18,23 @@ pub struct Fragments {
 }
 
 impl Fragments {
-    /// Connected components over the whole bonds of `interaction`. A point without whole bonds is a fragment of one.
+    /// Connected components over the whole bonds of `interaction`. A point without whole bonds is a fragment of one. Where ranks share the body these are
+    /// the pieces of all ranks, and in which of them the points are that are here; masses are not known then. All ask at once.
     pub fn of<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Fragments {
-        Self::by(body, interaction, |_, _, _, state| {
+        Self::by(body, interaction, &|_, _, _, state| {
             state == BondStatus::Whole
         })
     }
 
-    /// Connected components over the bonds (slots, ξ, state) for which `joins` holds.
+    /// The same over the bonds (slots, ξ, state) for which `joins` holds.
     pub fn by<const D: usize>(
         body: &Body<D>,
         interaction: &dyn Interaction<D>,
-        joins: impl Fn(usize, usize, &[f64; D], BondStatus) -> bool,
+        joins: &Joins<'_, D>,
     ) -> Fragments {
+        if body.subdomain().is_some() {
+            return Self::of_parts(body, Parts::of(body, interaction, joins));
+        }
         let mut sets = Sets::new(body.len);
         interaction.each_bond(body, &mut |i, j, xi, state| {
             if joins(i, j, &xi, state) {
@@ -67,12 +74,7 @@ impl Fragments {
         Fragments { label, size, mass }
     }
 
-    /// The pieces of the body of all ranks, and in which of them the points are that are here; of more than one rank their masses are not known. All ask at once.
-    pub fn of_all<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Fragments {
-        if body.subdomain().is_none() {
-            return Fragments::of(body, interaction);
-        }
-        let parts = Parts::of(body, interaction);
+    fn of_parts<const D: usize>(body: &Body<D>, parts: Parts) -> Fragments {
         let mut all: Vec<[u32; 2]> = body.all_of(&parts.sizes).concat();
         all.sort_unstable();
         let place = |name: u32| {
@@ -130,13 +132,17 @@ struct Parts {
 }
 
 impl Parts {
-    fn of<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Parts {
+    fn of<const D: usize>(
+        body: &Body<D>,
+        interaction: &dyn Interaction<D>,
+        joins: &Joins<'_, D>,
+    ) -> Parts {
         const NONE: u32 = u32::MAX;
         let mut sets = Sets::new(body.len);
         // points without a slot here go by their ids
         let mut away: Vec<[u32; 2]> = vec![];
-        interaction.each_bond(body, &mut |i, j, _, state| {
-            if state != BondStatus::Whole {
+        interaction.each_bond(body, &mut |i, j, xi, state| {
+            if !joins(i, j, &xi, state) {
                 return;
             }
             match [i.checked_sub(body.len), j.checked_sub(body.len)] {

@@ -95,6 +95,18 @@ pub trait Interaction<const D: usize>: Send + Sync {
         seen: Option<&mut PointEnergiesMut>,
     ) -> Tally;
 
+    /// What the next [`forces`](Interaction::forces) with the same arguments can do before the copies of other ranks' points are there: it leaves that out. By
+    /// itself nothing.
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn begin_forces(&mut self, _: &Body<D>, _u: FieldView<D>, _f: FieldViewMut<D>, _: Sweep<D>) {}
+
+    /// What is on its way while it works ([`begin_forces`](Interaction::begin_forces)): messages of a sweep in which bonds break, and bytes of each copy.
+    fn meanwhile(&self) -> [usize; 2] {
+        [0; 2]
+    }
+
     /// Strain energy of bonds and energy of repulsion inside the family at `u` (energy), without allocating.
     ///
     /// # Panics

@@ -14,9 +14,9 @@ use super::{
     BondTangent, EachForce, EachPair, EachTangent, EnergyFields, FactorsOf, Interaction, Motion,
     PointConstants, PointEnergiesMut, Sweep, Tally,
 };
-use crate::body::{Body, Column, FieldView, FieldViewMut, Identity};
+use crate::body::{Body, Column, FieldView, FieldViewMut, Identity, view};
 use crate::error::BuildError;
-use crate::execute::blocks::{Seen, Shared};
+use crate::execute::blocks::{Seen, Shared, Which};
 use crate::law::{BondFactors, Law};
 pub use assemble::StencilParts;
 pub use kernel::MOST;
@@ -52,6 +52,16 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     most_contact: f64,
     /// Of a whole cell.
     volume: f64,
+    apart: Apart,
+}
+
+/// Blocks of a part of a body by who has the partners of their points.
+#[derive(Debug, Default)]
+struct Apart {
+    /// This rank has all of them, or others have some; `None`: there are no others.
+    blocks: Option<[Vec<u32>; 2]>,
+    /// Was the first half done while the copies for the second were on their way?
+    begun: bool,
 }
 
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
@@ -94,12 +104,27 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     }
 
     /// The lowest critical `e` of any point from now on, too.
-    fn sweep<const FULL: bool>(
+    fn sweep(
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
         f: FieldViewMut<D>,
         motion: Option<Motion<D>>,
+        which: Which<'_>,
+    ) -> (Tally, f64) {
+        match self.bonds.critical.is_empty() {
+            true => self.sweep_of::<false>(body, u, f, motion, which),
+            false => self.sweep_of::<true>(body, u, f, motion, which),
+        }
+    }
+
+    fn sweep_of<const FULL: bool>(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
+        motion: Option<Motion<D>>,
+        which: Which<'_>,
     ) -> (Tally, f64) {
         let alive = Shared(self.bonds.alive.as_mut_ptr());
         let state = Shared(self.state.as_mut_ptr());
@@ -117,7 +142,16 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             upper: self.least_critical,
             motion,
         };
-        self.bonds.blocks.tally(&kernel)
+        self.bonds.blocks.tally_of(&kernel, which)
+    }
+
+    /// Pressures of points.
+    fn share(&mut self, body: &Body<D>, u: FieldView<D>, which: Which<'_>) {
+        // it stays where it is: a law that panics must not leave sweeps without
+        let out = Shared(self.fields[0].as_mut_ptr());
+        let [alive, state] = [&self.bonds.alive, &self.state].map(|all| Seen(all.as_ptr()));
+        let view = self.view_of(body, u, alive, state, &[]);
+        self.bonds.blocks.run_of(&Share { view, out }, which);
     }
 
     /// A bond breaks by both of its ends, of which one may be another rank's.
@@ -194,6 +228,12 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         sweep: Sweep<D>,
         seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
+        let motion = sweep.motion();
+        let apart = std::mem::take(&mut self.apart);
+        let rest = match &apart.blocks {
+            Some([_, rest]) if apart.begun => Which::These(rest),
+            _ => Which::All,
+        };
         if let Some(seen) = seen {
             self.sums(body, u, seen);
             if W::SHARES {
@@ -204,21 +244,30 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             }
             seen.dilate::<W, D>(body, |i| self.per_weight(body, i));
         } else if W::SHARES {
-            // it stays where it is: a law that panics must not leave sweeps without
-            let out = Shared(self.fields[0].as_mut_ptr());
-            let [alive, state] = [&self.bonds.alive, &self.state].map(|all| Seen(all.as_ptr()));
-            let view = self.view_of(body, u, alive, state, &[]);
-            self.bonds.blocks.run(&Share { view, out });
+            self.share(body, u, rest);
         }
-        if W::SHARES {
-            body.exchange.fill(&mut self.fields[0]);
-        }
-        let motion = sweep.motion();
-        let (total, least_critical) = if self.bonds.critical.is_empty() {
-            self.sweep::<false>(body, u, f, motion)
-        } else {
-            self.sweep::<true>(body, u, f, motion)
+        let (total, least_critical) = match &apart.blocks {
+            Some([inside, others]) if W::SHARES => {
+                let mut both = (&mut *self, f);
+                body.exchange.fill_during(
+                    &mut both,
+                    |(all, _)| vec![&mut *all.fields[0]],
+                    |(all, f)| {
+                        let f = f.each_mut().map(|column| &mut **column);
+                        all.sweep(body, u, f, motion, Which::These(inside));
+                    },
+                );
+                let (all, f) = both;
+                all.sweep(body, u, f, motion, Which::These(others))
+            }
+            _ => {
+                if W::SHARES {
+                    body.exchange.fill(&mut self.fields[0]);
+                }
+                self.sweep(body, u, f, motion, rest)
+            }
         };
+        self.apart.blocks = apart.blocks;
         if motion.is_some() && !self.bonds.critical.is_empty() && !self.settled {
             let mut critical = std::mem::take(&mut self.bonds.critical);
             let kernel = Remember {
@@ -238,6 +287,40 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         // a point may have lost its last bond
         self.settled &= total.broken == 0;
         total
+    }
+
+    fn begin_forces(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        f: FieldViewMut<D>,
+        sweep: Sweep<D>,
+    ) {
+        self.check(body, &[u, view(&f)]);
+        let motion = sweep.motion();
+        if let Some(motion) = &motion {
+            self.check(body, &[motion.v]);
+        }
+        let Apart { blocks, .. } = std::mem::take(&mut self.apart);
+        if let Some([inside, _]) = &blocks {
+            match W::SHARES {
+                true => self.share(body, u, Which::These(inside)),
+                false => {
+                    self.sweep(body, u, f, motion, Which::These(inside));
+                }
+            }
+            self.apart.begun = true;
+        }
+        self.apart.blocks = blocks;
+    }
+
+    fn meanwhile(&self) -> [usize; 2] {
+        // displacements and velocities, then pressures
+        let shares = usize::from(W::SHARES);
+        match self.apart.blocks {
+            Some(_) => [1 + shares, 8 * (2 * D + shares)],
+            None => [0; 2],
+        }
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {

@@ -149,8 +149,6 @@ fn cut<const D: usize>(
     warnings: &mut Warnings,
 ) -> Result<u64, BuildError> {
     let solid = spec.potential().is_none() && spec.micromoduli().is_none();
-    // no rank sees both sides of all gaps
-    let solid = solid && body.subdomain().is_none();
     let separate = match solid {
         true => gaps::across(spec, body, interaction),
         false => vec![],

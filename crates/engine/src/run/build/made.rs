@@ -171,11 +171,8 @@ impl<const D: usize> Made<D> {
         let loads = &mut system.applied.loads;
         let told = tell_loads(&system.body, loads, conditions, end);
         system.info.loads.extend(told);
-        // no rank sees all loads
-        if system.body.subdomain().is_none() {
-            let torn = torn(system, end);
-            system.info.warnings.extend(torn);
-        }
+        let torn = torn(system, end);
+        system.info.warnings.extend(torn);
         Ok(())
     }
 }

@@ -57,7 +57,7 @@ impl<const D: usize> Everyone<D> {
     fn of(system: &System<D>, support: &Support<D>) -> Option<Everyone<D>> {
         let support = whole_support(&system.body, support);
         let places = system.body.whole(D, system.body.places().into_flattened());
-        let parts = Fragments::of_all(&system.body, system.interaction.as_ref());
+        let parts = Fragments::of(&system.body, system.interaction.as_ref());
         let parts = system.body.whole(1, parts.label);
         Some(Everyone {
             support: support?,

@@ -13,5 +13,5 @@ mod steered;
 
 pub use all::{AllRanks, build};
 pub use model::{RankModel, Share, WriteShare};
-pub use plan::{Shares, StepCost, plan};
+pub use plan::{Meanwhile, Shares, StepCost, plan};
 pub use shared::shared;

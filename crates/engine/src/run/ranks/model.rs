@@ -89,7 +89,7 @@ impl<const D: usize> RankModel<D> {
 
     /// Number of pieces of the body of all ranks.
     pub(super) fn fragments(&self) -> u64 {
-        Fragments::of_all(self.body(), self.model.system.interaction.as_ref()).count() as u64
+        Fragments::of(self.body(), self.model.system.interaction.as_ref()).count() as u64
     }
 
     /// Of the model of all ranks, on the first.
@@ -287,6 +287,11 @@ impl<const D: usize> RankModel<D> {
             }
         };
         Some(all.iter().map(force).collect())
+    }
+
+    /// What is on its way while it works, of a step: messages to a neighbour, and bytes for each copy.
+    pub fn meanwhile(&self) -> [usize; 2] {
+        self.model.system.interaction.meanwhile()
     }
 
     /// What this rank has sent so far, and copies that it has of others' points.

@@ -24,6 +24,17 @@ pub struct StepCost {
     pub bytes_per_copy: f64,
     /// How often all ranks hear what each says.
     pub rounds: f64,
+    pub meanwhile: Meanwhile,
+}
+
+/// What is done while messages are on their way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meanwhile {
+    /// Of the messages to a neighbour, and of the bytes for each copy, those that nobody waits for while there is work.
+    pub messages: f64,
+    pub bytes_per_copy: f64,
+    /// Part of the time of a step of a point whose partners are all here.
+    pub part: f64,
 }
 
 /// How so many ranks share a body.
@@ -127,11 +138,16 @@ fn planned<const D: usize>(
                 own.step().map_err(|e| went_wrong(&e))?;
             }
             let seconds = begun.elapsed().as_secs_f64();
-            Ok((seconds, before, own.halo().0, copies))
+            let after = own.halo().0;
+            let worked = 1e-9 * (after.worked - before.worked) as f64 / seconds;
+            // copies are as many as the points that others have copies of
+            let inside = own.ids().len().saturating_sub(copies) as f64;
+            let part = (worked * own.ids().len() as f64 / inside.max(1.0)).min(1.0);
+            Ok((seconds, before, after, copies, (part, own.meanwhile())))
         })
     });
     let ends = ends.into_iter().collect::<Result<Vec<_>, BuildError>>()?;
-    let (_, before, after, _) = ends[0];
+    let (_, before, after, _, (part, [messages, bytes])) = ends[0];
     // what one sends is for the other's copies
     let copies = ends[1].3;
     let per_step = |of: [u64; 2]| (of[1] - of[0]) as f64 / steps as f64;
@@ -142,6 +158,11 @@ fn planned<const D: usize>(
         messages: per_step([before.messages, after.messages]),
         bytes_per_copy: per_step([before.bytes, after.bytes]) / copies.max(1) as f64,
         rounds: per_step([before.rounds, after.rounds]),
+        meanwhile: Meanwhile {
+            messages: messages as f64,
+            bytes_per_copy: bytes as f64,
+            part,
+        },
     };
     Ok((info, cost, shares))
 }

@@ -30,20 +30,24 @@ impl<const D: usize> System<D> {
 
     /// `steps` that end and begin here, for what breaking costs.
     fn forces_of_steps(&mut self, bonds: bool, at: Evaluation, steps: [f64; 2]) {
-        self.refresh_images();
+        let asked = [Watched::Energies, Watched::Virial, Watched::Virials];
+        let [energies, virial, virials] = asked.map(|what| self.watch.take(what));
+        match bonds {
+            // whoever watches looks at the bonds of before
+            true => self.refresh_motion(steps, !(energies || virial || virials)),
+            false => self.refresh_images(),
+        }
         let last = self.watch.energies.take();
-        let mut watched = { self.watch.take(Watched::Energies) }.then(|| last.unwrap_or_default());
-        self.watch.virial = self.watch.take(Watched::Virial).then(|| match bonds {
+        let mut watched = energies.then(|| last.unwrap_or_default());
+        self.watch.virial = virial.then(|| match bonds {
             true => self.virial_of_bonds(),
             false => [0.0; 6],
         });
-        self.watch.virials = self.watch.take(Watched::Virials).then(|| match bonds {
+        self.watch.virials = virials.then(|| match bonds {
             true => self.virials_of_bonds(),
             false => vec![[0.0; 6]; self.body.len()],
         });
         if bonds {
-            self.body.exchange().fill_field(&mut self.v);
-            self.tell_toughness();
             let room = self.body.len();
             let mut seen = watched.as_mut().map(|w| w.for_slots(room));
             let mut tally = self.interaction.forces(
@@ -83,6 +87,24 @@ impl<const D: usize> System<D> {
             self.add_virials_of_contact(&mut points);
             self.watch.virials = Some(points);
         }
+    }
+
+    /// Copies of displacements and velocities before bonds are tested, and, if asked to, the forces that need no others while they come.
+    fn refresh_motion(&mut self, steps: [f64; 2], begin: bool) {
+        self.tell_toughness();
+        let (body, release) = (&self.body, self.release);
+        let mut moved = (&mut self.u, &mut self.v, &mut self.f, &mut self.interaction);
+        body.exchange().fill_during(
+            &mut moved,
+            |(u, v, ..)| u.iter_mut().chain(v.iter_mut()).map(|c| &mut **c).collect(),
+            |(u, v, f, interaction)| {
+                if begin {
+                    let v = view(v);
+                    let sweep = Sweep::Evolve { v, steps, release };
+                    interaction.begin_forces(body, view(u), view_mut(f), sweep);
+                }
+            },
+        );
     }
 
     /// Forces of contact, indenters and loads, on top of those of bonds.

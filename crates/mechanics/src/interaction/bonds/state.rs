@@ -7,7 +7,7 @@ use super::repulsion::Pushed;
 use super::store::Store;
 use super::view::{BLOCK, BondView};
 use crate::body::{Body, Column, Field, FieldView, Identity, Subdomain, field};
-use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
+use crate::execute::blocks::{PerBlock, Seen, Shared, Which, run_blocks, run_which_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::{Kernel, Simd};
 use crate::interaction::criterion::{Criteria, Measure};
@@ -88,13 +88,26 @@ impl Blocks {
     }
 
     pub fn run<K: Kernel<Out = ()>>(&self, kernel: &K) {
-        run_blocks(self.simd, kernel, self.sums.blocks());
+        self.run_of(kernel, Which::All);
+    }
+
+    pub fn run_of<K: Kernel<Out = ()>>(&self, kernel: &K, which: Which<'_>) {
+        run_which_blocks(self.simd, kernel, which, self.sums.blocks());
     }
 
     /// Of this rank's groups, and the lowest critical `e` of any point from now on.
     pub fn tally<K: Kernel<Out = BlockTally>>(&self, kernel: &K) -> (Tally, f64) {
+        self.tally_of(kernel, Which::All)
+    }
+
+    /// The same of blocks that are run now, and of all others that were run last.
+    pub fn tally_of<K: Kernel<Out = BlockTally>>(
+        &self,
+        kernel: &K,
+        which: Which<'_>,
+    ) -> (Tally, f64) {
         let (mut total, mut least) = (Tally::default(), f64::INFINITY);
-        self.tallies.for_each(self.simd, kernel, |tally| {
+        self.tallies.for_each(self.simd, kernel, which, |tally| {
             total += tally;
             least = least.min(tally.least_critical);
         });

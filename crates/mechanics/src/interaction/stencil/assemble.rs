@@ -1,8 +1,8 @@
 //! A stencil interaction from a body, a stencil and a law.
 
-use super::StencilInteraction;
 use super::kernel::{Bond, MOST, Partner};
-use crate::body::{Body, Column, Layout, field};
+use super::{Apart, StencilInteraction};
+use crate::body::{Body, Column, Grid, Layout, field};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::stencil::{Offset, Stencil};
@@ -145,9 +145,35 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             settled: false,
             most_contact,
             volume,
+            apart: Apart::default(),
         };
+        made.apart.blocks = made.by_partners(body, grid);
         made.look();
         made
+    }
+}
+
+impl<const D: usize, W: Law> StencilInteraction<D, W> {
+    /// Blocks whose points have all their partners here, and the others.
+    fn by_partners(&self, body: &Body<D>, grid: &Grid<D>) -> Option<[Vec<u32>; 2]> {
+        if !body.exchange.is_shared() {
+            return None;
+        }
+        // of how many slots before each one others have the points
+        let mut before = vec![0u32; body.len + 1];
+        { body.exchange.received() }.for_each(|slot| before[slot + 1] = 1);
+        (0..body.len).for_each(|slot| before[slot + 1] += before[slot]);
+        let family = &self.bonds.family;
+        let abroad = |n: usize| {
+            let tile = family.tiles()[n] as usize;
+            let i = grid.tile_slot(tile);
+            let bonds = &self.stencil[grid.tile_sublattice(tile)];
+            let mut leads = bonds.iter().map(|b| b.to(i));
+            leads.any(|to| before[to + TILE] > before[to])
+        };
+        let blocks = 0..family.blocks() as u32;
+        let (others, own) = blocks.partition(|b| family.block(*b as usize).any(abroad));
+        Some([own, others])
     }
 }
 
