@@ -156,15 +156,11 @@ pub fn run_deck(
         .clone()
         .or(deck.output.dir.clone())
         .unwrap_or_else(|| default_dir(&arguments.input.file));
-    enough(deck, sim.as_mut(), &dir)?;
-    let pictures = pictures(deck, sim.as_mut())?;
-    let space_time = space_time(deck, sim.as_mut())?;
+    let mut plan = planned(deck, sim.as_mut(), dir, arguments.allow_outside)?;
     say(&deck.describe());
-    let warnings = deck::warnings(deck, sim.info());
-    let remarks = deck::remarks(&deck.notes, &warnings);
+    let remarks = deck::remarks(&deck.notes, &plan.warnings);
     say(&(deck::headline(sim.as_ref(), deck.units) + &remarks));
-    let steps = deck.steps(sim.info().time_step);
-    let mut plan = plan(deck, pictures, steps, dir, arguments.allow_outside);
+    let steps = plan.steps;
     (plan.ranks, plan.threads) = (comm.ranks(), threads);
     plan.command = deck::command(&arguments.input);
     let records = [&plan.command, &plan.deck, &plan.deck_text].map(String::clone);
@@ -179,21 +175,7 @@ pub fn run_deck(
     let done = from.as_ref().map_or(0, |f| f.asked.step);
     from.as_ref()
         .map_or(Ok(()), |f| has_steps(&f.asked, steps))?;
-    plan.space_time = space_time;
-    plan.replaces_nothing()
-        .map_err(|e| Failure::input(e.to_string()))?;
-    if let Some(asked) = &mut plan.continuum {
-        efforts(sim.as_mut(), asked).map_err(|e| {
-            let error = BuildError::invalid("fields", format!("[[fields]] {e}"));
-            Failure::Input(deck.explain(&error).into())
-        })?;
-        asked.stop = || signals::received().is_some();
-    }
-    plan.warnings = warnings;
     plan.rigid = rigid;
-    let until = until(&deck.spec, steps - plan.increments, sim.info().time_step);
-    let marks = Marks::of(&deck.spec, sim.as_mut(), until);
-    plan.marks = MarkNotes::of(&marks, deck.units);
     let whole = match plan.increments {
         0 => counted(steps, "step"),
         n => format!(
@@ -233,6 +215,37 @@ pub fn run_deck(
         Err(DriveError::Resume(e)) => Err(Failure::input(e.to_string())),
         Err(e) => Err(Failure::Run(e.to_string())),
     }
+}
+
+/// What a deck asks for of a run of its model, with results in a folder.
+///
+/// # Errors
+/// The machine has not enough memory or room, a picture or field is asked for that there is not, or the deck lies among its results.
+pub fn planned(
+    deck: &Deck,
+    sim: &mut dyn Simulation,
+    dir: PathBuf,
+    allow_outside: bool,
+) -> Result<Plan, Failure> {
+    enough(deck, sim, &dir)?;
+    let pictures = pictures(deck, sim)?;
+    let space_time = space_time(deck, sim)?;
+    let step = sim.info().time_step;
+    let mut plan = plan(deck, pictures, deck.steps(step), dir, allow_outside);
+    plan.space_time = space_time;
+    plan.replaces_nothing()
+        .map_err(|e| Failure::input(e.to_string()))?;
+    if let Some(asked) = &mut plan.continuum {
+        efforts(sim, asked).map_err(|e| {
+            let error = BuildError::invalid("fields", format!("[[fields]] {e}"));
+            Failure::Input(deck.explain(&error).into())
+        })?;
+        asked.stop = || signals::received().is_some();
+    }
+    plan.warnings = deck::warnings(deck, sim.info());
+    let until = until(&deck.spec, plan.steps - plan.increments, step);
+    plan.marks = MarkNotes::of(&Marks::of(&deck.spec, sim, until), deck.units);
+    Ok(plan)
 }
 
 /// Says what a run has done and where its results are.

@@ -22,4 +22,4 @@ mod threads;
 
 pub use comm::{Comm, Traffic};
 pub use failure::Failure;
-pub use on_threads::on_threads;
+pub use on_threads::{on_threads, on_threads_apart};

@@ -3,12 +3,13 @@
 use crate::failure::Failure;
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Messages on their way, and who has ended.
 #[derive(Debug)]
 struct Post {
-    /// By receiver, then by sender.
-    boxes: Vec<Vec<VecDeque<Vec<u8>>>>,
+    /// By receiver, then by sender: when it arrives, and what it is.
+    boxes: Vec<Vec<VecDeque<(Instant, Vec<u8>)>>>,
     ended: Vec<bool>,
 }
 
@@ -16,6 +17,8 @@ struct Post {
 struct Office {
     post: Mutex<Post>,
     news: Condvar,
+    /// How long a message takes at least.
+    delay: Duration,
 }
 
 impl Office {
@@ -41,14 +44,15 @@ impl Drop for Thread {
 }
 
 impl Thread {
-    /// So many of them, who write to each other.
-    pub(crate) fn several(ranks: usize) -> impl Iterator<Item = Thread> {
+    /// So many of them, who write to each other messages that take so long at least.
+    pub(crate) fn several(ranks: usize, delay: Duration) -> impl Iterator<Item = Thread> {
         let office = Arc::new(Office {
             post: Mutex::new(Post {
                 boxes: vec![vec![VecDeque::new(); ranks]; ranks],
                 ended: vec![false; ranks],
             }),
             news: Condvar::new(),
+            delay,
         });
         (0..ranks).map(move |rank| Thread {
             rank,
@@ -66,9 +70,10 @@ impl Thread {
     }
 
     pub(crate) fn send<'a>(&self, send: impl Iterator<Item = &'a (usize, &'a [u8])>) {
+        let arrives = Instant::now() + self.office.delay;
         let mut post = self.office.open();
         for (to, bytes) in send {
-            post.boxes[*to][self.rank].push_back(bytes.to_vec());
+            post.boxes[*to][self.rank].push_back((arrives, bytes.to_vec()));
         }
         drop(post);
         self.office.news.notify_all();
@@ -96,7 +101,9 @@ impl Thread {
     fn next(&self, from: usize) -> Result<Vec<u8>, Failure> {
         let mut post = self.office.open();
         loop {
-            if let Some(message) = post.boxes[self.rank][from].pop_front() {
+            if let Some((arrives, message)) = post.boxes[self.rank][from].pop_front() {
+                drop(post);
+                std::thread::sleep(arrives.saturating_duration_since(Instant::now()));
                 return Ok(message);
             }
             if post.ended[from] {

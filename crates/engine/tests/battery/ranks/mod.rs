@@ -23,9 +23,10 @@ use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
 use peridyne::state::Archive;
-use peridyne_comm::on_threads;
+use peridyne_comm::{on_threads, on_threads_apart};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Bodies of several blocks of 512 points, whose borders lie within layers.
 fn place(kind: LatticeKind) -> Place {
@@ -1081,6 +1082,43 @@ fn what_is_sent_is_what_the_law_says_of_the_copies() {
             assert_eq!(copies, sides * near, "{name}");
             // as many here as there: both sides of a border are alike
             assert_eq!(sent, (STEPS * sides * near * numbers * 8) as u64, "{name}");
+        }
+    }
+}
+
+/// What a step takes where messages take long, beside the time in which nobody waits: of displacements and velocities, and of pressures.
+#[test]
+#[ignore = "a measurement: --ignored --nocapture on a quiet machine"]
+fn messages_on_their_way_while_ranks_work() {
+    const STEPS: u32 = 20;
+    let place = Place {
+        kind: LatticeKind::Cubic,
+        plane: Plane::Stress,
+        ratio: 3,
+        cells: [32, 32, 64],
+    };
+    for name in ["pmb", "lps"] {
+        let spec = Case::of(name, place).spec();
+        for delay in [0, 1, 2, 4, 8, 16] {
+            let delay = Duration::from_millis(delay);
+            let took = on_threads_apart(2, delay, |comm| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+                pool.unwrap().install(|| {
+                    let comm = Arc::new(comm);
+                    let mut sim =
+                        RankModel::<3>::new(&spec, options(None), &shelf(), &comm).unwrap();
+                    sim.start();
+                    let (begun, before) = (Instant::now(), sim.halo().0);
+                    (0..STEPS).for_each(|_| sim.step().unwrap());
+                    let after = sim.halo().0;
+                    let worked = Duration::from_nanos(after.worked - before.worked);
+                    [begun.elapsed() / STEPS, worked / STEPS]
+                })
+            });
+            println!(
+                "{name}: messages {delay:?}, step {:.2?}, of which {:.2?} while they come",
+                took[0][0], took[0][1]
+            );
         }
     }
 }
