@@ -16,11 +16,11 @@ use crate::law;
 use crate::run::{pictures, space_time, until, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
-use peridyne::run::{Families, Info, Simulation};
+use peridyne::run::{Families, Info, Options, Simulation, build};
 use peridyne::space::Point;
 use peridyne::spec::{BodySpec, Criterion, Moduli, Spec};
 use peridyne_io::continuum::run::FieldsPlan;
-use peridyne_io::deck::UnitSystem;
+use peridyne_io::deck::{Deck, UnitSystem};
 use peridyne_io::drive::default_dir;
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
 use peridyne_theory::nominal::nominal_moduli;
@@ -37,6 +37,8 @@ const LONGEST_TRIAL: Duration = Duration::from_secs(4);
 const LONGEST_PATCH: Duration = Duration::from_secs(20);
 /// Visits of bonds by the patch test above which it takes minutes.
 const PATIENCE: u64 = 50_000_000_000;
+/// Above which it takes more than some seconds.
+const QUICK: u64 = 5_000_000_000;
 
 #[derive(clap::Args)]
 pub struct CheckArguments {
@@ -108,6 +110,12 @@ impl Findings<'_> {
         self.high[a] - self.low[a] + 2.0 * self.half[a]
     }
 
+    /// By the patch test.
+    fn examine(&mut self, subject: &Subject, sim: &mut dyn Simulation) {
+        self.patch = Some(patch_test(sim, lattice(&subject.spec).ok()));
+        self.materials = materials(&subject.spec, &self.info, self.patch.as_ref(), self.thin());
+    }
+
     /// Seconds of statics before motion.
     fn load(&self) -> f64 {
         { self.trial.seconds_per_increment }.map_or(0.0, |s| s * self.increments as f64)
@@ -149,6 +157,21 @@ struct Subject {
     increments: u64,
     fields: Option<FieldsPlan>,
     ranks: Result<(), String>,
+}
+
+impl Subject {
+    fn of_deck(deck: &Deck, warnings: Vec<String>, info: &Info) -> Subject {
+        Subject {
+            steps: deck.steps(info.time_step) - deck.increments(),
+            increments: deck.increments(),
+            fields: crate::run::continuum(deck),
+            ranks: shared(&deck.spec),
+            units: deck.units,
+            spec: deck.spec.clone(),
+            script: false,
+            warnings,
+        }
+    }
 }
 
 /// Can ranks share the run of a spec?
@@ -196,18 +219,34 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         let dir = deck.output.dir.clone();
         let dir = dir.unwrap_or_else(|| default_dir(&input.file));
         enough(&deck, sim.as_mut(), &dir)?;
-        let subject = Subject {
-            steps: deck.steps(sim.info().time_step) - deck.increments(),
-            increments: deck.increments(),
-            fields: crate::run::continuum(&deck),
-            ranks: shared(&deck.spec),
-            units: deck.units,
-            spec: deck.spec,
-            script: false,
-            warnings,
-        };
+        let subject = Subject::of_deck(&deck, warnings, sim.info());
         report(arguments, &subject, sim.as_mut(), threads)
     })
+}
+
+/// What `peridyne check --json` says of a deck, but for the patch test where it takes long. Called on as many threads.
+///
+/// # Errors
+/// The deck is wrong, or the machine has not enough memory.
+pub fn checked(deck: &Deck, threads: usize) -> Result<serde_json::Value, Failure> {
+    let made = build(&deck.spec, Options::default());
+    let mut sim = made.map_err(|e| Failure::Input(deck.explain(&e).into()))?;
+    pictures(deck, sim.as_mut())?;
+    space_time(deck, sim.as_mut())?;
+    let dir = deck.output.dir.clone().unwrap_or_default();
+    enough(deck, sim.as_mut(), &dir)?;
+    let subject = Subject::of_deck(deck, deck::warnings(deck, sim.info()), sim.info());
+    let reference = sim.vectors("reference");
+    let (info, families) = (sim.info().clone(), sim.families());
+    let mut found = find(&subject, info, families, &reference, threads);
+    if let Some(plan) = &subject.fields {
+        found.fields = continuum::find(sim.as_mut(), plan, subject.steps, deck.file())?;
+    }
+    if visits(sim.as_ref()) < QUICK {
+        found.examine(&subject, sim.as_mut());
+    }
+    found.trial = trial(sim.as_mut(), subject.steps, subject.increments);
+    Ok(json::of(&found))
 }
 
 fn report(
@@ -253,22 +292,15 @@ fn report(
             limit.as_secs()
         )
     };
-    if patience(sim) {
+    if visits(sim) < PATIENCE {
         let late = late(
             LONGEST_PATCH,
             "the patch test (stiffness by place), and so a trial step,",
         );
-        found.patch = Some(within(
-            LONGEST_PATCH,
-            || ends(&found, late),
-            || patch_test(sim, lattice(&subject.spec).ok()),
-        ));
-        found.materials = materials(
-            &subject.spec,
-            &found.info,
-            found.patch.as_ref(),
-            found.thin(),
-        );
+        let mut examined = found.clone();
+        let work = || examined.examine(subject, sim);
+        within(LONGEST_PATCH, || ends(&found, late), work);
+        found = examined;
     }
     let what = match (subject.increments > 0, subject.spec.run.schedule.statics()) {
         (false, None) => "a trial step",
@@ -304,9 +336,10 @@ fn within<T>(limit: Duration, late: impl FnOnce() + Send, work: impl FnOnce() ->
     })
 }
 
-fn patience(sim: &dyn Simulation) -> bool {
+/// Visits of bonds by the patch test.
+fn visits(sim: &dyn Simulation) -> u64 {
     let passes = [1, 6, 21][sim.info().dimension.clamp(1, 3) - 1];
-    sim.info().directed_bonds.saturating_mul(passes) < PATIENCE
+    sim.info().directed_bonds.saturating_mul(passes)
 }
 
 fn find<'a>(

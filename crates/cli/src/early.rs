@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use peridyne_io::deck::clock_time;
 use peridyne_io::read::source;
 use peridyne_io::write::checkpoint::Asked;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Where a run ends before its last step, as if a signal had come: `peridyne resume` goes on from there.
@@ -35,9 +35,17 @@ impl Early {
 }
 
 /// What a state says of how its run was asked for: command, name of the deck and its text.
-pub fn asked(input: &Input, [command, name, text]: [String; 3]) -> Asked {
-    let file = &input.file;
-    let deck = file.canonicalize().unwrap_or_else(|_| file.clone());
+pub fn asked(input: &Input, records: [String; 3]) -> Asked {
+    asked_by(&input.file, input.set.clone(), records)
+}
+
+/// The same of a deck's file and what overrides it.
+pub fn asked_by(
+    file: &Path,
+    set: Vec<(String, String)>,
+    [command, name, text]: [String; 3],
+) -> Asked {
+    let deck = file.canonicalize().unwrap_or_else(|_| file.to_path_buf());
     let mut files = source::sums();
     files.retain(|(path, _)| *path != deck);
     Asked {
@@ -46,7 +54,7 @@ pub fn asked(input: &Input, [command, name, text]: [String; 3]) -> Asked {
         name,
         deck,
         text,
-        set: input.set.clone(),
+        set,
         files,
         ..Asked::default()
     }

@@ -13,7 +13,6 @@ use miette::{Diagnostic, LabeledSpan, SourceCode};
 use peridyne_io::excerpt::{brief, plain, steers};
 use std::fmt;
 use std::io::{ErrorKind, Write};
-use std::process::ExitCode;
 use std::sync::Mutex;
 
 pub enum Failure {
@@ -32,19 +31,19 @@ impl Failure {
         Failure::Input(miette::Report::msg(message.into()))
     }
 
-    pub fn report(self) -> ExitCode {
+    pub fn report(self) -> u8 {
         match self {
             Failure::Input(report) => {
                 // its colours are ours
                 written(&format!("{:?}", miette::Report::new(Told::of(report))));
-                ExitCode::from(2)
+                2
             }
             Failure::Run(message) => {
                 note(&format!("error: {message}"));
-                ExitCode::from(1)
+                1
             }
-            Failure::Elsewhere => ExitCode::from(2),
-            Failure::Ended(signal) => ExitCode::from(signal.exit_code()),
+            Failure::Elsewhere => 2,
+            Failure::Ended(signal) => signal.exit_code(),
         }
     }
 }

@@ -23,6 +23,7 @@ mod report;
 mod reproduce;
 mod resume;
 mod run;
+pub mod runs;
 mod script;
 mod shell;
 mod side_by_side;
@@ -31,11 +32,10 @@ mod upscale;
 mod waves;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use failure::Failure;
+pub use failure::Failure;
 use peridyne_io::excerpt::steers;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// Peridynamics and molecular dynamics: points that talk to a family of points.
 #[derive(Parser)]
@@ -131,8 +131,8 @@ fn pair(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// The program with these words, the first of which is its name.
-pub fn program(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+/// The program with these words, the first of which is its name; its exit code.
+pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
@@ -167,13 +167,13 @@ pub fn program(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Man => shell::man(Arguments::command()),
     };
     match outcome.and_then(|()| failure::printed()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => failure.report(),
     }
 }
 
 /// Help or the version were asked for, or the command line is wrong.
-fn answered(answer: &clap::Error, words: &[OsString]) -> ExitCode {
+fn answered(answer: &clap::Error, words: &[OsString]) -> u8 {
     if answer.use_stderr() {
         let odd = |word: &OsString| word.to_string_lossy().chars().any(steers);
         match words.iter().any(odd) {
@@ -181,12 +181,12 @@ fn answered(answer: &clap::Error, words: &[OsString]) -> ExitCode {
             // clap knows how to colour it; nobody can be told if standard error is closed
             false => drop(answer.print()),
         }
-        return ExitCode::from(2);
+        return 2;
     }
     // not clap's own printing, which forgets that the disk is full
     failure::say(answer.render().to_string().trim_end());
     match failure::printed() {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => failure.report(),
     }
 }

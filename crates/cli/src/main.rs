@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    peridyne_cli::program(std::env::args_os())
+    ExitCode::from(peridyne_cli::program(std::env::args_os()))
 }

@@ -195,6 +195,7 @@ impl Run {
                 Ok(()) => {
                     self.step += 1;
                     progress.step(self.step, plan.steps, stepping);
+                    progress.look(sim, self.step);
                     self.look(sim, plan, progress, self.due(plan))?;
                 }
                 // within an increment or an implicit step, which is undone

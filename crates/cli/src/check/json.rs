@@ -9,6 +9,10 @@ use peridyne_theory::voigt::{Stiffness, components};
 use serde_json::{Value, json};
 
 pub fn write(found: &Findings) -> String {
+    json_text(&of(found))
+}
+
+pub fn of(found: &Findings) -> Value {
     let info = &found.info;
     let materials = found.materials.iter().enumerate().map(|(n, m)| {
         let classes = found.patch.iter().flat_map(|p| &p.classes);
@@ -30,7 +34,7 @@ pub fn write(found: &Findings) -> String {
     });
     let of_deck = { found.warnings.iter() }.map(|w| json!({"what": w, "fix": null}));
     let warnings = { advice(found).into_iter() }.map(|a| json!({"what": a.what, "fix": a.fix}));
-    let report = json!({
+    json!({
         "title": found.spec.title,
         "units": found.units.name(),
         "dimension": info.dimension,
@@ -80,8 +84,7 @@ pub fn write(found: &Findings) -> String {
         "seconds_per_increment_before": found.trial.seconds_per_increment,
         "seconds": found.trial.seconds_per_step.map(|s| found.load() + s * found.steps as f64),
         "warnings": of_deck.chain(warnings).collect::<Vec<_>>(),
-    });
-    json_text(&report)
+    })
 }
 
 fn fields(one: &Found) -> Value {

@@ -123,6 +123,8 @@ impl Plan {
 pub trait Progress {
     /// Called often; `stepping` is the time spent in steps alone.
     fn step(&mut self, done: u64, total: u64, stepping: Duration);
+    /// The model after a step; nothing of it may be changed.
+    fn look(&mut self, _sim: &mut dyn Simulation, _step: u64) {}
     /// A row of the history.
     fn row(&mut self, step: u64, time: f64, ledger: &Ledger, broken: u64);
     /// Something else than steps begins: fields, pictures, the report.

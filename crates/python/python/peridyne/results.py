@@ -1,0 +1,87 @@
+"""What a run wrote."""
+
+import csv
+import html
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from ._peridyne import Deck, DeckError, RunError
+
+
+class Run:
+    """The results of a run, in their folder. Shown as its report in a notebook."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        if not (self.folder / "run.json").is_file():
+            raise FileNotFoundError(f"{self.folder}: no run.json: this is no folder of results")
+
+    def __repr__(self):
+        return f"<peridyne.Run in {str(self.folder)!r}: {self.record['status']}>"
+
+    @property
+    def record(self):
+        """What the run says of itself (`run.json`): status, steps, energies, hashes, warnings, versions."""
+        return json.loads((self.folder / "run.json").read_text())
+
+    def _history(self):
+        with open(self.folder / "history.csv", newline="") as file:
+            rows = list(csv.reader(file))
+        titles = [title.partition(" [") for title in rows[0]]
+        names = [name for name, _, _ in titles]
+        units = [unit.removesuffix("]") for _, _, unit in titles]
+        number = lambda text: float(text) if text else np.nan
+        table = np.array([[number(x) for x in row] for row in rows[1:]]).reshape(-1, len(names))
+        return names, units, table
+
+    @property
+    def history(self):
+        """`history.csv`: an array over rows by the name of its column, without the unit."""
+        names, _, table = self._history()
+        return {name: table[:, n] for n, name in enumerate(names)}
+
+    @property
+    def units(self):
+        """The unit of each column of the history; "" where it has none."""
+        names, units, _ = self._history()
+        return dict(zip(names, units))
+
+    @property
+    def frames(self):
+        """Files of the frames (VTU, for pyvista, meshio or ParaView), in their order."""
+        return sorted(self.folder.glob("points_*.vtu"))
+
+    @property
+    def pictures(self):
+        """Files of the pictures."""
+        return sorted(self.folder.glob("*.png"))
+
+    def _repr_html_(self):
+        report = self.folder / "report.html"
+        if not report.is_file():
+            return f"<pre>{html.escape(repr(self))}</pre>"
+        page = html.escape(report.read_text(), quote=True)
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 700px; border: 0"></iframe>'
+
+
+def _program(*words):
+    """The program with these words; what it said where it ended badly."""
+    done = subprocess.run([sys.executable, "-m", "peridyne", *map(str, words)], capture_output=True, text=True)
+    if done.returncode != 0:
+        error = (DeckError if done.returncode == 2 else RunError)(done.stderr.strip())
+        error.message = done.stderr.strip()
+        raise error
+    return done.stdout
+
+
+def resume(folder, *, threads=None, allow_outside=False):
+    """Goes on with a run that was ended before its last step, bit for bit: its Run. What is said meanwhile is not shown."""
+    words = ["resume", folder]
+    words += ["--threads", threads] if threads is not None else []
+    words += ["--allow-outside"] if allow_outside else []
+    _program(*words)
+    return Run(folder)

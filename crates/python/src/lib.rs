@@ -1,0 +1,29 @@
+//! peridyne in Python: decks, runs and running models ([`deck`], [`simulation`]), numbers as NumPy's arrays ([`arrays`]), mistakes as exceptions
+//! ([`error`]), and the program itself. What is Python's own (results, ASE) is in `python/peridyne`.
+
+mod arrays;
+mod deck;
+mod error;
+mod listener;
+mod simulation;
+mod tables;
+
+use pyo3::prelude::*;
+use std::ffi::OsString;
+
+/// The program with these words after its name; its exit code.
+#[pyfunction]
+fn program(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    let name = OsString::from("peridyne");
+    let words = std::iter::once(name).chain(words);
+    py.detach(|| peridyne_cli::program(words))
+}
+
+#[pymodule]
+fn _peridyne(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_function(wrap_pyfunction!(program, module)?)?;
+    module.add_class::<deck::Deck>()?;
+    module.add_class::<simulation::Simulation>()?;
+    error::add(module)
+}
