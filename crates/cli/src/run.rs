@@ -165,16 +165,10 @@ pub fn run_deck(
     plan.command = deck::command(&arguments.input);
     let records = [&plan.command, &plan.deck, &plan.deck_text].map(String::clone);
     plan.asked = asked(&arguments.input, records);
-    if let Some(from) = &from {
-        same_files(&from.asked.files, &plan.asked.files)?;
-        // records are those of the run that began
-        (plan.command, plan.deck) = (from.asked.command.clone(), from.asked.name.clone());
-        plan.asked = from.asked.clone();
-        plan.asked.text.clone_from(&plan.deck_text);
-    }
     let done = from.as_ref().map_or(0, |f| f.asked.step);
-    from.as_ref()
-        .map_or(Ok(()), |f| has_steps(&f.asked, steps))?;
+    if let Some(from) = &from {
+        go_on(&mut plan, &from.asked)?;
+    }
     plan.rigid = rigid;
     let whole = match plan.increments {
         0 => counted(steps, "step"),
@@ -288,12 +282,20 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
     }
 }
 
-/// Does the deck ask for the steps that were done?
-fn has_steps(asked: &Asked, steps: u64) -> Result<(), Failure> {
-    match asked.step > steps {
+/// Plans what is left of a run that was ended.
+///
+/// # Errors
+/// A file is another one than when the run began, or the deck asks for fewer steps than were done.
+pub fn go_on(plan: &mut Plan, asked: &Asked) -> Result<(), Failure> {
+    same_files(&asked.files, &plan.asked.files)?;
+    // records are those of the run that began
+    (plan.command, plan.deck) = (asked.command.clone(), asked.name.clone());
+    plan.asked = asked.clone();
+    plan.asked.text.clone_from(&plan.deck_text);
+    match asked.step > plan.steps {
         true => Err(Failure::input(format!(
-            "the run has done {} steps, and the deck asks for {steps} now; ask for as many or more",
-            asked.step
+            "the run has done {} steps, and the deck asks for {} now; ask for as many or more",
+            asked.step, plan.steps
         ))),
         false => Ok(()),
     }

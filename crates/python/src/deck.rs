@@ -1,6 +1,6 @@
 //! Decks.
 
-use crate::error::{failed, mistake};
+use crate::error::{DeckError, failed, mistake};
 use crate::listener::{Listener, outcome};
 use crate::simulation::Simulation;
 use crate::tables::{of_json, toml};
@@ -9,10 +9,11 @@ use peridyne_cli::runs;
 use peridyne_io::deck::Deck as Read;
 use peridyne_io::drive::{RigidBodies, default_dir, drive, refused_threads};
 use peridyne_io::read::encoding;
+use peridyne_io::write::checkpoint::Checkpoint;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A deck that was read: what is to be run.
 ///
@@ -21,6 +22,8 @@ use std::path::PathBuf;
 #[pyclass(frozen, module = "peridyne")]
 pub struct Deck {
     read: Read,
+    /// What overrides its keys.
+    set: Vec<(String, String)>,
 }
 
 /// Keys that override those of a deck, by their dotted names, as TOML.
@@ -32,11 +35,10 @@ fn overrides(set: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<(String, String)>>
     Ok(table.into_iter().map(|(k, v)| (k, v.to_string())).collect())
 }
 
-fn parsed(py: Python<'_>, text: &str, name: &str, set: &[(String, String)]) -> PyResult<Deck> {
-    let read = py.detach(|| Read::parse(text, name, set));
-    Ok(Deck {
-        read: read.map_err(|e| mistake(&e))?,
-    })
+fn parsed(py: Python<'_>, text: &str, name: &Path, set: Vec<(String, String)>) -> PyResult<Deck> {
+    let read = py.detach(|| Read::parse(text, &name.to_string_lossy(), &set));
+    let read = read.map_err(|e| mistake(&e))?;
+    Ok(Deck { read, set })
 }
 
 /// Does `work` on so many threads of its own; all cores if it is not said.
@@ -70,7 +72,7 @@ impl Deck {
         let bytes = std::fs::read(&path)?;
         let text = encoding::text(bytes, 0);
         let text = text.map_err(|e| PyValueError::new_err(e.message))?;
-        parsed(py, &text, &path.to_string_lossy(), &overrides(set)?)
+        parsed(py, &text, &path, overrides(set)?)
     }
 
     /// The deck in a string of TOML. Files that it names are relative to `folder`, the working folder if it is left out.
@@ -82,8 +84,9 @@ impl Deck {
         folder: Option<PathBuf>,
         set: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Deck> {
-        let name = folder.unwrap_or_default().join("deck.toml");
-        parsed(py, text, &name.to_string_lossy(), &overrides(set)?)
+        // a run that goes on may do so elsewhere
+        let name = std::path::absolute(folder.unwrap_or_default().join("deck.toml"))?;
+        parsed(py, text, &name, overrides(set)?)
     }
 
     /// The deck in a dictionary: tables are dictionaries, quantities strings with units or plain numbers. What is None is left out.
@@ -166,20 +169,70 @@ impl Deck {
         every: u64,
         allow_outside: bool,
     ) -> PyResult<Py<PyAny>> {
-        if every == 0 {
-            return Err(PyValueError::new_err("every=0: expected 1 or more steps"));
-        }
-        let deck = &self.read;
         let own = out.is_some();
-        let dir = out.or(deck.output.dir.clone());
-        let dir = dir.unwrap_or_else(|| default_dir(deck.file().as_ref()));
+        let dir = out.or(self.read.output.dir.clone());
+        let dir = dir.unwrap_or_else(|| default_dir(self.read.file().as_ref()));
+        let listener = Listener::new(progress, (observe, every), self.read.units)?;
+        let files = Files {
+            dir,
+            own,
+            allow_outside,
+        };
+        self.driven(py, files, threads, (listener, None))
+    }
+}
+
+/// Goes on with a run that was ended before its last step, bit for bit, in its folder: its Run. The deck is that which it began with, as its state has it; the other arguments
+/// are those of `Deck.run`.
+///
+/// Raises DeckError where there is no state to go on from, or files that the deck names are others now.
+#[pyfunction]
+#[pyo3(signature = (folder, *, threads=None, progress=None, observe=None, every=1, allow_outside=false))]
+pub fn resume(
+    py: Python<'_>,
+    folder: PathBuf,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+    observe: Option<Py<PyAny>>,
+    every: u64,
+    allow_outside: bool,
+) -> PyResult<Py<PyAny>> {
+    let newest = Checkpoint::newest(&folder);
+    let from = newest.map_err(|e| DeckError::new_err(e.to_string()))?;
+    let asked = from.asked.clone();
+    let deck = parsed(py, &asked.text, &asked.deck, asked.set)?;
+    let listener = Listener::new(progress, (observe, every), deck.read.units)?;
+    let files = Files {
+        dir: folder,
+        own: true,
+        allow_outside,
+    };
+    deck.driven(py, files, threads, (listener, Some(from)))
+}
+
+/// Where a run writes.
+struct Files {
+    dir: PathBuf,
+    /// Was the folder given by the caller?
+    own: bool,
+    allow_outside: bool,
+}
+
+impl Deck {
+    fn driven(
+        &self,
+        py: Python<'_>,
+        files: Files,
+        threads: Option<usize>,
+        (mut listener, from): (Listener, Option<Checkpoint>),
+    ) -> PyResult<Py<PyAny>> {
+        let deck = &self.read;
+        let (dir, allow_outside) = (files.dir, files.allow_outside);
         if !allow_outside {
-            deck.stays_inside(own).map_err(|e| mistake(&e))?;
+            deck.stays_inside(files.own).map_err(|e| mistake(&e))?;
         }
-        let mut listener = Listener::new(progress, (observe, every), deck.units);
-        let threads = threads.or(deck.threads);
         py.detach(|| {
-            with_threads(threads, |threads| {
+            with_threads(threads.or(deck.threads), |threads| {
                 let (rigid, spec) = RigidBodies::watched(&deck.spec);
                 let made = build(&spec, Options::default());
                 let mut sim = made.map_err(|e| mistake(&deck.explain(&e)))?;
@@ -187,8 +240,11 @@ impl Deck {
                 let mut plan = plan.map_err(failed)?;
                 (plan.rigid, plan.threads) = (rigid, threads);
                 plan.command = "peridyne.Deck.run (Python)".into();
-                plan.asked = runs::asked_of(deck, &plan.command);
-                let done = drive(sim.as_mut(), &plan, &mut listener, None);
+                plan.asked = runs::asked_of(deck, self.set.clone(), &plan.command);
+                if let Some(from) = &from {
+                    runs::go_on(&mut plan, &from.asked).map_err(failed)?;
+                }
+                let done = drive(sim.as_mut(), &plan, &mut listener, from);
                 outcome(done, listener)
             })
         })?;

@@ -23,6 +23,7 @@ fn program(py: Python<'_>, words: Vec<OsString>) -> u8 {
 fn _peridyne(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(program, module)?)?;
+    module.add_function(wrap_pyfunction!(deck::resume, module)?)?;
     module.add_class::<deck::Deck>()?;
     module.add_class::<simulation::Simulation>()?;
     error::add(module)

@@ -7,6 +7,7 @@ use peridyne::run::Simulation;
 use peridyne_io::deck::UnitSystem;
 use peridyne_io::drive::{DriveError, Progress};
 use peridyne_io::write::run_json::RunReport;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -31,8 +32,11 @@ impl Listener {
         progress: Option<Py<PyAny>>,
         (observe, every): (Option<Py<PyAny>>, u64),
         units: UnitSystem,
-    ) -> Listener {
-        Listener {
+    ) -> PyResult<Listener> {
+        if every == 0 {
+            return Err(PyValueError::new_err("every=0: expected 1 or more steps"));
+        }
+        Ok(Listener {
             progress,
             observe,
             every,
@@ -40,7 +44,7 @@ impl Listener {
             looked: Instant::now(),
             ended: None,
             raised: None,
-        }
+        })
     }
 
     /// Ends the run where Python raised something.

@@ -14,6 +14,8 @@ use rayon::ThreadPool;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
+/// Steps after which energies are looked at: a balance that is lost is told, not followed.
+const BALANCED: u64 = 100;
 /// Between two looks whether somebody pressed Ctrl-C.
 const INTERVAL: Duration = Duration::from_millis(100);
 
@@ -182,16 +184,11 @@ impl Force {
 }
 
 /// Tells the model what the forces of Python are now.
-fn drive(inner: &mut Inner, moved: bool) -> PyResult<()> {
+fn drive(inner: &mut Inner) -> PyResult<()> {
     let mut forces = std::mem::take(&mut inner.forces);
     let now = inner.model().map(|model| {
-        let dt = if moved { model.info().time_step } else { 0.0 };
         let now = model.now();
-        (
-            now.time + dt,
-            now.step + u64::from(moved),
-            model.info().dimension,
-        )
+        (now.time, now.step, model.info().dimension)
     });
     let told = now.and_then(|now| {
         for (n, force) in forces.iter_mut().enumerate() {
@@ -207,11 +204,14 @@ fn drive(inner: &mut Inner, moved: bool) -> PyResult<()> {
 fn one_step(inner: &mut Inner) -> PyResult<()> {
     let wrong = |e: Stopped, step: u64| stopped(&e.message(), Some(step), None);
     let step = inner.model()?.now().step;
+    if step > 0 && step.is_multiple_of(BALANCED) {
+        inner.model()?.ledger().map_err(|e| wrong(e, step))?;
+    }
     if inner.forces.is_empty() {
         return inner.model()?.step().map_err(|e| wrong(e, step));
     }
     inner.model()?.depart(&[]).map_err(|e| wrong(e, step))?;
-    let told = drive(inner, true);
+    let told = drive(inner);
     let arrived = inner.model()?.arrive().map_err(|e| wrong(e, step));
     told.and(arrived)
 }
@@ -230,7 +230,7 @@ impl Simulation {
                 ));
             }
             if !inner.forces.is_empty() && !inner.started {
-                drive(inner, false)?;
+                drive(inner)?;
             }
             inner.start()?;
             let mut looked = Instant::now();
@@ -333,7 +333,7 @@ impl Simulation {
             inner.model()?.set_driven(&driven);
             inner.forces.iter_mut().for_each(|f| f.last = None);
             let started = inner.started;
-            drive(inner, false)?;
+            drive(inner)?;
             if started {
                 inner.model()?.start(true);
             }
@@ -411,6 +411,14 @@ impl Simulation {
         Ok(all)
     }
 
+    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), of bonds and repulsion: positive where pairs repel.
+    fn virial(&self, py: Python<'_>) -> PyResult<[f64; 6]> {
+        self.ask(py, |inner| {
+            inner.start()?;
+            Ok(inner.model()?.virial())
+        })
+    }
+
     /// Steps done.
     #[getter]
     fn step_number(&self, py: Python<'_>) -> PyResult<u64> {
@@ -452,9 +460,14 @@ impl Simulation {
         self.ask(py, |inner| Ok(inner.model()?.fragments()))
     }
 
-    /// Two numbers that differ when the state does, as `run.json` has it.
-    fn state_hash(&self, py: Python<'_>) -> PyResult<String> {
-        self.ask(py, |inner| Ok(inner.model()?.state_hash().to_string()))
+    /// Two numbers that differ when the state or its accounts do, as `run.json` has them: `state_hash` and `ledger_hash`.
+    fn state_hash(&self, py: Python<'_>) -> PyResult<(String, Option<String>)> {
+        self.ask(py, |inner| {
+            inner.start()?;
+            let hash = inner.model()?.state_hash();
+            let words = |hash: u64| format!("{hash:016x}");
+            Ok((words(hash.state), hash.ledger.map(words)))
+        })
     }
 
     /// What looks wrong though it can be run.

@@ -10,7 +10,7 @@
 columns as arrays of NumPy. `peridyne.ase` has calculators for ASE. The program itself is `python -m peridyne`.
 """
 
-from ._peridyne import Deck, DeckError, Error, RunError, Simulation, __version__
-from .results import Run, resume
+from ._peridyne import Deck, DeckError, Error, RunError, Simulation, __version__, resume
+from .results import Run
 
 __all__ = ["Deck", "DeckError", "Error", "Run", "RunError", "Simulation", "__version__", "resume"]

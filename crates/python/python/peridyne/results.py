@@ -3,13 +3,9 @@
 import csv
 import html
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
-
-from ._peridyne import Deck, DeckError, RunError
 
 
 class Run:
@@ -66,22 +62,3 @@ class Run:
             return f"<pre>{html.escape(repr(self))}</pre>"
         page = html.escape(report.read_text(), quote=True)
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 700px; border: 0"></iframe>'
-
-
-def _program(*words):
-    """The program with these words; what it said where it ended badly."""
-    done = subprocess.run([sys.executable, "-m", "peridyne", *map(str, words)], capture_output=True, text=True)
-    if done.returncode != 0:
-        error = (DeckError if done.returncode == 2 else RunError)(done.stderr.strip())
-        error.message = done.stderr.strip()
-        raise error
-    return done.stdout
-
-
-def resume(folder, *, threads=None, allow_outside=False):
-    """Goes on with a run that was ended before its last step, bit for bit: its Run. What is said meanwhile is not shown."""
-    words = ["resume", folder]
-    words += ["--threads", threads] if threads is not None else []
-    words += ["--allow-outside"] if allow_outside else []
-    _program(*words)
-    return Run(folder)
