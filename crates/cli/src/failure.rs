@@ -31,6 +31,19 @@ impl Failure {
         Failure::Input(miette::Report::msg(message.into()))
     }
 
+    /// What went wrong, in one line.
+    pub fn words(&self) -> String {
+        match self {
+            Failure::Input(report) => {
+                let help = report.help().map(|help| format!(" ({help})"));
+                format!("{report}{}", help.unwrap_or_default())
+            }
+            Failure::Run(message) => message.clone(),
+            Failure::Ended(signal) => signal.to_string(),
+            Failure::Elsewhere => "another rank says why".into(),
+        }
+    }
+
     pub fn report(self) -> u8 {
         match self {
             Failure::Input(report) => {

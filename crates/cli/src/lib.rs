@@ -28,6 +28,7 @@ mod script;
 mod shell;
 mod side_by_side;
 mod signals;
+mod sweep;
 mod upscale;
 mod waves;
 
@@ -64,6 +65,8 @@ enum Verb {
     Waves(waves::WavesArguments),
     /// Refine a lattice deck level by level, and fit the order with which its error falls.
     Converge(converge::ConvergeArguments),
+    /// Run a deck with many values of its keys: each with each, in lists, or a Latin hypercube; one table of what came out.
+    Sweep(Box<sweep::SweepArguments>),
     /// A deck of Peridigm (YAML, XML) or PeriLab (YAML) as one of peridyne; what has no counterpart is named line by line.
     Convert(convert::ConvertArguments),
     /// Continuum fields from the particles of a trajectory: stress, heat flux and their balance laws.
@@ -150,6 +153,7 @@ pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Coarsen(arguments) => coarsen::coarsen(&arguments),
         Verb::Waves(arguments) => waves::waves(&arguments),
         Verb::Converge(arguments) => converge::converge(&arguments),
+        Verb::Sweep(arguments) => sweep::sweep(&arguments),
         Verb::Convert(arguments) => convert::convert(&arguments),
         Verb::Fields(arguments) => fields::fields(&arguments),
         Verb::Bar(arguments) => bar::bar(&arguments),

@@ -1,14 +1,58 @@
-//! What a deck asks for, for those who run it without the program.
+//! Runs of decks for those who lead them by themselves: a study, a program in another language.
 
 pub use crate::check::checked;
-pub use crate::run::{go_on, planned};
 
 use crate::early;
+use crate::failure::Failure;
+use crate::run::{go_on, planned};
+use peridyne::run::{Options, build};
 use peridyne_io::deck::Deck;
-use peridyne_io::write::checkpoint::Asked;
+use peridyne_io::drive::{DriveError, Progress, RigidBodies, drive};
+use peridyne_io::write::checkpoint::Checkpoint;
+use peridyne_io::write::run_json::RunReport;
+use std::path::PathBuf;
 
-/// What a state says of how the run of a deck was asked for, with what overrides its keys.
-pub fn asked_of(deck: &Deck, set: Vec<(String, String)>, command: &str) -> Asked {
-    let records = [command, deck.file(), deck.text()].map(String::from);
-    early::asked_by(deck.file().as_ref(), set, records)
+/// A deck and where its results go.
+pub struct Run<'a> {
+    pub deck: &'a Deck,
+    /// What overrides its keys.
+    pub set: &'a [(String, String)],
+    /// What makes the run again, for its records.
+    pub command: String,
+    pub dir: PathBuf,
+    pub allow_outside: bool,
+}
+
+/// Why a run did not come to its end.
+pub enum Stopped {
+    /// The deck is wrong.
+    Deck(Failure),
+    Run(DriveError),
+}
+
+impl Run<'_> {
+    /// Runs it on the threads of now, from the beginning or from where it was ended.
+    ///
+    /// # Errors
+    /// The deck is wrong, a file is another one than when the run began, the run goes bad, or a file could not be written.
+    pub fn done(
+        self,
+        from: Option<Checkpoint>,
+        progress: &mut dyn Progress,
+    ) -> Result<RunReport, Stopped> {
+        let deck = self.deck;
+        let (rigid, spec) = RigidBodies::watched(&deck.spec);
+        let made = build(&spec, Options::default());
+        let mut sim = made.map_err(|e| Stopped::Deck(Failure::Input(deck.explain(&e).into())))?;
+        let plan = planned(deck, sim.as_mut(), self.dir, self.allow_outside);
+        let mut plan = plan.map_err(Stopped::Deck)?;
+        (plan.rigid, plan.threads) = (rigid, rayon::current_num_threads());
+        let records = [&self.command, deck.file(), deck.text()].map(String::from);
+        plan.command = self.command.clone();
+        plan.asked = early::asked_by(deck.file().as_ref(), self.set.to_vec(), records);
+        if let Some(from) = &from {
+            go_on(&mut plan, &from.asked).map_err(Stopped::Deck)?;
+        }
+        drive(sim.as_mut(), &plan, progress, from).map_err(Stopped::Run)
+    }
 }

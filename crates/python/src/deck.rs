@@ -4,10 +4,9 @@ use crate::error::{DeckError, failed, mistake};
 use crate::listener::{Listener, outcome};
 use crate::simulation::Simulation;
 use crate::tables::{of_json, toml};
-use peridyne::run::{Options, build};
 use peridyne_cli::runs;
 use peridyne_io::deck::Deck as Read;
-use peridyne_io::drive::{RigidBodies, default_dir, drive, refused_threads};
+use peridyne_io::drive::{default_dir, refused_threads};
 use peridyne_io::read::encoding;
 use peridyne_io::write::checkpoint::Checkpoint;
 use pyo3::exceptions::PyValueError;
@@ -232,19 +231,15 @@ impl Deck {
             deck.stays_inside(files.own).map_err(|e| mistake(&e))?;
         }
         py.detach(|| {
-            with_threads(threads.or(deck.threads), |threads| {
-                let (rigid, spec) = RigidBodies::watched(&deck.spec);
-                let made = build(&spec, Options::default());
-                let mut sim = made.map_err(|e| mistake(&deck.explain(&e)))?;
-                let plan = runs::planned(deck, sim.as_mut(), dir.clone(), allow_outside);
-                let mut plan = plan.map_err(failed)?;
-                (plan.rigid, plan.threads) = (rigid, threads);
-                plan.command = "peridyne.Deck.run (Python)".into();
-                plan.asked = runs::asked_of(deck, self.set.clone(), &plan.command);
-                if let Some(from) = &from {
-                    runs::go_on(&mut plan, &from.asked).map_err(failed)?;
-                }
-                let done = drive(sim.as_mut(), &plan, &mut listener, from);
+            with_threads(threads.or(deck.threads), |_| {
+                let run = runs::Run {
+                    deck,
+                    set: &self.set,
+                    command: "peridyne.Deck.run (Python)".into(),
+                    dir: dir.clone(),
+                    allow_outside,
+                };
+                let done = run.done(from, &mut listener);
                 outcome(done, listener)
             })
         })?;

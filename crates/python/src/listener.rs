@@ -1,11 +1,12 @@
 //! What Python hears of a run that writes its results, and how it ends it.
 
-use crate::error::driven;
+use crate::error::{driven, failed};
 use crate::simulation::Lent;
 use peridyne::observe::Ledger;
 use peridyne::run::Simulation;
+use peridyne_cli::runs::Stopped;
 use peridyne_io::deck::UnitSystem;
-use peridyne_io::drive::{DriveError, Progress};
+use peridyne_io::drive::Progress;
 use peridyne_io::write::run_json::RunReport;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -108,9 +109,12 @@ impl Progress for Listener {
 }
 
 /// What Python raised comes before what that led to.
-pub fn outcome(done: Result<RunReport, DriveError>, listener: Listener) -> PyResult<()> {
+pub fn outcome(done: Result<RunReport, Stopped>, listener: Listener) -> PyResult<()> {
     if let Some(raised) = listener.raised {
         return Err(raised);
     }
-    done.map(drop).map_err(|e| driven(&e))
+    done.map(drop).map_err(|why| match why {
+        Stopped::Deck(failure) => failed(failure),
+        Stopped::Run(error) => driven(&error),
+    })
 }

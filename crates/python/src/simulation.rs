@@ -15,7 +15,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
 /// Steps after which energies are looked at: a balance that is lost is told, not followed.
-const BALANCED: u64 = 100;
+const BALANCED: u64 = 250;
 /// Between two looks whether somebody pressed Ctrl-C.
 const INTERVAL: Duration = Duration::from_millis(100);
 
@@ -56,6 +56,16 @@ impl Inner {
                 "this simulation is there during the call of `observe` alone: take what you need as arrays",
             )),
         }
+    }
+
+    /// To be changed.
+    fn own(&mut self) -> PyResult<&mut dyn Model> {
+        if matches!(self.held, Held::Lent(_)) {
+            return Err(PyRuntimeError::new_err(
+                "the run that called `observe` leads this simulation: it may be asked, not changed",
+            ));
+        }
+        self.model()
     }
 
     /// The forces of the state, if nobody asked for them yet.
@@ -201,6 +211,21 @@ fn drive(inner: &mut Inner) -> PyResult<()> {
     told
 }
 
+/// The same where there are others than before.
+fn tell_anew(inner: &mut Inner) -> PyResult<()> {
+    let nothing = |f: &Force| {
+        let count = f.ids.as_ref().map_or(0, Vec::len);
+        (Drive::AddEach(vec![[None; 3]; count]), f.ids.clone())
+    };
+    let driven: Vec<_> = inner.forces.iter().map(nothing).collect();
+    inner.model()?.set_driven(&driven);
+    drive(inner)?;
+    if inner.started {
+        inner.model()?.start(true);
+    }
+    Ok(())
+}
+
 fn one_step(inner: &mut Inner) -> PyResult<()> {
     let wrong = |e: Stopped, step: u64| stopped(&e.message(), Some(step), None);
     let step = inner.model()?.now().step;
@@ -224,11 +249,7 @@ impl Simulation {
     #[pyo3(signature = (n=1))]
     fn step(&self, py: Python<'_>, n: u64) -> PyResult<()> {
         self.ask(py, |inner| {
-            if matches!(inner.held, Held::Lent(_)) {
-                return Err(PyRuntimeError::new_err(
-                    "the run that called `observe` does the steps of this simulation",
-                ));
-            }
+            inner.own()?;
             if !inner.forces.is_empty() && !inner.started {
                 drive(inner)?;
             }
@@ -261,7 +282,7 @@ impl Simulation {
     /// Sets a column: displacement, velocity, or one that bonds or points remember, `[N, d]` or as `column` gives it. Forces are found anew.
     fn set_column(&self, py: Python<'_>, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
         let (count, d) = self.ask(py, |inner| {
-            let info = inner.model()?.info();
+            let info = inner.own()?.info();
             Ok((info.points as usize, info.dimension))
         })?;
         if ["displacement", "velocity"].contains(&name) {
@@ -308,7 +329,7 @@ impl Simulation {
             )));
         }
         self.ask(py, |inner| {
-            let model = inner.model()?;
+            let model = inner.own()?;
             let stepper = model.info().stepper;
             if stepper.solves() || stepper.statics().is_some() || stepper.rests() {
                 return Err(PyValueError::new_err(
@@ -325,19 +346,12 @@ impl Simulation {
                 every,
                 last: None,
             });
-            let nothing = |f: &Force| {
-                let count = f.ids.as_ref().map_or(0, Vec::len);
-                (Drive::AddEach(vec![[None; 3]; count]), f.ids.clone())
-            };
-            let driven: Vec<_> = inner.forces.iter().map(nothing).collect();
-            inner.model()?.set_driven(&driven);
-            inner.forces.iter_mut().for_each(|f| f.last = None);
-            let started = inner.started;
-            drive(inner)?;
-            if started {
-                inner.model()?.start(true);
+            let told = tell_anew(inner);
+            if told.is_err() {
+                inner.forces.pop();
+                tell_anew(inner)?;
             }
-            Ok(())
+            told
         })
     }
 

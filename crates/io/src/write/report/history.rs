@@ -32,6 +32,14 @@ pub struct Column {
     pub values: Vec<f64>,
 }
 
+impl Column {
+    /// Or is it of every run?
+    pub fn is_of_a_probe(&self) -> bool {
+        let ledger = ledger_columns("");
+        !OWN.contains(&&*self.name) && ledger.iter().all(|c| c.name != self.name)
+    }
+}
+
 /// Columns of a table whose header is `name [unit]`.
 ///
 /// # Errors
@@ -134,7 +142,7 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
     let ledger: Vec<&str> = ledger.iter().map(|c| &*c.name).collect();
     let probes: Vec<&Column> = columns
         .iter()
-        .filter(|c| !law && !OWN.contains(&&*c.name) && !ledger.contains(&&*c.name))
+        .filter(|c| !law && c.is_of_a_probe())
         .filter(varies)
         .collect();
     let mut units: Vec<&str> = vec![];

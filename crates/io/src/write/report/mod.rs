@@ -2,7 +2,7 @@
 //! and the end of a run give the same.
 
 mod head;
-mod history;
+pub mod history;
 mod law;
 mod pack;
 mod page;
