@@ -9,7 +9,7 @@ use super::{
     FactorsOf, Gradient, Heals, Interaction, PointEnergiesMut, Sweep, Tally, Wearing, history,
 };
 use crate::body::several::Piece;
-use crate::body::{Body, FieldView, FieldViewMut, Identity, Layout, view_mut};
+use crate::body::{Body, FieldView, FieldViewMut, Identity, Layout, view, view_mut};
 use crate::columns::{Declaration, On};
 use crate::error::BuildError;
 use crate::law::BondFactors;
@@ -33,6 +33,18 @@ pub struct SeveralInteraction<const D: usize> {
     interfaces: Vec<Interface<D>>,
     /// Family of those that have bonds.
     family: &'static str,
+}
+
+/// A sweep as the bonds of one body see it.
+fn of_piece<'a, const D: usize>(p: &Piece<D>, sweep: Sweep<'a, D>) -> Sweep<'a, D> {
+    match sweep {
+        Sweep::Evolve { v, steps, release } => Sweep::Evolve {
+            v: p.part(v),
+            steps,
+            release,
+        },
+        Sweep::Hold => Sweep::Hold,
+    }
 }
 
 impl<const D: usize> SeveralInteraction<D> {
@@ -120,6 +132,29 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.family
     }
 
+    fn begin_forces(
+        &mut self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        mut f: FieldViewMut<D>,
+        sweep: Sweep<D>,
+    ) {
+        self.check(body, &[u, view(&f)]);
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                let into = p.part_mut(view_mut(&mut f));
+                bonds.begin_forces(&p.body, p.part(u), into, of_piece(p, sweep));
+            }
+        }
+    }
+
+    fn meanwhile(&self) -> [usize; 2] {
+        // one message has the motion of all; who cannot begin waits for it
+        let all = self.all().map(|bonds| bonds.meanwhile());
+        all.reduce(|[a, b], [c, d]| [a.min(c), b.min(d)])
+            .unwrap_or_default()
+    }
+
     unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
@@ -139,14 +174,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 }
                 continue;
             };
-            let sweep = match sweep {
-                Sweep::Evolve { v, steps, release } => Sweep::Evolve {
-                    v: p.part(v),
-                    steps,
-                    release,
-                },
-                Sweep::Hold => Sweep::Hold,
-            };
+            let sweep = of_piece(p, sweep);
             let mut watch = seen.as_deref_mut().map(|seen| seen.part(p.range()));
             let into = p.part_mut(view_mut(&mut f));
             let mut tally = bonds.forces(&p.body, p.part(u), into, sweep, watch.as_mut());

@@ -34,7 +34,7 @@ impl<const D: usize> System<D> {
         let [energies, virial, virials] = asked.map(|what| self.watch.take(what));
         match bonds {
             // whoever watches looks at the bonds of before
-            true => self.refresh_motion(steps, !(energies || virial || virials)),
+            true => refresh_motion(self, steps, !(energies || virial || virials)),
             false => self.refresh_images(),
         }
         let last = self.watch.energies.take();
@@ -87,24 +87,6 @@ impl<const D: usize> System<D> {
             self.add_virials_of_contact(&mut points);
             self.watch.virials = Some(points);
         }
-    }
-
-    /// Copies of displacements and velocities before bonds are tested, and, if asked to, the forces that need no others while they come.
-    fn refresh_motion(&mut self, steps: [f64; 2], begin: bool) {
-        self.tell_toughness();
-        let (body, release) = (&self.body, self.release);
-        let mut moved = (&mut self.u, &mut self.v, &mut self.f, &mut self.interaction);
-        body.exchange().fill_during(
-            &mut moved,
-            |(u, v, ..)| u.iter_mut().chain(v.iter_mut()).map(|c| &mut **c).collect(),
-            |(u, v, f, interaction)| {
-                if begin {
-                    let v = view(v);
-                    let sweep = Sweep::Evolve { v, steps, release };
-                    interaction.begin_forces(body, view(u), view_mut(f), sweep);
-                }
-            },
-        );
     }
 
     /// Forces of contact, indenters and loads, on top of those of bonds.
@@ -175,4 +157,31 @@ impl<const D: usize> System<D> {
             contact.retreat();
         }
     }
+}
+
+/// Copies of displacements and velocities before bonds are tested, and, if asked to, the forces that need no others while they come.
+fn refresh_motion<const D: usize>(system: &mut System<D>, steps: [f64; 2], begin: bool) {
+    system.tell_toughness();
+    let System {
+        body,
+        release,
+        u,
+        v,
+        f,
+        interaction,
+        ..
+    } = system;
+    let (body, release) = (&*body, *release);
+    let mut moved = (u, v, f, interaction);
+    body.exchange().fill_during(
+        &mut moved,
+        |(u, v, ..)| u.iter_mut().chain(v.iter_mut()).map(|c| &mut **c).collect(),
+        |(u, v, f, interaction)| {
+            if begin {
+                let v = view(v);
+                let sweep = Sweep::Evolve { v, steps, release };
+                interaction.begin_forces(body, view(u), view_mut(f), sweep);
+            }
+        },
+    );
 }
