@@ -163,7 +163,7 @@ impl Exchange {
 
     /// Fills the copies in a column, `[slots]`.
     pub fn fill<T: Pod>(&self, mut column: &mut [T]) {
-        self.fill_during(&mut column, |column| vec![&mut **column], |_| ());
+        self.fill_during(&mut column, |column, fill| fill(column), |_| ());
     }
 
     fn fill_here<T: Copy>(&self, column: &mut [T]) {
@@ -176,22 +176,22 @@ impl Exchange {
     pub fn fill_field<const D: usize>(&self, field: &mut [impl DerefMut<Target = [f64]>; D]) {
         self.fill_during(
             field,
-            |field| field.iter_mut().map(|column| &mut **column).collect(),
+            |field, fill| field.iter_mut().for_each(|column| fill(column)),
             |_| (),
         );
     }
 
     /// Fills the copies in columns of something. Where other ranks have parts of the body `work` is done with it while what they tell is on its way: copies of
-    /// points that are here are filled by then, those of others are not.
+    /// points that are here are filled by then, those of others are not. `each` hands out the columns, the same whenever it is asked.
     pub fn fill_during<S, T: Pod>(
         &self,
         of: &mut S,
-        columns: impl Fn(&mut S) -> Vec<&mut [T]>,
+        each: impl Fn(&mut S, &mut dyn FnMut(&mut [T])),
         work: impl FnOnce(&mut S),
     ) {
-        { columns(of).into_iter() }.for_each(|column| self.fill_here(column));
+        each(of, &mut |column| self.fill_here(column));
         if let Some(others) = &self.others {
-            others.fill_during(of, &columns, work);
+            others.fill_during(of, &each, work);
         }
     }
 
@@ -455,28 +455,29 @@ impl Others {
     fn fill_during<S, T: Pod>(
         &self,
         of: &mut S,
-        columns: &impl Fn(&mut S) -> Vec<&mut [T]>,
+        each: &impl Fn(&mut S, &mut dyn FnMut(&mut [T])),
         work: impl FnOnce(&mut S),
     ) {
-        let count = columns(of).len();
+        let mut count = 0;
+        each(of, &mut |_| count += 1);
         self.trade(
             of,
             count * size_of::<T>(),
             |of, spans, out| {
-                for column in columns(of) {
-                    let each = spans.iter().map(|span| cast_slice(&column[span.clone()]));
-                    each.for_each(|bytes| out.extend_from_slice(bytes));
-                }
+                each(of, &mut |column| {
+                    let pieces = spans.iter().map(|span| cast_slice(&column[span.clone()]));
+                    pieces.for_each(|bytes| out.extend_from_slice(bytes));
+                });
             },
             |of, spans, mut from| {
-                for column in columns(of) {
+                each(of, &mut |column| {
                     for span in spans {
                         let into = cast_slice_mut(&mut column[span.clone()]);
                         let (of, others) = from.split_at(into.len());
                         into.copy_from_slice(of);
                         from = others;
                     }
-                }
+                });
             },
             work,
         );

@@ -251,7 +251,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 let mut both = (&mut *self, f);
                 body.exchange.fill_during(
                     &mut both,
-                    |(all, _)| vec![&mut *all.fields[0]],
+                    |(all, _), fill| fill(&mut all.fields[0]),
                     |(all, f)| {
                         let f = f.each_mut().map(|column| &mut **column);
                         all.sweep(body, u, f, motion, Which::These(inside));

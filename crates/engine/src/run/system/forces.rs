@@ -175,7 +175,7 @@ fn refresh_motion<const D: usize>(system: &mut System<D>, steps: [f64; 2], begin
     let mut moved = (u, v, f, interaction);
     body.exchange().fill_during(
         &mut moved,
-        |(u, v, ..)| u.iter_mut().chain(v.iter_mut()).map(|c| &mut **c).collect(),
+        |(u, v, ..), fill| u.iter_mut().chain(v.iter_mut()).for_each(|c| fill(c)),
         |(u, v, f, interaction)| {
             if begin {
                 let v = view(v);
