@@ -2,11 +2,11 @@
 
 use crate::error::{DeckError, failed, mistake};
 use crate::listener::{Listener, outcome};
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, pool};
 use crate::tables::{of_json, toml};
 use peridyne_cli::runs;
 use peridyne_io::deck::Deck as Read;
-use peridyne_io::drive::{default_dir, refused_threads};
+use peridyne_io::drive::default_dir;
 use peridyne_io::read::encoding;
 use peridyne_io::write::checkpoint::Checkpoint;
 use pyo3::exceptions::PyValueError;
@@ -38,25 +38,6 @@ fn parsed(py: Python<'_>, text: &str, name: &Path, set: Vec<(String, String)>) -
     let read = py.detach(|| Read::parse(text, &name.to_string_lossy(), &set));
     let read = read.map_err(|e| mistake(&e))?;
     Ok(Deck { read, set })
-}
-
-/// Does `work` on so many threads of its own; all cores if it is not said.
-fn with_threads<T: Send>(
-    threads: Option<usize>,
-    work: impl FnOnce(usize) -> PyResult<T> + Send,
-) -> PyResult<T> {
-    if threads == Some(0) {
-        let text = "threads=0: at least one thread must run";
-        return Err(PyValueError::new_err(text));
-    }
-    if let Some(text) = threads.and_then(refused_threads) {
-        return Err(PyValueError::new_err(text));
-    }
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
-        .build();
-    let pool = pool.map_err(|e| PyValueError::new_err(format!("no threads: {e}")))?;
-    pool.install(|| work(rayon::current_num_threads()))
 }
 
 #[pymethods]
@@ -133,9 +114,9 @@ impl Deck {
     fn check<'py>(&self, py: Python<'py>, threads: Option<usize>) -> PyResult<Bound<'py, PyAny>> {
         let threads = threads.or(self.read.threads);
         let found = py.detach(|| {
-            with_threads(threads, |threads| {
-                runs::checked(&self.read, threads).map_err(failed)
-            })
+            let pool = pool(threads)?;
+            let threads = pool.current_num_threads();
+            pool.install(|| runs::checked(&self.read, threads).map_err(failed))
         });
         of_json(py, &found?)
     }
@@ -231,7 +212,7 @@ impl Deck {
             deck.stays_inside(files.own).map_err(|e| mistake(&e))?;
         }
         py.detach(|| {
-            with_threads(threads.or(deck.threads), |_| {
+            pool(threads.or(deck.threads))?.install(|| {
                 let run = runs::Run {
                     deck,
                     set: &self.set,

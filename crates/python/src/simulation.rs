@@ -89,18 +89,23 @@ pub struct Simulation {
     pool: Option<ThreadPool>,
 }
 
+/// So many threads, or as many as there are cores.
+pub fn pool(threads: Option<usize>) -> PyResult<ThreadPool> {
+    let refused = match threads {
+        Some(0) => Some("threads=0: at least one thread must run".to_string()),
+        threads => threads.and_then(refused_threads),
+    };
+    if let Some(text) = refused {
+        return Err(PyValueError::new_err(text));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+    pool.build()
+        .map_err(|e| PyRuntimeError::new_err(format!("no threads: {e}")))
+}
+
 impl Simulation {
     pub fn new(deck: &Read, threads: Option<usize>) -> PyResult<Simulation> {
-        let refused = match threads {
-            Some(0) => Some("threads=0: at least one thread must run".to_string()),
-            threads => threads.and_then(refused_threads),
-        };
-        if let Some(text) = refused {
-            return Err(PyValueError::new_err(text));
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
-        let pool = pool.build();
-        let pool = pool.map_err(|e| PyRuntimeError::new_err(format!("no threads: {e}")))?;
+        let pool = pool(threads)?;
         let made = pool.install(|| build(&deck.spec, Options::default()));
         let model = made.map_err(|e| mistake(&deck.explain(&e)))?;
         Ok(Simulation {

@@ -108,7 +108,8 @@ pub fn settings(
                     "--vary {key}: a Latin hypercube is drawn between two ends, {key}=low:high"
                 )));
             }
-            _ => {}
+            (Design::Grid | Design::List, Values::These(_)) => {}
+            (Design::Latin, Values::Between(..)) => {}
         }
     }
     let these = |values: &Values| match values {
