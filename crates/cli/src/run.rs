@@ -498,6 +498,7 @@ fn plan(
         every: output.every(steps),
         modes: deck.modes,
         linear_body: output.linear_body,
+        fragments: output.fragments,
         history: output.history.unwrap_or((steps / 100).max(1)),
         series: SeriesOptions {
             points: output.vtu,

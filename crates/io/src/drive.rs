@@ -80,6 +80,7 @@ impl Run {
             writers: writers::all(&columns),
             checkpoints: Checkpoints::new(&plan.dir, plan.checkpoints, goes_on)?,
             known: Known {
+                ways: row::Way::all(sim, plan),
                 warnings: plan.warnings.iter().cloned().chain(told).collect(),
                 ..Known::default()
             },

@@ -2,6 +2,7 @@
 
 mod columns;
 mod contour;
+mod crack;
 mod fields;
 mod probes;
 mod sample;

@@ -92,6 +92,8 @@ pub struct OutputSpec {
     pub bonds: bool,
     /// The linear body about the last state.
     pub linear_body: bool,
+    /// Write `fragments.csv` of the last state.
+    pub fragments: bool,
     /// LAMMPS dump of points of this name; that of atoms is a trajectory.
     pub dump: Option<PathBuf>,
     /// Steps between rows of `history.csv`; `None`: chosen by the caller.

@@ -52,6 +52,8 @@ pub struct Plan {
     pub modes: usize,
     /// Write `linear_body.npz` about the last state.
     pub linear_body: bool,
+    /// Write `fragments.csv` of the last state.
+    pub fragments: bool,
     pub series: SeriesOptions,
     /// Fields of a body on a line over place and time.
     pub space_time: Vec<SpaceTimeOptions>,

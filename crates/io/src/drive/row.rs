@@ -1,8 +1,10 @@
 //! A row of the history: what is measured of the whole body at one time.
 
-use peridyne::observe::Ledger;
+use peridyne::observe::{Ledger, ProbeColumn, SpeedColumn};
+use peridyne::quantity::Dimension;
 use peridyne::run::Simulation;
 use peridyne::spec::Stepper;
+use peridyne::state::{Archive, Owner};
 
 use super::plan::Plan;
 use crate::deck::UnitSystem;
@@ -37,21 +39,87 @@ pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
         columns.push(Column::new("temperature", &atoms.temperature_unit));
         columns.push(Column::new("pressure", &atoms.pressure_unit));
     }
-    let mut probes = sim.probe_columns();
-    probes.truncate(probes.len().saturating_sub(plan.rigid.columns()));
-    columns.extend(probes.into_iter().map(|c| {
-        let unit = match (c.rooted, c.moment, plan.units) {
-            (true, _, units) => units.root_unit(c.dimension),
-            (false, true, UnitSystem::Si) => "N m".into(),
-            (false, _, units) => units.unit(c.dimension),
-        };
-        Column::new(c.name, &unit)
+    columns.extend(probes(sim, plan).into_iter().flat_map(|c| {
+        {
+            let unit = match (c.rooted, c.moment, plan.units) {
+                (true, _, units) => units.root_unit(c.dimension),
+                (false, true, UnitSystem::Si) => "N m".into(),
+                (false, _, units) => units.unit(c.dimension),
+            };
+            let speed = { c.speed.filter(|_| moves(sim)) }
+                .map(|s| Column::new(s.name, plan.units.unit(Dimension::VELOCITY)));
+            [Some(Column::new(c.name, &unit)), speed]
+        }
+        .into_iter()
+        .flatten()
     }));
     columns
 }
 
+/// Columns of the probes of a deck; behind these are those of rigid bodies that are drawn.
+fn probes(sim: &dyn Simulation, plan: &Plan) -> Vec<ProbeColumn> {
+    let mut probes = sim.probe_columns();
+    probes.truncate(probes.len().saturating_sub(plan.rigid.columns()));
+    probes
+}
+
+/// Is there a time that things take?
+fn moves(sim: &dyn Simulation) -> bool {
+    sim.info().stepper.statics().is_none()
+}
+
+/// How far something has come in the rows so far, and how fast it is.
+#[derive(Debug)]
+pub(super) struct Way {
+    /// Part of the way over which speed is a mean (length).
+    over: f64,
+    times: Vec<f64>,
+    lengths: Vec<f64>,
+}
+
+impl Way {
+    /// Of all that has a speed, in the order of its columns.
+    pub fn all(sim: &dyn Simulation, plan: &Plan) -> Vec<Way> {
+        let speeds = probes(sim, plan).into_iter().filter_map(|c| c.speed);
+        let speeds = speeds.filter(|_| moves(sim));
+        let way = |s: SpeedColumn| Way {
+            over: s.over,
+            times: vec![],
+            lengths: vec![],
+        };
+        speeds.map(way).collect()
+    }
+
+    /// Speed at a time at which it has come so far: since the last row at which it was farther behind than the part, or since it began to move.
+    fn speed(&mut self, time: f64, length: f64) -> f64 {
+        let behind = |l: &f64| *l <= length - self.over;
+        let stood = |l: &f64| *l == self.lengths[0];
+        let from = { self.lengths.iter().rposition(behind) }
+            .or_else(|| self.lengths.iter().rposition(stood));
+        let speed = from.map_or(0.0, |n| {
+            let (way, took) = (length - self.lengths[n], time - self.times[n]);
+            if way == 0.0 { 0.0 } else { way / took }
+        });
+        self.times.push(time);
+        self.lengths.push(length);
+        speed
+    }
+}
+
+impl Owner for Way {
+    fn archive(&mut self, archive: &mut Archive<'_>) {
+        archive.list("times", &mut self.times);
+        archive.list("lengths", &mut self.lengths);
+    }
+}
+
 /// Their values now.
-pub(super) fn row(sim: &mut dyn Simulation, plan: &Plan, ledger: &Ledger) -> Vec<f64> {
+pub(super) fn row(
+    sim: &mut dyn Simulation,
+    plan: &Plan,
+    ledger: &Ledger,
+    ways: &mut [Way],
+) -> Vec<f64> {
     let mut row = vec![sim.clock()];
     row.extend(ledger_values(ledger));
     if is_implicit(sim) {
@@ -68,8 +136,53 @@ pub(super) fn row(sim: &mut dyn Simulation, plan: &Plan, ledger: &Ledger) -> Vec
     if let Some(atoms) = &plan.atoms {
         row.extend(atoms.thermo(sim, ledger.kinetic));
     }
-    let mut measured = sim.measure();
-    measured.truncate(measured.len().saturating_sub(plan.rigid.columns()));
-    row.extend(measured);
+    let (measured, time) = (sim.measure(), sim.clock());
+    let mut ways = ways.iter_mut();
+    for (column, value) in probes(sim, plan).into_iter().zip(measured) {
+        row.push(value);
+        if column.speed.is_some() {
+            row.extend(ways.next().map(|way| way.speed(time, value)));
+        }
+    }
     row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn way(over: f64) -> Way {
+        Way {
+            over,
+            times: vec![],
+            lengths: vec![],
+        }
+    }
+
+    #[test]
+    fn speed_is_that_of_the_last_part_of_the_way() {
+        // it stands until t = 5, comes along by 0.5 in every fourth row from then on, and stands from t = 105 on
+        let mut tip = way(3.0);
+        let length = |row: u32| 0.5 * f64::from(row.clamp(5, 105).saturating_sub(5) / 4);
+        let speeds: Vec<f64> = { 0..=205 }
+            .map(|row| tip.speed(f64::from(row), length(row)))
+            .collect();
+        assert!(speeds[..=8].iter().all(|v| *v == 0.0));
+        // 0.5 in one row at first, as it stood in the one before
+        assert_eq!(speeds[9], 0.5);
+        // 3 in 6 × 4 rows, less the row in which it arrived there
+        for row in 40..=105 {
+            assert!(
+                speeds[row] > 0.105 && speeds[row] < 0.15,
+                "{row}: {}",
+                speeds[row]
+            );
+        }
+        assert_eq!(speeds[205], 3.0 / (205.0 - 84.0));
+    }
+
+    #[test]
+    fn the_first_row_has_no_speed() {
+        assert_eq!(way(1.0).speed(0.0, 7.0), 0.0);
+    }
 }

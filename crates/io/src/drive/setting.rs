@@ -24,6 +24,7 @@ impl Plan {
         file(modes, "modes.csv");
         file(modes, "modes/points.pvd");
         file(self.linear_body, "linear_body.npz");
+        file(self.fragments, "fragments.csv");
         let dump = series.dump.iter().map(|(name, _)| name);
         let dump = dump.chain(self.exodus.iter().map(|e| &e.path));
         let atoms = self.atoms.iter();

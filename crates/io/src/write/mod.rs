@@ -13,6 +13,7 @@ pub mod extxyz;
 pub mod fields;
 pub mod folder;
 mod font;
+pub mod fragments;
 mod grown;
 pub mod history;
 pub mod linear;

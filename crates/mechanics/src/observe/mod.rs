@@ -15,7 +15,7 @@ mod values;
 pub use ledger::Ledger;
 pub use observables::Observable;
 pub use observables::temperature_of;
-pub use probe::ProbeColumn;
+pub use probe::{ProbeColumn, SpeedColumn};
 pub use snapshot::Snapshot;
 pub use state::{FamilyBond, Observed, PointForce, State};
 pub use state_hash::StateHash;

@@ -3,7 +3,7 @@
 use crate::columns::Dimension;
 
 /// What a probe writes.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ProbeColumn {
     pub name: String,
     pub dimension: Dimension,
@@ -11,6 +11,16 @@ pub struct ProbeColumn {
     pub rooted: bool,
     /// A force times a length that is no energy.
     pub moment: bool,
+    /// It is how far something has come, whose speed a history has beside it.
+    pub speed: Option<SpeedColumn>,
+}
+
+/// The speed of something that comes along by jumps from point to point: a mean over the last part of its way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpeedColumn {
+    pub name: String,
+    /// That part (length).
+    pub over: f64,
 }
 
 impl ProbeColumn {
@@ -20,12 +30,19 @@ impl ProbeColumn {
             dimension,
             rooted: false,
             moment: false,
+            speed: None,
         }
     }
 
     #[must_use]
     pub fn rooted(mut self) -> ProbeColumn {
         self.rooted = true;
+        self
+    }
+
+    #[must_use]
+    pub fn with_speed(mut self, name: String, over: f64) -> ProbeColumn {
+        self.speed = Some(SpeedColumn { name, over });
         self
     }
 

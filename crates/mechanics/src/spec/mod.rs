@@ -58,7 +58,7 @@ pub use mass_matrix::MassMatrix;
 pub use parameters::{Parameter, Parameters};
 pub use potential::{End, PotentialSpec};
 pub use preload::PreloadSpec;
-pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
+pub use probe::{ContourSpec, CrackTipSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
 pub use rows::add_alike;
 pub use run::RunSpec;
 pub use schedule::{

@@ -32,6 +32,23 @@ pub enum Measure {
     },
     /// J-integral around a crack tip in two dimensions, and the stress intensity `K = √(J E′)`.
     Contour(ContourSpec),
+    /// Where a crack ends, how long it is, and into how many branches it has split.
+    CrackTip(CrackTipSpec),
+    /// How far the points of the set that are nearest to two places in the reference have moved apart.
+    Opening { between: [Point; 2] },
+    /// Pieces that hang together by whole bonds, of so many points at least.
+    Fragments { points: u32 },
+}
+
+/// A crack that is followed: the damaged points of a set that hang together with where it starts, by steps of at most a horizon in the reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrackTipSpec {
+    /// From where its length counts.
+    pub from: Point,
+    /// Along which it counts; a unit vector.
+    pub direction: Point,
+    /// Points with at least this damage are part of it.
+    pub damage: f64,
 }
 
 /// A rectangle around the tip of a straight crack.

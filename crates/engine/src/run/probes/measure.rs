@@ -1,10 +1,12 @@
 //! Probes: what is measured of a set of points, as columns of a history.
 
+use super::crack;
 use super::state::{Kind, Probe};
 use crate::body::Body;
 use crate::columns::{Dimension, Shape};
 use crate::error::BuildError;
 use crate::execute::exact::Exact;
+use crate::fracture::fragments::Fragments;
 use crate::observe::{Column, ProbeColumn};
 use crate::run::model::Model;
 use crate::run::system::System;
@@ -111,6 +113,39 @@ impl<const D: usize> Model<D> {
                 ];
                 (Kind::Contour(Box::new(contour)), columns)
             }
+            Measure::CrackTip(crack) => {
+                self.look().check_column("damage", &at("measure"))?;
+                let horizon = self.system.info.horizon;
+                let axes = &Shape::Vector.components()[..D];
+                let mut columns: Vec<_> = { axes.iter() }
+                    .map(|a| column(a, Dimension::LENGTH))
+                    .collect();
+                let length = column("length", Dimension::LENGTH);
+                columns.push(length.with_speed(name("speed"), horizon));
+                columns.push(column("branches", Dimension::NUMBER));
+                (Kind::CrackTip(*crack), columns)
+            }
+            Measure::Opening { between } => {
+                let ends = between.map(|place| self.nearest_of(&ids, &place));
+                let apart = self.system.body.exchange().any(ends[0] != ends[1]);
+                if !apart {
+                    let message = "both places have the same nearest point";
+                    return Err(BuildError::invalid(at("between"), message)
+                        .help("write two places that are farther apart"));
+                }
+                let axes = &Shape::Vector.components()[..D];
+                let mut columns = vec![column("", Dimension::LENGTH)];
+                columns.extend(axes.iter().map(|a| column(a, Dimension::LENGTH)));
+                (Kind::Opening(ends), columns)
+            }
+            Measure::Fragments { points } => {
+                let columns = vec![
+                    column("count", Dimension::NUMBER),
+                    column("largest", Dimension::MASS),
+                    column("others", Dimension::MASS),
+                ];
+                (Kind::Fragments(*points), columns)
+            }
         };
         Ok(Probe { ids, kind, columns })
     }
@@ -194,7 +229,13 @@ impl<const D: usize> Model<D> {
             let of: &[&str] = match &probe.kind {
                 Kind::Over(_, of, _) => &[of.as_str()],
                 Kind::Energy => &ENERGIES,
-                Kind::Contour(_) | Kind::Reaction | Kind::Moment(_) | Kind::Rigid(..) => &[],
+                Kind::CrackTip(_) => &["damage"],
+                Kind::Contour(_)
+                | Kind::Reaction
+                | Kind::Moment(_)
+                | Kind::Opening(_)
+                | Kind::Fragments(_)
+                | Kind::Rigid(..) => &[],
             };
             wanted.extend(
                 of.iter()
@@ -233,6 +274,16 @@ impl<const D: usize> Model<D> {
                     }));
                 }
                 Kind::Contour(contour) => values.extend(self.integral(contour)),
+                Kind::CrackTip(spec) => {
+                    let damage = &named(&columns, "damage").values;
+                    let points = { probe.ids.iter() }.map(|id| (*id, damage.at(*id as usize, 0)));
+                    let system = &self.system;
+                    let tip = crack::tip(&system.body, spec, system.info.horizon, points);
+                    values.extend(&tip.place[..D]);
+                    values.extend([tip.length, tip.branches]);
+                }
+                Kind::Opening(ends) => values.extend(self.system.opening_of(ends)),
+                Kind::Fragments(points) => values.extend(self.system.pieces_of(*points)),
                 Kind::Rigid(n, of) => values.extend(self.system.rigid_values(*n, of)),
             }
         }
@@ -287,6 +338,40 @@ impl<const D: usize> System<D> {
         let along = |a: usize| forces.iter().map(|(_, force)| force[a]).collect();
         let sums: [Exact; D] = crate::array::from_fn(along);
         self.body.sums(sums).to_vec()
+    }
+
+    /// How much farther the second of two points is from the first one than in the reference (length), and how far it has moved from it
+    /// along each axis.
+    fn opening_of(&self, ends: &[Vec<u32>; 2]) -> Vec<f64> {
+        // one rank knows each
+        let [from, to] = ends.each_ref().map(|end| {
+            let slots = { end.iter() }.map(|id| self.body.slots()[*id as usize] as usize);
+            let x = |a: usize| slots.clone().map(|s| self.body.position(s)[a]).collect();
+            let u = |a: usize| slots.clone().map(|s| self.u[a][s]).collect();
+            let sums: [[Exact; D]; 2] = [crate::array::from_fn(x), crate::array::from_fn(u)];
+            sums.map(|sums| self.body.sums(sums))
+        });
+        let apart = |n: usize| -> [f64; D] { crate::array::from_fn(|a| to[n][a] - from[n][a]) };
+        let (xi, eta) = (apart(0), apart(1));
+        // |ξ + η| − |ξ| without cancellation
+        let size = |v: &dyn Fn(usize) -> f64| (0..D).map(|a| v(a).powi(2)).sum::<f64>().sqrt();
+        let (before, now) = (size(&|a| xi[a]), size(&|a| xi[a] + eta[a]));
+        let along: f64 = (0..D).map(|a| eta[a] * (2.0 * xi[a] + eta[a])).sum();
+        let longer = along / (before + now);
+        [longer].into_iter().chain(eta).collect()
+    }
+
+    /// How many pieces of so many points there are, the mass of the one with the most points, and that of all others (mass).
+    fn pieces_of(&self, points: u32) -> [f64; 3] {
+        let pieces = Fragments::of(&self.body, self.interaction.as_ref());
+        let count = pieces.size.iter().filter(|size| **size >= points).count();
+        let of = |largest: bool| {
+            let each = pieces.label.iter().zip(self.body.slots());
+            let own = each.filter(|(label, _)| (**label == 0) == largest);
+            let mass = |s: usize| self.body.volume().at(s) * self.body.density().at(s);
+            self.body.sum(own.map(|(_, slot)| mass(*slot as usize)))
+        };
+        [count as f64, of(true), of(false)]
     }
 
     fn moment_of(&self, ids: &[u32], about: &Point) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use super::rectangle::Contour;
 use crate::observe::ProbeColumn;
 use crate::space::Point;
-use crate::spec::{Fold, RigidQuantity};
+use crate::spec::{CrackTipSpec, Fold, RigidQuantity};
 
 /// A probe that knows its points.
 pub(in crate::run) struct Probe {
@@ -27,6 +27,11 @@ pub(super) enum Kind {
     /// Components by number; `None`: the magnitude.
     Over(Fold, String, Vec<Option<usize>>),
     Contour(Box<Contour>),
+    CrackTip(CrackTipSpec),
+    /// Between two points, each on the rank that has it.
+    Opening([Vec<u32>; 2]),
+    /// Of so many points at least.
+    Fragments(u32),
     /// Of the rigid body of this number.
     Rigid(usize, Vec<RigidQuantity>),
 }

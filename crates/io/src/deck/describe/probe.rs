@@ -59,5 +59,23 @@ fn measured(measure: &Measure, set: &str, units: UnitSystem, dimension: usize) -
             place(&c.low),
             place(&c.high)
         ),
+        Measure::CrackTip(c) => format!(
+            "tip of the crack from {} along ({}), points of {set} with a damage of {} and more",
+            place(&c.from),
+            { c.direction.iter().take(dimension) }
+                .map(|x| ((x * 1e4).round() * 1e-4).to_string())
+                .collect::<Vec<_>>()
+                .join(", "),
+            c.damage
+        ),
+        Measure::Opening { between: [a, b] } => format!(
+            "opening between the points of {set} nearest to {} and {}",
+            place(a),
+            place(b)
+        ),
+        Measure::Fragments { points: 0 | 1 } => "fragments: number and masses".into(),
+        Measure::Fragments { points } => {
+            format!("fragments: number of those of {points} points and more, and masses")
+        }
     }
 }

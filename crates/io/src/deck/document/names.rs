@@ -157,6 +157,12 @@ names! {
         Indenter,
         /// J-integral and stress intensity K of a crack tip (2-D statics), by a rectangle around it.
         Contour,
+        /// Where a crack ends, its length, its speed (in motion), and its branches.
+        CrackTip,
+        /// How much farther two points are apart than in the reference, and how far they have moved apart along each axis.
+        Opening,
+        /// Number of fragments, the mass of the one with the most points, and that of all others.
+        Fragments,
     }
     CrackName {
         /// Bonds that never were.
@@ -180,6 +186,9 @@ impl MeasureName {
             MeasureName::Value => "value",
             MeasureName::Indenter => "indenter",
             MeasureName::Contour => "contour",
+            MeasureName::CrackTip => "crack_tip",
+            MeasureName::Opening => "opening",
+            MeasureName::Fragments => "fragments",
         }
     }
 }

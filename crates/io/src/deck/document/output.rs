@@ -30,6 +30,9 @@ pub struct Output {
     /// The linear body about the last state as linear_body.npz (NumPy): points and micromoduli.
     #[serde(default)]
     pub linear_body: bool,
+    /// The pieces of the last state as fragments.csv: number of points, mass, place and velocity of the centre of mass of each.
+    #[serde(default)]
+    pub fragments: bool,
     /// LAMMPS dump of this name, in the folder of the results: frames of points with their fields, of atoms with velocities,
     /// forces and energies.
     pub dump: Option<At<String>>,

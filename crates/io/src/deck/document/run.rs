@@ -211,7 +211,18 @@ pub struct Probe {
     /// Two opposite corners of a rectangle around the tip of a crack, three horizons to every side at least; of contour.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub corners: Option<At<Vec<Vector>>>,
-    /// Where the crack grows to; of contour, [1, 0] when left out.
+    /// Where the crack grows to; of contour and crack_tip, [1, 0] when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub direction: Option<Vector>,
+    /// Where the crack starts, in the reference: damage counts that is connected with it by steps of at most a horizon; of crack_tip.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub from: Option<Vector>,
+    /// Points with at least this damage are part of the crack, above 0, at most 1; of crack_tip, 0.3 when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub damage: Option<Number>,
+    /// Two places in the reference: the points nearest to them are measured; of opening.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub between: Option<At<Vec<Vector>>>,
+    /// Fragments of fewer points do not count, 1 when left out; of fragments.
+    pub points: Option<At<u32>>,
 }

@@ -5,7 +5,12 @@ use crate::deck::document::{MeasureName, Probe};
 use crate::deck::error::nearest;
 use crate::deck::units::Dim;
 use crate::deck::value::At;
-use peridyne::spec::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity, SetSpec};
+use peridyne::spec::{
+    ContourSpec, CrackTipSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity, SetSpec,
+};
+
+/// Damage of a point that is part of a crack, when left out.
+const CRACKED: f64 = 0.3;
 
 /// Keys that not all measures have, and which of them a measure needs and may have.
 fn keys(measure: MeasureName) -> (&'static [&'static str], &'static [&'static str]) {
@@ -18,6 +23,9 @@ fn keys(measure: MeasureName) -> (&'static [&'static str], &'static [&'static st
         MeasureName::Value => (&["of", "at"], &["component"]),
         MeasureName::Indenter => (&["indenter"], &["of"]),
         MeasureName::Contour => (&["corners"], &["direction"]),
+        MeasureName::CrackTip => (&["from"], &["direction", "damage"]),
+        MeasureName::Opening => (&["between"], &[]),
+        MeasureName::Fragments => (&[], &["points"]),
     }
 }
 
@@ -41,6 +49,10 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
         ("at", written.at.as_ref().map(|k| &k.span)),
         ("corners", written.corners.as_ref().map(|k| &k.span)),
         ("direction", written.direction.as_ref().map(|k| &k.span)),
+        ("from", written.from.as_ref().map(|k| &k.span)),
+        ("damage", written.damage.as_ref().map(|k| &k.span)),
+        ("between", written.between.as_ref().map(|k| &k.span)),
+        ("points", written.points.as_ref().map(|k| &k.span)),
     ];
     for (key, span) in given {
         match span {
@@ -67,6 +79,10 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
             "a contour goes through all points of its rectangle",
             "remove `set`",
         ));
+    }
+    if let (MeasureName::Fragments, Some(set)) = (measure, &written.set) {
+        let message = "fragments are those of the whole body";
+        return Err(context.error_with(&set.span, message, "remove `set`"));
     }
     if let (MeasureName::Indenter, Some(set)) = (measure, &written.set) {
         let message = "an indenter is measured whole, whatever points it touches";
@@ -114,6 +130,13 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
             of: rigid(context, written)?,
         },
         MeasureName::Contour => Measure::Contour(contour(context, written)?),
+        MeasureName::CrackTip => Measure::CrackTip(crack_tip(context, written)?),
+        MeasureName::Opening => Measure::Opening {
+            between: between(context, written)?,
+        },
+        MeasureName::Fragments => Measure::Fragments {
+            points: written.points.as_ref().map_or(1, |p| p.value),
+        },
     };
     Ok(ProbeSpec {
         name: written.name.value.clone(),
@@ -146,6 +169,12 @@ fn example(key: &str) -> &'static str {
         "of" => "write for example of = \"displacement\"; `peridyne laws` lists the fields",
         "about" => "write for example about = [0, 0, 0]",
         "indenter" => "write the name of an [[indenter]]: indenter = \"punch\"",
+        "from" => {
+            "write where the crack starts, for example the tip of its pre-crack: from = [\"50 mm\", \"20 mm\"]"
+        }
+        "between" => {
+            "write two places: between = [[0, \"-2 mm\"], [0, \"2 mm\"]]; the points nearest to them are measured"
+        }
         "at" => "write for example at = [\"5 mm\", 0, 0]: the nearest point counts",
         _ => {
             "write two opposite corners of a rectangle around the tip: corners = [[\"10 mm\", \"-5 mm\"], [\"20 mm\", \"5 mm\"]]"
@@ -172,22 +201,70 @@ fn contour(context: &Context, written: &Probe) -> Result<ContourSpec> {
         context.finite_vector(a, Dim::LENGTH)?,
         context.finite_vector(b, Dim::LENGTH)?,
     ];
-    let direction = match &written.direction {
-        None => [1.0, 0.0, 0.0],
-        Some(vector) => context.finite_vector(vector, Dim::NUMBER)?,
+    let [x, y, _] = direction(context, written)?;
+    Ok(ContourSpec {
+        low: [a[0].min(b[0]), a[1].min(b[1])],
+        high: [a[0].max(b[0]), a[1].max(b[1])],
+        direction: [x, y],
+    })
+}
+
+/// Where a crack grows to, as a unit vector.
+fn direction(context: &Context, written: &Probe) -> Result<[f64; 3]> {
+    let Some(vector) = &written.direction else {
+        return Ok([1.0, 0.0, 0.0]);
     };
-    let length = direction[0].hypot(direction[1]);
-    if length == 0.0 {
-        let span = written.direction.as_ref().map_or(0..0, |d| d.span.clone());
+    let along = context.finite_vector(vector, Dim::NUMBER)?;
+    let largest = along.iter().fold(0.0, |l: f64, c| l.max(c.abs()));
+    if largest == 0.0 {
         return Err(context.error_with(
-            &span,
+            &vector.span,
             "this is no direction",
             "write where the crack grows to: direction = [1, 0]",
         ));
     }
-    Ok(ContourSpec {
-        low: [a[0].min(b[0]), a[1].min(b[1])],
-        high: [a[0].max(b[0]), a[1].max(b[1])],
-        direction: [direction[0] / length, direction[1] / length],
+    // neither too small nor too large for its square
+    let along = along.map(|c| c / largest);
+    let length = along.iter().map(|c| c * c).sum::<f64>().sqrt();
+    Ok(along.map(|c| c / length))
+}
+
+fn crack_tip(context: &Context, written: &Probe) -> Result<CrackTipSpec> {
+    let from = match &written.from {
+        Some(place) => context.finite_vector(place, Dim::LENGTH)?,
+        None => [0.0; 3],
+    };
+    let damage = match &written.damage {
+        None => CRACKED,
+        Some(number) => {
+            let damage = context.finite(number, Dim::NUMBER)?;
+            if !(damage > 0.0 && damage <= 1.0) {
+                let message = format!("damage is above 0 and at most 1, not {damage}");
+                let help = format!("leave it out for {CRACKED}");
+                return Err(context.error_with(&number.span, message, help));
+            }
+            damage
+        }
+    };
+    Ok(CrackTipSpec {
+        from,
+        direction: direction(context, written)?,
+        damage,
     })
+}
+
+fn between(context: &Context, written: &Probe) -> Result<[[f64; 3]; 2]> {
+    let places = written.between.as_ref().map_or(&[][..], |p| &p.value);
+    let [a, b] = places else {
+        let span = written.between.as_ref().map_or(0..0, |p| p.span.clone());
+        return Err(context.error_with(
+            &span,
+            "an opening is between two places",
+            example("between"),
+        ));
+    };
+    Ok([
+        context.finite_vector(a, Dim::LENGTH)?,
+        context.finite_vector(b, Dim::LENGTH)?,
+    ])
 }

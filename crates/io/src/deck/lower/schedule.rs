@@ -502,6 +502,7 @@ pub(super) fn output(
         exodus: written.exodus.as_ref().map(|n| n.value.clone().into()),
         bonds: written.bonds,
         linear_body: written.linear_body,
+        fragments: written.fragments,
         dump: written
             .dump
             .as_ref()

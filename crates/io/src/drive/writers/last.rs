@@ -1,4 +1,4 @@
-//! The last state as files of its own: atoms, the linear body.
+//! The last state as files of its own: atoms, fragments, the linear body.
 
 use peridyne::spec::AnyLinearBody;
 use peridyne::state::{Archive, Owner};
@@ -8,6 +8,7 @@ use super::writer::{Made, Now, Writer};
 use super::inside;
 use crate::drive::plan::DriveError;
 use crate::write::data::write_data;
+use crate::write::fragments;
 use crate::write::linear::write_linear;
 
 pub struct LastState;
@@ -34,6 +35,10 @@ impl Writer for LastState {
             && let Some(name) = &atoms.data
         {
             write_data(&now.plan.dir.join(name), &atoms.last(now.sim))?;
+        }
+        if now.plan.fragments {
+            let state = now.sim.snapshot(&fragments::COLUMNS, false);
+            fragments::write(&inside(now.plan, "fragments.csv"), &state, now.plan.units)?;
         }
         if now.plan.linear_body {
             let path = inside(now.plan, "linear_body.npz");

@@ -32,6 +32,8 @@ pub(in crate::drive) struct Known {
     pub ledger: Ledger,
     /// The last row of the history that was measured, and its step.
     pub row: Option<(u64, Vec<f64>)>,
+    /// What is how far, in the rows so far.
+    pub ways: Vec<row::Way>,
     pub warnings: Vec<String>,
     /// Directed bonds broken when it began.
     pub broken: u64,
@@ -49,6 +51,7 @@ impl Owner for Known {
             archive.one("step", step);
             archive.list("values", row);
         });
+        archive.parts("ways", &mut self.ways);
         archive.items("warnings", &mut self.warnings, String::new, |text, a| {
             a.text("text", text);
         });
@@ -124,7 +127,8 @@ impl<'a> Now<'a> {
         match self.sim.ledger() {
             Ok(ledger) => {
                 self.known.ledger = ledger;
-                let row = row::row(self.sim, self.plan, &ledger);
+                let ways = &mut self.known.ways;
+                let row = row::row(self.sim, self.plan, &ledger, ways);
                 self.known.row = Some((step, row.clone()));
                 Some(row)
             }

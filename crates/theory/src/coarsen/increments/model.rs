@@ -50,11 +50,16 @@ pub fn alone(spec: &Spec) -> Spec {
         | ConditionKind::Force(_) => false,
     });
     spec.run.probes.retain(|p| match p.measure {
-        Measure::Energy | Measure::Over { .. } | Measure::Value { .. } => true,
+        Measure::Energy
+        | Measure::Over { .. }
+        | Measure::Value { .. }
+        | Measure::Opening { .. } => true,
         Measure::Reaction
         | Measure::Moment { .. }
         | Measure::Indenter { .. }
-        | Measure::Contour(_) => false,
+        | Measure::Contour(_)
+        | Measure::CrackTip(_)
+        | Measure::Fragments { .. } => false,
     });
     spec.run.schedule.stepper = Stepper::Verlet;
     spec.run.schedule.time_step = TimeStep::Fixed(1.0);
