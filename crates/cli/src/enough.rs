@@ -4,6 +4,7 @@ use crate::deck::fields;
 use crate::failure::Failure;
 use peridyne::error::{BuildError, size};
 use peridyne::run::Simulation;
+use peridyne::spec::FamilyChoice;
 use peridyne_io::deck::Deck;
 use peridyne_io::write::linear::room;
 use peridyne_io::write::space::{Amount, free};
@@ -70,6 +71,11 @@ pub fn enough(deck: &Deck, sim: &mut dyn Simulation, dir: &Path) -> Result<(), F
     if deck.output.linear_body {
         room(sim.info())
             .map_err(|e| wrong(BuildError::invalid("output.linear_body", e.to_string())))?;
+    }
+    if deck.output.fragments && deck.spec.bonds.family != FamilyChoice::Reference {
+        let message = "fragments hang together by bonds of the reference, and these atoms are near each other now";
+        let error = BuildError::unsupported("output.fragments", message);
+        return Err(wrong(error.help("leave it out")));
     }
     let Some(free) = free(dir) else {
         return Ok(());

@@ -21,25 +21,22 @@ struct Fragment {
 }
 
 fn all(state: &Snapshot) -> Vec<Fragment> {
-    let [label, volume, density] =
-        ["fragment", "volume", "density"].map(|name| state.scalars(name).unwrap_or(&[]));
-    let (velocity, u) = (
-        state.vectors("velocity").unwrap_or(&[]),
-        state.displacement(),
-    );
+    let columns = COLUMNS.map(|name| state.column(name).expect("was asked for"));
+    let [label, volume, density, velocity] = columns.map(|c| &c.values);
+    let u = state.displacement();
     let mut fragments: Vec<Fragment> = vec![];
-    for (n, label) in label.iter().enumerate() {
-        let label = *label as usize;
+    for (n, x) in state.reference.iter().enumerate() {
+        let label = label.at(n, 0) as usize;
         if label >= fragments.len() {
             fragments.resize(label + 1, Fragment::default());
         }
         let fragment = &mut fragments[label];
-        let mass = volume[n] * density[n];
+        let mass = volume.at(n, 0) * density.at(n, 0);
         fragment.points += 1;
         fragment.mass += mass;
-        for a in 0..3 {
-            fragment.place[a] += mass * (state.reference[n][a] + u[n][a]);
-            fragment.velocity[a] += mass * velocity[n][a];
+        for a in 0..state.dimension {
+            fragment.place[a] += mass * (x[a] + u[n][a]);
+            fragment.velocity[a] += mass * velocity.at(n, a);
         }
     }
     fragments
@@ -49,6 +46,9 @@ fn all(state: &Snapshot) -> Vec<Fragment> {
 ///
 /// # Errors
 /// The operating system's.
+///
+/// # Panics
+/// A column is missing.
 pub fn write(path: &Path, state: &Snapshot, units: UnitSystem) -> Result<(), WriteError> {
     let fragments = all(state);
     let each = |of: &dyn Fn(&Fragment) -> f64| fragments.iter().map(of).collect::<Vec<f64>>();

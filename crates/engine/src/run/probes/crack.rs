@@ -10,6 +10,9 @@ use crate::body::Body;
 use crate::space::Point;
 use crate::spec::CrackTipSpec;
 
+/// So many horizons behind its tip the speed of a crack is taken: it comes along by one point at a time.
+pub(super) const SPEED_OVER: f64 = 3.0;
+
 /// Where a crack ends (length), how far that is along its direction (length), and how many branches it has at most side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tip {

@@ -121,7 +121,7 @@ impl<const D: usize> Model<D> {
                     .map(|a| column(a, Dimension::LENGTH))
                     .collect();
                 let length = column("length", Dimension::LENGTH);
-                columns.push(length.with_speed(name("speed"), horizon));
+                columns.push(length.with_speed(name("speed"), crack::SPEED_OVER * horizon));
                 columns.push(column("branches", Dimension::NUMBER));
                 (Kind::CrackTip(*crack), columns)
             }

@@ -195,17 +195,30 @@ fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
 
 /// Of what is measured.
 fn of_probes(spec: &Spec) -> Vec<Lack> {
-    let contour = |m: &Measure| matches!(m, Measure::Contour(_));
-    let Some(n) = (spec.run.probes.iter()).position(|p| contour(&p.measure)) else {
-        return vec![];
+    let first = |which: &dyn Fn(&Measure) -> bool| {
+        let probes = &mut spec.run.probes.iter();
+        let n = probes.position(|p| which(&p.measure))?;
+        Some(move |property, says, instead| {
+            Lack::new(property, says, instead).at(format!("probes[{n}]"))
+        })
     };
-    let lack =
-        |property, says, instead| Lack::new(property, says, instead).at(format!("probes[{n}]"));
-    let mut all = vec![lack(
+    let mut all = vec![];
+    let bonds = |m: &Measure| matches!(m, Measure::CrackTip(_) | Measure::Fragments { .. });
+    all.extend(first(&bonds).map(|lack| {
+        lack(
+            Property::OfNow,
+            "cracks and fragments are of bonds of the reference, and these atoms are near each other now",
+            "leave the probe out",
+        )
+    }));
+    let Some(lack) = first(&|m| matches!(m, Measure::Contour(_))) else {
+        return all;
+    };
+    all.push(lack(
         Property::Inertia,
         "a contour integral needs equilibrium: in motion the inertia inside it counts, too",
         "write [statics] instead of [run]",
-    )];
+    ));
     if spec.bonds.smooth.is_none() {
         all.push(lack(
             Property::Potentials,
