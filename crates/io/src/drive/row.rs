@@ -15,39 +15,41 @@ fn is_implicit(sim: &dyn Simulation) -> bool {
     matches!(sim.info().stepper, Stepper::Newmark(_))
 }
 
-/// Columns of a row, the first is time.
-pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
-    let mut columns = vec![Column::new("time", &plan.time_unit)];
-    columns.extend(ledger_columns(&plan.energy_unit));
-    if is_implicit(sim) {
-        columns.push(Column::new("numerical dissipation", &plan.energy_unit));
+impl Plan {
+    /// Columns of `history.csv` behind the step; the first is time.
+    pub fn columns(&self, sim: &dyn Simulation) -> Vec<Column> {
+        let mut columns = vec![Column::new("time", &self.time_unit)];
+        columns.extend(ledger_columns(&self.energy_unit));
+        if is_implicit(sim) {
+            columns.push(Column::new("numerical dissipation", &self.energy_unit));
+        }
+        columns.push(Column::new("broken_directed_bonds", ""));
+        if sim.solved().is_some() {
+            columns.push(Column::new("iterations", ""));
+            columns.push(Column::new("solver_residual", ""));
+        }
+        if sim.cycles().is_some() {
+            columns.push(Column::new("cycles", ""));
+        }
+        for (quantity, account) in sim.transfers() {
+            columns.extend(transfer_columns(quantity, &account, &self.energy_unit));
+        }
+        if let Some(atoms) = &self.atoms {
+            columns.push(Column::new("temperature", &atoms.temperature_unit));
+            columns.push(Column::new("pressure", &atoms.pressure_unit));
+        }
+        let mut probes = sim.probe_columns();
+        probes.truncate(probes.len().saturating_sub(self.rigid.columns()));
+        columns.extend(probes.into_iter().map(|c| {
+            let unit = match (c.rooted, c.moment, self.units) {
+                (true, _, units) => units.root_unit(c.dimension),
+                (false, true, UnitSystem::Si) => "N m".into(),
+                (false, _, units) => units.unit(c.dimension),
+            };
+            Column::new(c.name, &unit)
+        }));
+        columns
     }
-    columns.push(Column::new("broken_directed_bonds", ""));
-    if sim.solved().is_some() {
-        columns.push(Column::new("iterations", ""));
-        columns.push(Column::new("solver_residual", ""));
-    }
-    if sim.cycles().is_some() {
-        columns.push(Column::new("cycles", ""));
-    }
-    for (quantity, account) in sim.transfers() {
-        columns.extend(transfer_columns(quantity, &account, &plan.energy_unit));
-    }
-    if let Some(atoms) = &plan.atoms {
-        columns.push(Column::new("temperature", &atoms.temperature_unit));
-        columns.push(Column::new("pressure", &atoms.pressure_unit));
-    }
-    let mut probes = sim.probe_columns();
-    probes.truncate(probes.len().saturating_sub(plan.rigid.columns()));
-    columns.extend(probes.into_iter().map(|c| {
-        let unit = match (c.rooted, c.moment, plan.units) {
-            (true, _, units) => units.root_unit(c.dimension),
-            (false, true, UnitSystem::Si) => "N m".into(),
-            (false, _, units) => units.unit(c.dimension),
-        };
-        Column::new(c.name, &unit)
-    }));
-    columns
 }
 
 /// Their values now.
