@@ -2,8 +2,9 @@
 
 use serde_json::Value;
 use std::fmt::Write;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 /// A bar whose ends follow one strain, 1e-3 at the end: its pull is E times it, on a section of 1 m².
@@ -401,4 +402,35 @@ fn a_fit_that_was_ended_goes_on() {
     let other = calibrate(dir.path(), &fit_young(&["--set", "horizon.m_ratio=2"]));
     assert_eq!(other.status.code(), Some(2));
     assert!(told(&other).contains("another study"), "{}", told(&other));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_it_and_the_same_command_goes_on() {
+    let (curve, _) = line(8e9, &[10.0, -10.0, 5.0, 0.0]);
+    let dir = with(&BAR.replace("increments = 2", "increments = 400"), &curve);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .current_dir(dir.path())
+        .args(["calibrate", "bar.toml", "--out", "fit", "--threads", "1"])
+        .args(fit_young(&[]))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    // the first run is done
+    assert!(
+        lines
+            .by_ref()
+            .any(|l| l.unwrap().trim_start().starts_with("1 "))
+    );
+    let id = child.id().to_string();
+    let kill = Command::new("kill").args(["-INT", &id]).status();
+    assert!(kill.unwrap().success());
+    let rest: Vec<String> = lines.map_while(Result::ok).collect();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{rest:?}");
+    assert!(!dir.path().join("fit/calibrate.json").exists());
+    let done = calibrate(dir.path(), &fit_young(&[]));
+    assert_eq!(done.status.code(), Some(0), "{}", told(&done));
+    assert_eq!(found(&dir)["converged"], true);
 }

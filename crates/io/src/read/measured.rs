@@ -4,7 +4,7 @@ use super::error::ReadError;
 use super::lines::Lines;
 use super::number::{comma, number};
 use crate::deck::{Dim, unit};
-use crate::write::report::history::{Column, cells, header};
+use crate::write::report::history::{Column, cells, column};
 use std::path::Path;
 
 /// A column of what was measured.
@@ -31,11 +31,14 @@ pub fn columns(
     let mut lines = Lines::new(&text, &name);
     let titles =
         line_of(&mut lines).ok_or_else(|| ReadError::file(path, format!("it is empty; {HOW}")))?;
-    let spaced = titles.replace('[', " [").replace("  [", " [");
-    let named: Vec<Column> = { header(&spaced).into_iter() }
-        .map(|c| Column {
-            name: c.name.trim().into(),
-            ..c
+    let named: Vec<Column> = { cells(titles).into_iter() }
+        .map(|cell| {
+            let spaced = cell.trim().replace('[', " [");
+            let column = column(&spaced);
+            Column {
+                name: column.name.trim().into(),
+                ..column
+            }
         })
         .collect();
     let mut found = vec![];
@@ -72,7 +75,7 @@ pub fn columns(
         }
         for (place, factor, column) in &mut found {
             let cell = row[*place].trim();
-            let value = number(cell).map(|x| factor(x)).filter(|x| x.is_finite());
+            let value = number(cell).map(&*factor).filter(|x| x.is_finite());
             let value = value.ok_or_else(|| {
                 let what = match cell {
                     "" => "nothing",
