@@ -1,6 +1,7 @@
 //! The peridyne program, as a library: each verb is a function of its arguments. The program and the Python module call it.
 
 mod bar;
+mod calibrate;
 mod check;
 mod coarsen;
 mod converge;
@@ -28,6 +29,7 @@ mod script;
 mod shell;
 mod side_by_side;
 mod signals;
+mod study;
 mod sweep;
 mod upscale;
 mod waves;
@@ -67,6 +69,8 @@ enum Verb {
     Converge(converge::ConvergeArguments),
     /// Run a deck with many values of its keys: each with each, in lists, or a Latin hypercube; one table of what came out.
     Sweep(Box<sweep::SweepArguments>),
+    /// Fit keys of a deck to a measured curve, between bounds, with uncertainties.
+    Calibrate(Box<calibrate::CalibrateArguments>),
     /// A deck of Peridigm (YAML, XML) or PeriLab (YAML) as one of peridyne; what has no counterpart is named line by line.
     Convert(convert::ConvertArguments),
     /// Continuum fields from the particles of a trajectory: stress, heat flux and their balance laws.
@@ -154,6 +158,7 @@ pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Waves(arguments) => waves::waves(&arguments),
         Verb::Converge(arguments) => converge::converge(&arguments),
         Verb::Sweep(arguments) => sweep::sweep(&arguments),
+        Verb::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Verb::Convert(arguments) => convert::convert(&arguments),
         Verb::Fields(arguments) => fields::fields(&arguments),
         Verb::Bar(arguments) => bar::bar(&arguments),

@@ -5,10 +5,11 @@ pub use crate::check::checked;
 use crate::early;
 use crate::failure::Failure;
 use crate::run::{go_on, planned};
-use peridyne::run::{Options, build};
+use peridyne::run::{Options, Simulation, build};
 use peridyne_io::deck::Deck;
-use peridyne_io::drive::{DriveError, Progress, RigidBodies, drive};
+use peridyne_io::drive::{DriveError, Plan, Progress, RigidBodies, drive};
 use peridyne_io::write::checkpoint::Checkpoint;
+use peridyne_io::write::history::Column;
 use peridyne_io::write::run_json::RunReport;
 use std::path::PathBuf;
 
@@ -31,6 +32,29 @@ pub enum Stopped {
 }
 
 impl Run<'_> {
+    /// The model and what is to be done with it.
+    fn made(&self) -> Result<(Box<dyn Simulation>, Plan), Failure> {
+        let deck = self.deck;
+        let (rigid, spec) = RigidBodies::watched(&deck.spec);
+        let made = build(&spec, Options::default());
+        let mut sim = made.map_err(|e| Failure::Input(deck.explain(&e).into()))?;
+        let mut plan = planned(deck, sim.as_mut(), self.dir.clone(), self.allow_outside)?;
+        (plan.rigid, plan.threads) = (rigid, rayon::current_num_threads());
+        let records = [&self.command, deck.file(), deck.text()].map(String::from);
+        plan.command = self.command.clone();
+        plan.asked = early::asked_by(deck.file().as_ref(), self.set.to_vec(), records);
+        Ok((sim, plan))
+    }
+
+    /// Columns of its `history.csv`, but for the step.
+    ///
+    /// # Errors
+    /// The deck is wrong.
+    pub fn columns(&self) -> Result<Vec<Column>, Failure> {
+        let (sim, plan) = self.made()?;
+        Ok(plan.columns(sim.as_ref()))
+    }
+
     /// Runs it on the threads of now, from the beginning or from where it was ended.
     ///
     /// # Errors
@@ -40,16 +64,7 @@ impl Run<'_> {
         from: Option<Checkpoint>,
         progress: &mut dyn Progress,
     ) -> Result<RunReport, Stopped> {
-        let deck = self.deck;
-        let (rigid, spec) = RigidBodies::watched(&deck.spec);
-        let made = build(&spec, Options::default());
-        let mut sim = made.map_err(|e| Stopped::Deck(Failure::Input(deck.explain(&e).into())))?;
-        let plan = planned(deck, sim.as_mut(), self.dir, self.allow_outside);
-        let mut plan = plan.map_err(Stopped::Deck)?;
-        (plan.rigid, plan.threads) = (rigid, rayon::current_num_threads());
-        let records = [&self.command, deck.file(), deck.text()].map(String::from);
-        plan.command = self.command.clone();
-        plan.asked = early::asked_by(deck.file().as_ref(), self.set.to_vec(), records);
+        let (mut sim, mut plan) = self.made().map_err(Stopped::Deck)?;
         if let Some(from) = &from {
             go_on(&mut plan, &from.asked).map_err(Stopped::Deck)?;
         }

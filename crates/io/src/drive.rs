@@ -74,7 +74,7 @@ impl Run {
         let goes_on = from.is_some();
         // of the part before, too: all are drawn at the end
         sweep_pictures(&plan.dir)?;
-        let columns = row::columns(sim, plan);
+        let columns = plan.columns(sim);
         let told = sim.info().warnings.iter().map(|w| plan.units.tell(w));
         let mut run = Run {
             writers: writers::all(&columns),

@@ -12,6 +12,7 @@
 //! | which body of fewer points has the same mechanics? | [`coarsen`] |
 //! | waves, stability, constants and gradients of one lattice, for a report | [`lattice_dynamics`] |
 //! | which factors of bonds make a body as stiff at its ends as inside? | [`homogenize`] |
+//! | with which parameters does a model come nearest to data? | [`fit`] |
 //! | with which order do errors fall? | [`convergence`] of the levels of [`refine`] |
 
 pub mod coarsen;
@@ -20,6 +21,7 @@ pub mod crystal;
 pub mod dispersion;
 pub mod elastic_constants;
 pub mod exact;
+pub mod fit;
 pub mod fracture;
 pub mod gradient;
 pub mod homogenize;

@@ -1,6 +1,7 @@
 //! Which values the runs of a study have.
 
 use crate::failure::Failure;
+use crate::study::Setting;
 
 /// How values of several keys meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -21,9 +22,6 @@ pub enum Values {
     /// Ends of an interval, and the unit of both.
     Between([f64; 2], String),
 }
-
-/// Keys with their values in one run.
-pub type Setting = Vec<(String, String)>;
 
 /// `KEY=A,B,C` or `KEY=LOW:HIGH`.
 pub fn vary(text: &str) -> Result<(String, Values), String> {
@@ -46,6 +44,14 @@ pub fn vary(text: &str) -> Result<(String, Values), String> {
     match all.iter().any(String::is_empty) {
         true => Err(format!("`{text}`: a value is missing")),
         false => Ok((key, Values::These(all))),
+    }
+}
+
+/// A number with its unit as `--set` takes it.
+pub fn value(number: &str, unit: &str) -> String {
+    match unit {
+        "" => number.into(),
+        unit => format!("\"{number} {unit}\""),
     }
 }
 
@@ -159,11 +165,7 @@ pub fn settings(
                 for (setting, part) in all.iter_mut().zip(parts) {
                     let at = (part as f64 + random.part()) / samples as f64;
                     let x = low + (high - low) * at;
-                    let value = match unit.as_str() {
-                        "" => format!("{x}"),
-                        unit => format!("\"{x} {unit}\""),
-                    };
-                    setting.push((key.clone(), value));
+                    setting.push((key.clone(), value(&x.to_string(), unit)));
                 }
             }
             Ok(all)

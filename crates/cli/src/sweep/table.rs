@@ -1,7 +1,7 @@
 //! `sweep.csv`: a row per run; and a plot of each probe over each key of numbers.
 
-use super::Row;
 use super::design::{Values, quantity};
+use crate::study::Row;
 use peridyne_io::write::WriteError;
 use peridyne_io::write::plot::Plot;
 use peridyne_io::write::report::history::{self, Column};

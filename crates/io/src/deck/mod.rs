@@ -29,7 +29,9 @@ pub use doubts::{Doubt, doubts};
 pub use error::DeckError;
 pub use schema::{law_schema, schema};
 pub use source::Flag;
-pub use units::{Constants, Dim, UnitSystem, clock_time, counted, example, named, rounded, usual};
+pub use units::{
+    Constants, Dim, UnitSystem, clock_time, counted, example, named, rounded, unit, usual,
+};
 
 use crate::continuum::plan::FieldsSpec;
 use crate::read::Cells;

@@ -17,43 +17,42 @@ fn is_implicit(sim: &dyn Simulation) -> bool {
     matches!(sim.info().stepper, Stepper::Newmark(_))
 }
 
-/// Columns of a row, the first is time.
-pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
-    let mut columns = vec![Column::new("time", &plan.time_unit)];
-    columns.extend(ledger_columns(&plan.energy_unit));
-    if is_implicit(sim) {
-        columns.push(Column::new("numerical dissipation", &plan.energy_unit));
-    }
-    columns.push(Column::new("broken_directed_bonds", ""));
-    if sim.solved().is_some() {
-        columns.push(Column::new("iterations", ""));
-        columns.push(Column::new("solver_residual", ""));
-    }
-    if sim.cycles().is_some() {
-        columns.push(Column::new("cycles", ""));
-    }
-    for (quantity, account) in sim.transfers() {
-        columns.extend(transfer_columns(quantity, &account, &plan.energy_unit));
-    }
-    if let Some(atoms) = &plan.atoms {
-        columns.push(Column::new("temperature", &atoms.temperature_unit));
-        columns.push(Column::new("pressure", &atoms.pressure_unit));
-    }
-    columns.extend(probes(sim, plan).into_iter().flat_map(|c| {
-        {
-            let unit = match (c.rooted, c.moment, plan.units) {
-                (true, _, units) => units.root_unit(c.dimension),
-                (false, true, UnitSystem::Si) => "N m".into(),
-                (false, _, units) => units.unit(c.dimension),
-            };
-            let speed = { c.speed.filter(|_| moves(sim)) }
-                .map(|s| Column::new(s.name, plan.units.unit(Dimension::VELOCITY)));
-            [Some(Column::new(c.name, &unit)), speed]
+impl Plan {
+    /// Columns of `history.csv` behind the step; the first is time.
+    pub fn columns(&self, sim: &dyn Simulation) -> Vec<Column> {
+        let mut columns = vec![Column::new("time", &self.time_unit)];
+        columns.extend(ledger_columns(&self.energy_unit));
+        if is_implicit(sim) {
+            columns.push(Column::new("numerical dissipation", &self.energy_unit));
         }
-        .into_iter()
-        .flatten()
-    }));
-    columns
+        columns.push(Column::new("broken_directed_bonds", ""));
+        if sim.solved().is_some() {
+            columns.push(Column::new("iterations", ""));
+            columns.push(Column::new("solver_residual", ""));
+        }
+        if sim.cycles().is_some() {
+            columns.push(Column::new("cycles", ""));
+        }
+        for (quantity, account) in sim.transfers() {
+            columns.extend(transfer_columns(quantity, &account, &self.energy_unit));
+        }
+        if let Some(atoms) = &self.atoms {
+            columns.push(Column::new("temperature", &atoms.temperature_unit));
+            columns.push(Column::new("pressure", &atoms.pressure_unit));
+        }
+        for probe in probes(sim, self) {
+            let unit = match (probe.rooted, probe.moment, self.units) {
+                (true, _, units) => units.root_unit(probe.dimension),
+                (false, true, UnitSystem::Si) => "N m".into(),
+                (false, _, units) => units.unit(probe.dimension),
+            };
+            columns.push(Column::new(probe.name, &unit));
+            let speed = probe.speed.filter(|_| moves(sim));
+            let unit = self.units.unit(Dimension::VELOCITY);
+            columns.extend(speed.map(|s| Column::new(s.name, unit)));
+        }
+        columns
+    }
 }
 
 /// Columns of the probes of a deck; behind these are those of rigid bodies that are drawn.

@@ -1,6 +1,6 @@
 //! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, Exodus II `.g`, LAMMPS `.data`), atoms
-//! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), surfaces of triangles ([`stl`]), and tables and constants of
-//! potentials ([`eam`], [`entries`]).
+//! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), surfaces of triangles ([`stl`]), tables and constants of
+//! potentials ([`eam`], [`entries`]), and columns of what was measured ([`measured`]).
 //!
 //! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count; what
 //! else the mesh names becomes sets (`mesh`). Second-order cells are taken by their corners.
@@ -24,6 +24,7 @@ pub mod lammps;
 mod linear;
 mod lines;
 mod measure;
+pub mod measured;
 mod mesh;
 pub mod molecules;
 pub(crate) mod npz;

@@ -47,20 +47,8 @@ impl Column {
 pub fn read(path: &Path) -> Result<Vec<Column>, ReadError> {
     let (text, _) = crate::read::text_of(path)?;
     let mut lines = text.lines();
-    let mut columns: Vec<Column> = cells(lines.next().unwrap_or(""))
-        .into_iter()
-        .map(|cell| {
-            let (name, unit) = match cell.strip_suffix(']').and_then(|c| c.rsplit_once(" [")) {
-                Some((name, unit)) => (name.to_string(), unit.to_string()),
-                None => (cell, String::new()),
-            };
-            Column {
-                name,
-                unit,
-                values: vec![],
-            }
-        })
-        .collect();
+    let names = cells(lines.next().unwrap_or(""));
+    let mut columns: Vec<Column> = names.iter().map(|c| column(c)).collect();
     for (n, line) in lines.enumerate() {
         let row: Option<Vec<f64>> = line.split(',').map(|c| c.parse().ok()).collect();
         match row.filter(|r| r.len() == columns.len()) {
@@ -74,8 +62,21 @@ pub fn read(path: &Path) -> Result<Vec<Column>, ReadError> {
     Ok(columns)
 }
 
+/// The column that a cell of the first line names as `name [unit]`, empty yet.
+pub(crate) fn column(cell: &str) -> Column {
+    let (name, unit) = match cell.strip_suffix(']').and_then(|c| c.rsplit_once(" [")) {
+        Some((name, unit)) => (name, unit),
+        None => (cell, ""),
+    };
+    Column {
+        name: name.into(),
+        unit: unit.into(),
+        values: vec![],
+    }
+}
+
 /// Cells of a line (RFC 4180).
-fn cells(line: &str) -> Vec<String> {
+pub(crate) fn cells(line: &str) -> Vec<String> {
     let (mut all, mut cell, mut quoted) = (vec![], String::new(), false);
     let mut rest = line.chars().peekable();
     while let Some(c) = rest.next() {
