@@ -47,7 +47,15 @@ fn amounts(deck: &Deck, sim: &mut dyn Simulation) -> [f64; 5] {
         every: output.every(steps),
         history: output.history.unwrap_or((steps / 100).max(1)),
         points: info.points,
-        files: u64::from(output.vtu) + u64::from(cells) + u64::from(output.exodus.is_some()),
+        files: [
+            output.vtu,
+            cells,
+            output.exodus.is_some(),
+            output.vtkhdf.is_some(),
+        ]
+        .map(u64::from)
+        .iter()
+        .sum(),
         corners: if cells { deck.cells.corners() } else { 0 },
         bonds: if output.bonds {
             info.directed_bonds / 2

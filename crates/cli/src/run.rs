@@ -512,6 +512,7 @@ fn plan(
         },
         space_time: vec![],
         exodus: exodus(deck),
+        vtkhdf: output.vtkhdf.clone(),
         fields: deck::fields(deck),
         continuum: continuum(deck),
         checkpoints: output.checkpoints,

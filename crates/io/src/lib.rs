@@ -1,4 +1,4 @@
-//! peridyne-io: decks, meshes and files of atoms in; VTU, CSV, JSON, dumps and pictures out.
+//! peridyne-io: decks, meshes and files of atoms in; VTU, VTKHDF, CSV, JSON, dumps and pictures out.
 
 pub mod balance;
 pub mod conservation;
@@ -7,6 +7,7 @@ pub mod convert;
 pub mod deck;
 pub mod drive;
 pub mod excerpt;
+mod hdf5;
 mod netcdf;
 pub mod read;
 pub mod write;

@@ -90,6 +90,8 @@ pub struct OutputSpec {
     pub vtu: bool,
     /// Exodus II file of this name.
     pub exodus: Option<PathBuf>,
+    /// VTKHDF file of this name.
+    pub vtkhdf: Option<PathBuf>,
     /// Unbroken bonds in the VTU.
     pub bonds: bool,
     /// The linear body about the last state.

@@ -17,7 +17,8 @@ impl Plan {
         });
         let points = self.series.dump.iter().map(|(name, _)| name);
         let exodus = self.exodus.iter().map(|e| &e.path);
-        atoms.chain(points).chain(exodus).map(|p| &**p)
+        let named = atoms.chain(points).chain(exodus).chain(&self.vtkhdf);
+        named.map(|p| &**p)
     }
 
     /// Folders of files in that of the results.

@@ -59,6 +59,8 @@ pub struct Plan {
     pub space_time: Vec<SpaceTimeOptions>,
     /// Frames in an Exodus file.
     pub exodus: Option<ExodusPlan>,
+    /// Frames in a VTKHDF file of this name.
+    pub vtkhdf: Option<PathBuf>,
     /// Columns of a frame.
     pub fields: Vec<String>,
     /// Of the numbers that are computed, for headers of probes.

@@ -27,6 +27,7 @@ impl Plan {
         file(self.fragments, "fragments.csv");
         let dump = series.dump.iter().map(|(name, _)| name);
         let dump = dump.chain(self.exodus.iter().map(|e| &e.path));
+        let dump = dump.chain(&self.vtkhdf);
         let atoms = self.atoms.iter();
         let named = atoms.flat_map(|a| a.trajectories.iter().map(|(n, _)| n).chain(&a.data));
         files.extend(dump.chain(named).map(|n| n.display().to_string()));

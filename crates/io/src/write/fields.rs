@@ -1,8 +1,11 @@
 //! The named arrays of a snapshot, as every format of points writes them.
 
-use std::io;
+use std::io::{self, Write};
 
-use peridyne::observe::{Column, Snapshot};
+use peridyne::observe::{Column, Snapshot, Values};
+
+/// The components of symmetric tensors in VTK's order, XX YY ZZ XY YZ XZ.
+pub(super) const SYMMETRIC: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
 /// All columns that a snapshot carries beside the reference positions. An empty one was not asked for and is left out.
 ///
@@ -48,6 +51,50 @@ pub fn positions(s: &Snapshot) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
         .iter()
         .zip(s.displacement())
         .map(|(x, u)| std::array::from_fn(|a| x[a] + u[a]))
+}
+
+/// Writes current positions, as VTK's files have them.
+///
+/// # Errors
+/// Those of `w`.
+pub(super) fn write_positions<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
+    rows(w, positions(s))
+}
+
+/// Writes the numbers of a column, as VTK's files have them: least byte first, symmetric tensors in VTK's order.
+///
+/// # Errors
+/// Those of `w`.
+pub(super) fn write_values<W: Write>(w: &mut W, values: &Values) -> io::Result<()> {
+    match values {
+        Values::Scalars(v) => rows(w, v.iter().map(|x| [*x])),
+        Values::Vectors(v) => rows(w, v.iter().copied()),
+        Values::Symmetric(v) => rows(w, v.iter().map(|t| SYMMETRIC.map(|c| t[c]))),
+        Values::Tensors(v) => rows(w, v.iter().copied()),
+        Values::Integers(v) => v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes())),
+        Values::Counts(v) => v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes())),
+    }
+}
+
+/// Writes rows of numbers.
+pub(super) fn rows<W: Write, const N: usize>(
+    w: &mut W,
+    values: impl Iterator<Item = [f64; N]>,
+) -> io::Result<()> {
+    for v in values {
+        for c in v {
+            w.write_all(&c.to_le_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes whole numbers.
+pub(super) fn integers<W: Write>(w: &mut W, values: impl Iterator<Item = i64>) -> io::Result<()> {
+    for v in values {
+        w.write_all(&v.to_le_bytes())?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]

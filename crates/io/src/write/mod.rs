@@ -30,6 +30,7 @@ pub mod space;
 pub mod space_time;
 pub mod table;
 pub mod trajectory;
+pub mod vtkhdf;
 pub mod vtu;
 
 pub use atomic::WriteError;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::picture::film::Film;
 
-/// A frame of a point in a VTU or an Exodus file: positions and vectors as f64, scalars, ids (bytes).
+/// A frame of a point in a VTU, an Exodus or a VTKHDF file: positions and vectors as f64, scalars, ids (bytes).
 const POINT: f64 = 120.0;
 /// A corner of a mesh's cell in a VTU: its place and number.
 const CORNER: f64 = 32.0;
@@ -29,7 +29,7 @@ pub struct Amount {
     /// Steps between rows.
     pub history: u64,
     pub points: u64,
-    /// Files that have all points of a frame: VTU, Exodus.
+    /// Files that have all points of a frame: VTU, Exodus, VTKHDF.
     pub files: u64,
     /// Corners of the cells of meshes, where they are written.
     pub corners: u64,

@@ -9,14 +9,12 @@ use std::ops::Range;
 
 use peridyne::observe::{Snapshot, Values};
 
-use super::fields::{fields, invalid, positions};
+use super::fields::{SYMMETRIC, fields, integers, invalid, rows, write_positions, write_values};
 use super::grown::{Seal, Summed};
 use crate::read::Cells;
 
 const VERTEX: u8 = 1;
 const LINE: u8 = 3;
-/// The components of symmetric tensors in VTK's order, XX YY ZZ XY YZ XZ.
-const SYMMETRIC: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
 /// What one block of appended data holds.
 enum Block<'a> {
@@ -404,15 +402,8 @@ impl Block<'_> {
     /// Its numbers, without their length before them.
     fn write<W: Write>(&self, w: &mut W, s: &Snapshot) -> io::Result<()> {
         match self {
-            Block::Positions => rows(w, positions(s)),
-            Block::Field(values) => match values {
-                Values::Scalars(v) => rows(w, v.iter().map(|x| [*x])),
-                Values::Vectors(v) => rows(w, v.iter().copied()),
-                Values::Symmetric(v) => rows(w, v.iter().map(|t| SYMMETRIC.map(|c| t[c]))),
-                Values::Tensors(v) => rows(w, v.iter().copied()),
-                Values::Integers(v) => v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes())),
-                Values::Counts(v) => v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes())),
-            },
+            Block::Positions => write_positions(w, s),
+            Block::Field(values) => write_values(w, values),
             Block::Ids(ids) => integers(w, ids.clone().map(|id| id as i64 + 1)),
             Block::Vertices(ids) => integers(w, ids.clone().map(|id| id as i64)),
             Block::Lines(bonds) => {
@@ -446,27 +437,9 @@ impl Block<'_> {
     }
 }
 
-fn rows<W: Write, const N: usize>(
-    w: &mut W,
-    values: impl Iterator<Item = [f64; N]>,
-) -> io::Result<()> {
-    for v in values {
-        for c in v {
-            w.write_all(&c.to_le_bytes())?;
-        }
-    }
-    Ok(())
-}
-
-fn integers<W: Write>(w: &mut W, values: impl Iterator<Item = i64>) -> io::Result<()> {
-    for v in values {
-        w.write_all(&v.to_le_bytes())?;
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::fields::positions;
     use super::super::fields::tests::{put, small};
     use super::*;
 

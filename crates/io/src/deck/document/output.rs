@@ -24,6 +24,9 @@ pub struct Output {
     /// Exodus II file of this name (.e), in the folder of the results: all frames with their fields, for ParaView and the tools of
     /// Sandia.
     pub exodus: Option<At<String>>,
+    /// VTKHDF file of this name (.vtkhdf), in the folder of the results: the points of all frames with their fields in one file, as the VTU
+    /// series has them, for ParaView, pyvista and h5py; `vtu = false` leaves the series out.
+    pub vtkhdf: Option<At<String>>,
     /// Unbroken bonds as lines, too.
     #[serde(default)]
     pub bonds: bool,

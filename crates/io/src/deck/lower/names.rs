@@ -13,6 +13,7 @@ type Named<'a> = (&'static str, &'a str, &'a Range<usize>);
 fn named(written: &Output) -> impl Iterator<Item = Named<'_>> {
     let names = [
         ("exodus", &written.exodus),
+        ("vtkhdf", &written.vtkhdf),
         ("trajectory", &written.trajectory),
         ("dump", &written.dump),
         ("data", &written.data),

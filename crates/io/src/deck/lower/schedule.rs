@@ -469,12 +469,22 @@ pub(super) fn output(
             ));
         }
     }
+    if let Some(name) = &written.vtkhdf
+        && !name.value.ends_with(".vtkhdf")
+    {
+        return Err(context.error_with(
+            &name.span,
+            format!("a VTKHDF file is called .vtkhdf, not {:?}", name.value),
+            "name it results.vtkhdf",
+        ));
+    }
     super::names::apart(context, written)?;
     let checkpoints = checkpoints(context, written)?;
     let names = [
         ("dir", written.dir.as_ref()),
         ("dump", written.dump.as_ref().map(|n| &n.value)),
         ("exodus", written.exodus.as_ref().map(|n| &n.value)),
+        ("vtkhdf", written.vtkhdf.as_ref().map(|n| &n.value)),
         ("trajectory", written.trajectory.as_ref().map(|n| &n.value)),
         ("data", written.data.as_ref().map(|n| &n.value)),
     ];
@@ -500,6 +510,7 @@ pub(super) fn output(
         frames: positive(&written.frames, "frames")?,
         vtu: written.vtu.unwrap_or(true),
         exodus: written.exodus.as_ref().map(|n| n.value.clone().into()),
+        vtkhdf: written.vtkhdf.as_ref().map(|n| n.value.clone().into()),
         bonds: written.bonds,
         linear_body: written.linear_body,
         fragments: written.fragments,

@@ -9,6 +9,7 @@ mod rows;
 mod series;
 mod space_time;
 mod trajectories;
+mod vtkhdf;
 mod writer;
 
 use super::plan::Plan;
@@ -24,6 +25,7 @@ pub(super) fn all(columns: &[Column]) -> Vec<Box<dyn Writer>> {
         Box::new(fields::LiveFields::default()),
         Box::new(series::Frames::default()),
         Box::new(exodus::ExodusFrames::new(columns)),
+        Box::new(vtkhdf::VtkHdfFrames::default()),
         Box::new(space_time::SpaceTimes::default()),
         Box::new(modes::Modes),
         Box::new(paths::Paths::default()),
