@@ -15,7 +15,7 @@ use super::atomic::{WriteError, create_directory, write_file};
 use super::folder::{CHECKPOINT, WAITING};
 
 /// What files begin with; the number is that of the format.
-const MAGIC: &[u8; 24] = b"peridyne checkpoint 009\n";
+const MAGIC: &[u8; 24] = b"peridyne checkpoint 010\n";
 /// Bytes of a block.
 const BLOCK: usize = 1 << 20;
 /// What names of states begin and end with.
