@@ -4,6 +4,9 @@ use std::io;
 
 use peridyne::observe::{Column, Snapshot};
 
+/// The column that files of points always have: how large points are, without which nobody can draw them.
+pub const SIZE: &str = "volume";
+
 /// All columns that a snapshot carries beside the reference positions. An empty one was not asked for and is left out.
 ///
 /// # Errors
