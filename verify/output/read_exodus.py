@@ -12,6 +12,7 @@ import meshio
 import netCDF4
 import numpy as np
 import pyvista
+from vtkmodules.vtkCommonCore import vtkDataArray
 
 SYMMETRIC = ["xx", "yy", "zz", "xy", "yz", "xz"]  # VTK's order
 TENSOR = [a + b for a in "xyz" for b in "xyz"]
@@ -66,9 +67,11 @@ def frames_as_vtu(folder, data):
         for name in mesh.point_data:
             if name == "id":
                 continue
+            unit = mesh.GetPointData().GetArray(name).GetInformation().Get(vtkDataArray.UNITS_LABEL())
             for variable, column in components(name, np.asarray(mesh[name])):
-                values = data[f"vals_nod_var{names.index(variable) + 1}"][frame]
-                assert np.array_equal(np.ma.getdata(values), column), f"{variable} of frame {frame}"
+                values = data[f"vals_nod_var{names.index(variable) + 1}"]
+                assert np.array_equal(np.ma.getdata(values[frame]), column), f"{variable} of frame {frame}"
+                assert getattr(values, "units", None) == unit, f"unit of {variable}"
                 compared.add(variable)
     assert compared == set(names), f"variables that no VTU has: {set(names) - compared}"
     return len(times), len(names)
@@ -81,6 +84,9 @@ def globals_as_history(folder, data):
         rows = list(csv.reader(file))
     header = [column.split(" [")[0].replace(" ", "_") for column in rows[0]]
     assert names == ["step", *header[2:]], f"{names} against {header}"
+    lines = names_of(data, "info_records")
+    units = [f"{name} [{column.split(' [')[1]}" for name, column in zip(header[2:], rows[0][2:]) if " [" in column]
+    assert lines[len(lines) - len(units):] == units, f"lines of information: {lines}"
     history = {int(row[0]): [float(x) for x in row[2:]] for row in rows[1:]}
     compared = 0
     for frame in values:

@@ -9,8 +9,10 @@ import sys
 
 import numpy as np
 import pyvista
+from vtkmodules.vtkCommonCore import vtkDataArray
 
 VECTORS = {"displacement", "velocity"}
+UNITS = {"displacement": "m", "velocity": "m/s", "damage": None, "energy_density": "Pa", "volume": "m^3", "id": None}  # of SI
 
 
 def check_points(path, time):
@@ -40,6 +42,10 @@ def check_arrays(path, mesh):
     for name in mesh.point_data:
         shape = (mesh.n_points, 3) if name in VECTORS else (mesh.n_points,)
         assert mesh[name].shape == shape, f"{path}: {name} is {mesh[name].shape}"
+    for name in UNITS.keys() & set(mesh.point_data):
+        said = mesh.GetPointData().GetArray(name).GetInformation().Get(vtkDataArray.UNITS_LABEL())
+        assert said == UNITS[name], f"{path}: the unit of {name} is {said}"
+    assert (mesh["volume"] > 0.0).all(), f"{path}: a point has no volume"
     assert np.isfinite(mesh.points).all(), f"{path}: positions that are not finite"
 
 

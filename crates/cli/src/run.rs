@@ -504,6 +504,7 @@ fn plan(
             points: output.vtu,
             cells: deck.cells.clone(),
             bonds: output.bonds,
+            units: deck.units,
             dump: output.dump.as_ref().map(|name| {
                 let cell = DumpBox::periodic(deck.corner, deck.spec.space.periodic);
                 (name.clone(), cell)

@@ -14,6 +14,7 @@ use peridyne_io::deck::{Dim, UnitSystem, counted};
 use peridyne_io::drive::default_dir;
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::checkpoint::{Asked, Checkpoint, CheckpointSchedule, Checkpoints};
+use peridyne_io::write::fields::SIZE;
 use peridyne_io::write::folder::{FILES, Folder};
 use peridyne_io::write::history::{Column, History};
 use peridyne_io::write::picture::PictureOptions;
@@ -418,6 +419,7 @@ impl Told<'_> {
                 time_unit: time_unit.into(),
                 ..PictureOptions::default()
             }],
+            units: units.system(),
             ..SeriesOptions::default()
         };
         let seconds = outcome.seconds_stepping;
@@ -426,8 +428,9 @@ impl Told<'_> {
             report.status = Status::Ended;
             report.ended_by.clone_from(&self.ended_by);
         }
-        let snapshot = sim.snapshot(&USUAL, false);
-        let notes = snapshot.columns.iter().map(|c| FieldNote {
+        let snapshot = sim.snapshot(&[&USUAL[..], &[SIZE]].concat(), false);
+        let shown = snapshot.columns.iter().filter(|c| c.name() != SIZE);
+        let notes = shown.map(|c| FieldNote {
             name: c.name().to_string(),
             unit: units.system().unit(c.declaration.dimension),
             says: c.declaration.doc.to_string(),

@@ -161,7 +161,7 @@ fn of_mesh(path: &Path, program: Program) -> Result<Points, String> {
         Program::Peridigm => Holds::Touching,
         Program::PeriLab => Holds::Enclosed,
     };
-    let read = parse_holding(&read(path)?, &name, holds).map_err(|e| e.to_string())?;
+    let read = parse_holding(read(path)?, &name, holds).map_err(|e| e.to_string())?;
     Ok(of_cloud(read))
 }
 
@@ -402,7 +402,7 @@ impl Points {
             sets: sets.map(|(n, p)| (n.clone(), p.clone())).collect(),
             blocks,
             volume: self.volume.clone(),
-            globals: vec![],
+            ..Layout::default()
         }
     }
 }

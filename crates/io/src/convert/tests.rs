@@ -1,6 +1,7 @@
 use super::clock::Clock;
 use super::*;
 use crate::deck::Deck;
+use crate::read::exodus::files::given;
 use crate::read::exodus::parse_exodus;
 use peridyne::spec::{ConditionKind, Horizon, TimeStep};
 use proptest::prelude::*;
@@ -223,7 +224,7 @@ fn blocks_and_node_sets_are_in_the_mesh() {
     let (dir, found) = converted("notch.yaml", YAML);
     let path = dir.path().join("new.g");
     found.unwrap().write_mesh(&path).unwrap();
-    let points = parse_exodus(&fs::read(&path).unwrap(), "new.g").unwrap();
+    let points = parse_exodus(fs::read(&path).unwrap(), "new.g").unwrap();
     assert_eq!(points.cloud.volume, [1.0, 1.0, 2.0, 2.0]);
     assert_eq!(points.cloud.mark, [1, 1, 2, 2]);
     let sets: Vec<(&str, &[u32])> = { points.cloud.sets.iter() }
@@ -236,6 +237,36 @@ fn blocks_and_node_sets_are_in_the_mesh() {
         ("Head", &[2, 3]),
     ];
     assert_eq!(sets, wanted);
+}
+
+#[test]
+fn a_mesh_in_netcdf4_is_that_of_netcdf3() {
+    let yaml = [
+        ("Type: \"Text File\"", "Type: \"Exodus\""),
+        ("points.txt", "mesh.g"),
+        ("block_1 block_2", "steel block_20"),
+        ("\"block_2\"", "\"block_20\""),
+        ("    Foot: \"1 2\"\n    Head: \"head.txt\"\n", ""),
+        ("\"Foot\"", "\"left\""),
+        ("\"Head\"", "\"nodelist_7\""),
+    ];
+    let yaml = { yaml.into_iter() }.fold(YAML.to_string(), |t, (a, b)| t.replace(a, b));
+    let of = |file: &str| {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("mesh.g"), given(file)).unwrap();
+        let deck = dir.path().join("notch.yaml");
+        fs::write(&deck, &yaml).unwrap();
+        let found = convert(&deck, "new.g").unwrap();
+        let mesh = dir.path().join("new.g");
+        found.write_mesh(&mesh).unwrap();
+        let points = parse_exodus(fs::read(&mesh).unwrap(), "new.g").unwrap();
+        (found.text, points)
+    };
+    let (text, points) = of("cubit_netcdf4.g");
+    assert_eq!(points.cloud.volume.len(), 2);
+    let sets: Vec<&str> = points.cloud.sets.iter().map(|s| &*s.0).collect();
+    assert_eq!(sets[..4], ["steel", "block_20", "left", "nodelist_7"]);
+    assert_eq!((text, points), of("cubit_netcdf3_classic.g"));
 }
 
 /// PeriLab's: two dimensions, sets by ranges and conditions, damage switched on in the solver.

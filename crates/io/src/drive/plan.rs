@@ -7,6 +7,7 @@ use super::rigid::RigidBodies;
 use crate::continuum::run::FieldsPlan;
 use crate::deck::UnitSystem;
 use crate::write::checkpoint::{Asked, CheckpointSchedule, ResumeError};
+use crate::write::fields::SIZE;
 use crate::write::picture::rigid::Placed;
 use crate::write::picture::shown::About;
 use crate::write::report::ReportError;
@@ -61,7 +62,7 @@ pub struct Plan {
     pub exodus: Option<ExodusPlan>,
     /// Frames in a VTKHDF file of this name.
     pub vtkhdf: Option<PathBuf>,
-    /// Columns of a frame.
+    /// Columns of a frame; [`SIZE`] is added.
     pub fields: Vec<String>,
     /// Of the numbers that are computed, for headers of probes.
     pub units: UnitSystem,
@@ -104,9 +105,18 @@ impl Plan {
         fields.into_iter().map(String::from).collect()
     }
 
+    /// Columns that are written beside displacements: those of a frame, and how large points are, without which nobody can draw them.
+    pub(super) fn written_fields(&self, sim: &dyn Simulation) -> Vec<String> {
+        let mut fields = self.frame_fields(sim);
+        if !fields.iter().any(|f| f == SIZE) {
+            fields.push(SIZE.into());
+        }
+        fields
+    }
+
     /// What a frame shows.
     pub(super) fn look(&self, sim: &mut dyn Simulation) -> Snapshot {
-        let fields = self.frame_fields(sim);
+        let fields = self.written_fields(sim);
         let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
         sim.snapshot(&fields, self.series.bonds)
     }

@@ -6,24 +6,15 @@ use super::value::Type;
 /// What the fourth byte of a file says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Version {
-    /// CDF-1: offsets of 32 bits.
-    Classic,
-    /// CDF-2.
+    /// CDF-2: offsets of 64 bits.
     Offset64,
     /// CDF-5: numbers of things have 64 bits, too.
     Data64,
 }
 
 impl Version {
-    pub(super) const ALL: [(u8, Version); 3] = [
-        (1, Version::Classic),
-        (2, Version::Offset64),
-        (5, Version::Data64),
-    ];
-
     pub(super) fn byte(self) -> u8 {
         match self {
-            Version::Classic => 1,
             Version::Offset64 => 2,
             Version::Data64 => 5,
         }
@@ -32,16 +23,8 @@ impl Version {
     /// Bytes of a number of things.
     pub(super) fn count(self) -> usize {
         match self {
-            Version::Classic | Version::Offset64 => 4,
+            Version::Offset64 => 4,
             Version::Data64 => 8,
-        }
-    }
-
-    /// Bytes of an offset.
-    pub(super) fn offset(self) -> usize {
-        match self {
-            Version::Classic => 4,
-            Version::Offset64 | Version::Data64 => 8,
         }
     }
 }
@@ -73,17 +56,6 @@ pub struct Variable {
     pub begin: u64,
 }
 
-impl Variable {
-    pub fn text(&self, attribute: &str) -> Option<&str> {
-        self.attributes
-            .iter()
-            .find_map(|(name, value)| match value {
-                Attribute::Text(text) if name == attribute => Some(&**text),
-                _ => None,
-            })
-    }
-}
-
 impl Header {
     pub fn new(version: Version) -> Self {
         Header {
@@ -112,15 +84,6 @@ impl Header {
             begin: 0,
         });
         &mut self.variables[at]
-    }
-
-    pub fn find(&self, name: &str) -> Option<&Variable> {
-        self.variables.iter().find(|v| v.name == name)
-    }
-
-    pub fn length(&self, dimension: &str) -> Option<u64> {
-        let mut all = self.dimensions.iter();
-        all.find_map(|(name, length)| (name == dimension).then_some(*length))
     }
 
     /// Has the variable a value in every record?

@@ -29,7 +29,7 @@ pub fn lay_out(header: &mut Header) -> io::Result<u64> {
             header.variables[v].begin = at;
             let bytes = header.bytes(&header.variables[v]);
             let bytes = bytes.and_then(filled).ok_or_else(too_large)?;
-            if !header.version.holds(bytes, at) {
+            if !header.version.holds(bytes) {
                 return Err(too_large());
             }
             at = at.checked_add(bytes).ok_or_else(too_large)?;
@@ -42,10 +42,9 @@ pub fn lay_out(header: &mut Header) -> io::Result<u64> {
 }
 
 impl Version {
-    /// Can it say so many bytes of a variable that begins here?
-    pub(super) fn holds(self, bytes: u64, begin: u64) -> bool {
+    /// Can it say so many bytes of a variable?
+    pub(super) fn holds(self, bytes: u64) -> bool {
         match self {
-            Version::Classic => bytes < 1 << 31 && begin < 1 << 31,
             Version::Offset64 => bytes <= u64::from(u32::MAX) - 3,
             Version::Data64 => bytes < 1 << 62,
         }
@@ -98,10 +97,7 @@ impl Header {
             w.write_all(&v.kind.number().to_be_bytes())?;
             let bytes = self.bytes(v).and_then(filled).unwrap_or(u64::MAX);
             self.count(w, bytes)?;
-            match self.version.offset() {
-                4 => w.write_all(&(v.begin as u32).to_be_bytes())?,
-                _ => w.write_all(&v.begin.to_be_bytes())?,
-            }
+            w.write_all(&v.begin.to_be_bytes())?;
         }
         Ok(())
     }
@@ -139,7 +135,6 @@ impl Header {
                     let bytes = v.iter().flat_map(|x| x.to_be_bytes());
                     (Type::Float, v.len(), bytes.collect())
                 }
-                Attribute::Other => (Type::Byte, 0, vec![]),
             };
             w.write_all(&kind.number().to_be_bytes())?;
             self.count(w, length as u64)?;

@@ -1,90 +1,40 @@
 //! Types of numbers, and attributes.
 
-/// External types, by their number in the file (from 1).
+/// External types that are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Type {
-    Byte,
     Char,
-    Short,
     Int,
     Float,
     Double,
-    UByte,
-    UShort,
-    UInt,
-    Int64,
-    UInt64,
 }
 
 impl Type {
-    const ALL: [Type; 11] = [
-        Type::Byte,
-        Type::Char,
-        Type::Short,
-        Type::Int,
-        Type::Float,
-        Type::Double,
-        Type::UByte,
-        Type::UShort,
-        Type::UInt,
-        Type::Int64,
-        Type::UInt64,
-    ];
-
-    pub(super) fn of(number: u32) -> Option<Type> {
-        Type::ALL.get((number as usize).checked_sub(1)?).copied()
-    }
-
+    /// How the file says it.
     pub(super) fn number(self) -> u32 {
-        let at = Type::ALL.iter().position(|t| *t == self);
-        at.map_or(0, |at| at as u32 + 1)
+        match self {
+            Type::Char => 2,
+            Type::Int => 4,
+            Type::Float => 5,
+            Type::Double => 6,
+        }
     }
 
     pub fn bytes(self) -> usize {
         match self {
-            Type::Byte | Type::Char | Type::UByte => 1,
-            Type::Short | Type::UShort => 2,
-            Type::Int | Type::Float | Type::UInt => 4,
-            Type::Double | Type::Int64 | Type::UInt64 => 8,
-        }
-    }
-
-    /// A whole number of this type; `None`: it is none, or too large.
-    pub(super) fn whole(self, bytes: &[u8]) -> Option<i64> {
-        Some(match self {
-            Type::Byte => i8::from_be_bytes(fixed(bytes)).into(),
-            Type::UByte => bytes[0].into(),
-            Type::Short => i16::from_be_bytes(fixed(bytes)).into(),
-            Type::UShort => u16::from_be_bytes(fixed(bytes)).into(),
-            Type::Int => i32::from_be_bytes(fixed(bytes)).into(),
-            Type::UInt => u32::from_be_bytes(fixed(bytes)).into(),
-            Type::Int64 => i64::from_be_bytes(fixed(bytes)),
-            Type::UInt64 => u64::from_be_bytes(fixed(bytes)).try_into().ok()?,
-            Type::Char | Type::Float | Type::Double => return None,
-        })
-    }
-
-    /// A number with a point; `None`: it is none.
-    pub(super) fn float(self, bytes: &[u8]) -> Option<f64> {
-        match self {
-            Type::Float => Some(f32::from_be_bytes(fixed(bytes)).into()),
-            Type::Double => Some(f64::from_be_bytes(fixed(bytes))),
-            Type::Byte
-            | Type::Char
-            | Type::Short
-            | Type::Int
-            | Type::UByte
-            | Type::UShort
-            | Type::UInt
-            | Type::Int64
-            | Type::UInt64 => None,
+            Type::Char => 1,
+            Type::Int | Type::Float => 4,
+            Type::Double => 8,
         }
     }
 }
 
-/// The first bytes; callers give as many.
-pub(super) fn fixed<const N: usize>(bytes: &[u8]) -> [u8; N] {
-    std::array::from_fn(|i| bytes[i])
+/// Bytes up to the first zero, without blanks at the end.
+pub(super) fn text(bytes: &[u8]) -> String {
+    let end = bytes.iter().position(|b| *b == 0).unwrap_or(bytes.len());
+    String::from_utf8_lossy(&bytes[..end])
+        .trim_end()
+        .to_string()
 }
 
 /// Values of an attribute.
@@ -93,6 +43,4 @@ pub enum Attribute {
     Text(String),
     Ints(Vec<i32>),
     Floats(Vec<f32>),
-    /// Read, of a type that nobody asks for.
-    Other,
 }

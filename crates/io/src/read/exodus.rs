@@ -1,5 +1,5 @@
-//! Exodus II meshes, in netCDF classic, 64-bit offset or CDF-5: blocks are groups of cells, node sets, side sets and element sets
-//! are sets.
+//! Exodus II meshes, in netCDF classic, 64-bit offset, CDF-5 or netCDF-4 (HDF5): blocks are groups of cells, node sets, side sets
+//! and element sets are sets.
 //!
 //! Format: Schoof and Yarberry, "EXODUS II: a finite element data model", SAND92-2137; names of variables as the library writes
 //! them. A block of SPHERE elements is points with volumes, the second attribute as Peridigm and Sierra have it. A side of an element
@@ -37,7 +37,7 @@ fn shape(name: &str, nodes: u64) -> Option<Shape> {
         "TET" | "TETRA" => Kind::Tetra,
         "PYRAMID" | "PYRA" => Kind::Pyramid,
         "WEDGE" => Kind::Prism,
-        "HEX" | "HEXA" => Kind::Hexa,
+        "HEX" | "HEXA" | "HEXAHEDRON" => Kind::Hexa,
         _ => return None,
     };
     (nodes >= kind.corners() as u64).then_some(Shape::Cell(kind))
@@ -83,9 +83,9 @@ const KNOWN: &str =
 /// Points of an Exodus II mesh.
 ///
 /// # Errors
-/// The file is cut short, of netCDF-4, no mesh, has element types that make no points, cells without volume, or nodes that do not
+/// The file is cut short or damaged, no mesh, has element types that make no points, cells without volume, or nodes that do not
 /// exist.
-pub fn parse_exodus(bytes: &[u8], name: &str) -> Result<Points, ReadError> {
+pub fn parse_exodus(bytes: Vec<u8>, name: &str) -> Result<Points, ReadError> {
     parse_holding(bytes, name, Holds::Sides)
 }
 
@@ -93,11 +93,11 @@ pub fn parse_exodus(bytes: &[u8], name: &str) -> Result<Points, ReadError> {
 ///
 /// # Errors
 /// Those of [`parse_exodus`].
-pub fn parse_holding(bytes: &[u8], name: &str, holds: Holds) -> Result<Points, ReadError> {
+pub fn parse_holding(bytes: Vec<u8>, name: &str, holds: Holds) -> Result<Points, ReadError> {
     whole(read(bytes, name, holds)?, name)
 }
 
-fn read(bytes: &[u8], name: &str, holds: Holds) -> Result<Sourced, ReadError> {
+fn read(bytes: Vec<u8>, name: &str, holds: Holds) -> Result<Sourced, ReadError> {
     let lines = Lines::binary(name);
     let error = |message: String| lines.error(message);
     let reader = Reader::new(bytes).map_err(error)?;
@@ -122,8 +122,8 @@ fn read(bytes: &[u8], name: &str, holds: Holds) -> Result<Sourced, ReadError> {
     file.mesh.points(&lines)
 }
 
-struct Exodus<'a> {
-    reader: Reader<'a>,
+struct Exodus {
+    reader: Reader,
     mesh: Mesh,
     /// A block of shells.
     shells: Option<String>,
@@ -136,19 +136,14 @@ struct Entity {
     name: String,
 }
 
-impl Exodus<'_> {
+impl Exodus {
     fn nodes(&mut self) -> Result<(), String> {
         let axes = ["coordx", "coordy", "coordz"];
         let mut columns: Vec<Vec<f64>> = vec![];
         match self.reader.floats("coord")? {
             // as old files have it
             Some(all) => {
-                let axes = self
-                    .reader
-                    .header
-                    .length("num_dim")
-                    .unwrap_or(3)
-                    .clamp(1, 3);
+                let axes = self.reader.length("num_dim").unwrap_or(3).clamp(1, 3);
                 let each = all.len() / axes as usize;
                 columns.extend(all.chunks_exact(each.max(1)).map(<[f64]>::to_vec));
             }
@@ -168,6 +163,15 @@ impl Exodus<'_> {
         if columns.iter().any(|c| c.len() != count) {
             return Err("coordx, coordy and coordz have different lengths".into());
         }
+        if let Some(nodes) = self
+            .reader
+            .length("num_nodes")
+            .filter(|n| *n != count as u64)
+        {
+            return Err(format!(
+                "num_nodes is {nodes}, but coordx has {count} places"
+            ));
+        }
         for node in 0..count {
             let mut x = [0.0; 3];
             for (c, column) in x.iter_mut().zip(&columns) {
@@ -183,13 +187,12 @@ impl Exodus<'_> {
 
     /// All of a kind: variables with ids, how many are there and names; `word` begins the name of what has none.
     fn entities(&self, prefix: &str, dimension: &str, word: &str) -> Result<Vec<Entity>, String> {
-        let header = &self.reader.header;
         let mut ids = self.reader.wholes(&format!("{prefix}_prop1"))?;
         if ids.is_none()
-            && let Some(count) = header.length(dimension)
+            && let Some(count) = self.reader.length(dimension)
         {
-            // each has variables of its own in the header
-            let count = count.min(header.variables.len() as u64);
+            // each has variables of its own
+            let count = count.min(self.reader.count() as u64);
             ids = Some((1..=count as i64).collect());
         }
         let there = self.reader.wholes(&format!("{prefix}_status"))?;
@@ -224,14 +227,13 @@ impl Exodus<'_> {
         let Some(nodes) = self.reader.wholes(&variable)? else {
             return Err(format!("block {name} has no elements ({variable})"));
         };
-        let header = &self.reader.header;
-        let of = header.find(&variable);
-        let kind = of.and_then(|v| v.text("elem_type")).unwrap_or("");
-        let shape_of = of.map_or(vec![], |v| header.shape(v));
+        let kind = self.reader.attribute(&variable, "elem_type");
+        let kind = kind.unwrap_or_default();
+        let shape_of = self.reader.shape(&variable).unwrap_or_default();
         let [_, each] = shape_of[..] else {
             return Err(format!("{variable} should be a table: elements, nodes"));
         };
-        let shape = shape(kind, each).ok_or_else(|| {
+        let shape = shape(&kind, each).ok_or_else(|| {
             format!(
                 "block {name}: elements {kind:?} of {each} nodes are not read; known are {KNOWN}"
             )
@@ -285,17 +287,18 @@ impl Exodus<'_> {
         let Entity { number, name, .. } = block;
         let attributes = self.reader.floats(&format!("attrib{number}"))?;
         let names = self.reader.texts(&format!("attrib_name{number}"))?;
-        let header = &self.reader.header;
-        let table = header.find(&format!("attrib{number}"));
-        let width = table.and_then(|v| header.shape(v).get(1).copied());
+        let table = self.reader.shape(&format!("attrib{number}"));
+        let width = table.and_then(|lengths| lengths.get(1).copied());
         let width = width.unwrap_or(1) as usize;
         let named = names.unwrap_or_default();
         let named = named.iter().position(|n| n.eq_ignore_ascii_case("volume"));
         let column = named.or((width >= 2).then_some(1)).filter(|c| *c < width);
-        let elements = header.find(&format!("connect{number}"));
-        let count = elements.map_or(0, |v| header.shape(v)[0]);
+        let elements = self.reader.shape(&format!("connect{number}"));
+        let count = elements.map_or(0, |lengths| lengths[0]);
         match (attributes, column) {
-            (Some(all), Some(column)) if all.len() as u64 == count * width as u64 => {
+            (Some(all), Some(column))
+                if count.checked_mul(width as u64) == Some(all.len() as u64) =>
+            {
                 Ok(all.into_iter().skip(column).step_by(width).collect())
             }
             _ => Err(format!(
@@ -348,5 +351,7 @@ impl Exodus<'_> {
     }
 }
 
+#[cfg(test)]
+pub(crate) mod files;
 #[cfg(test)]
 mod tests;

@@ -53,11 +53,12 @@ use std::io::{BufRead, Read};
 use std::path::Path;
 pub use whole::text_of;
 
-const EXTENSIONS: [&str; 16] = [
+const EXTENSIONS: [&str; 17] = [
     "npz",
     "g",
     "e",
     "exo",
+    "ex2",
     "gen",
     "inp",
     "msh",
@@ -72,7 +73,7 @@ const EXTENSIONS: [&str; 16] = [
     "dump",
 ];
 
-/// Reads a file by its extension: `.inp`, `.msh`, Exodus II (`.g`, `.e`, `.exo`, `.gen`), `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), LAMMPS dumps of
+/// Reads a file by its extension: `.inp`, `.msh`, Exodus II (`.g`, `.e`, `.exo`, `.ex2`, `.gen`), `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), LAMMPS dumps of
 /// atoms (`.lammpstrj`, `.dump`), extended XYZ (`.extxyz`, and `.xyz` whose second line says so), and plain text (`.txt`,
 /// `.xyz`, `.csv` with blanks, `.dat`). `frame` is which of a dump's or of an extended XYZ file's; others have one state.
 ///
@@ -121,8 +122,8 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     if extension == "msh" {
         return whole(gmsh::read(bytes, &name)?, &name);
     }
-    if matches!(&*extension, "g" | "e" | "exo" | "gen") {
-        return exodus::parse_exodus(&bytes, &name);
+    if matches!(&*extension, "g" | "e" | "exo" | "ex2" | "gen") {
+        return exodus::parse_exodus(bytes, &name);
     }
     // a data file of LAMMPS has a title
     let titles = usize::from(matches!(&*extension, "data" | "lmp"));

@@ -234,6 +234,7 @@ pub fn collected(text: &str) -> Option<Vec<(f64, String)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::deck::UnitSystem;
     use crate::write::fields::tests::{put, small};
     use crate::write::vtu::write_points;
     use peridyne::observe::Values;
@@ -244,7 +245,7 @@ mod tests {
         let rows = vec![[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]; 3];
         put(&mut s, "stress", Values::Symmetric(rows));
         let mut file = vec![];
-        write_points(&mut file, &s).unwrap();
+        write_points(&mut file, &s, UnitSystem::Si).unwrap();
         file
     }
 

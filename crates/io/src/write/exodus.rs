@@ -3,7 +3,8 @@
 //! Points are nodes at their reference positions and SPHERE elements with the attributes radius (of a sphere of their volume) and
 //! volume, a block for each material and body. Fields are nodal variables, displacements `displ_x`, …; the row of the history is the
 //! global variables. Names of variables are those of the Exodus library, numbers netCDF's (64-bit offset; CDF-5 where that is too
-//! small).
+//! small). Exodus has no place for units: they are attributes `units` of what is of one unit, as netCDF's conventions have it, and
+//! lines of its information records.
 //!
 //! A frame is a record at the end of the file. The header counts records, and is told of one when it is on the disk: a run that is
 //! killed leaves a file of its whole frames, and it can be read at any time.
@@ -20,6 +21,8 @@ use peridyne::state::{Archive, Owner};
 use super::atomic::WriteError;
 use super::fields::{fields, invalid};
 use super::grown::{Seal, Summed, changed, write_sealed};
+use super::history::Column as Variable;
+use crate::deck::{Dim, UnitSystem};
 use crate::netcdf::{Attribute, Header, Type, Version, lay_out};
 
 /// What a file says of its points besides frames.
@@ -32,8 +35,11 @@ pub struct Layout {
     pub sets: Vec<(String, Vec<u32>)>,
     /// Of the points.
     pub volume: Vec<f64>,
-    /// Names of global variables.
-    pub globals: Vec<String>,
+    /// Global variables.
+    pub globals: Vec<Variable>,
+    /// Of the numbers.
+    pub units: UnitSystem,
+    pub time_unit: String,
 }
 
 /// A file of frames, open to more.
@@ -58,6 +64,8 @@ pub struct Exodus {
 const NAME: usize = 33;
 /// Longest title.
 const TITLE: usize = 80;
+/// The library's width of a line of information, with the zero at the end.
+const LINE: usize = 81;
 
 /// Names of the variables that a column becomes.
 fn names_of(column: &Column) -> Vec<String> {
@@ -69,6 +77,13 @@ fn names_of(column: &Column) -> Vec<String> {
         [] => vec![name.to_string()],
         components => components.iter().map(|c| format!("{name}_{c}")).collect(),
     }
+}
+
+/// The same with their units.
+fn variables_of(column: &Column, units: UnitSystem) -> impl Iterator<Item = Variable> {
+    let unit = units.unit(column.declaration.dimension);
+    let names = names_of(column).into_iter();
+    names.map(move |name| Variable::new(name, unit.clone()))
 }
 
 /// Numbers of a variable that has one value.
@@ -139,6 +154,13 @@ impl Start {
         self.fixed.push(Numbers::Text(all, self.width));
     }
 
+    /// The unit of the last variable, where it has one.
+    fn unit(&mut self, unit: &str) {
+        if !unit.is_empty() {
+            self.mark("units", unit);
+        }
+    }
+
     fn mark(&mut self, attribute: &str, text: &str) {
         if let Some(v) = self.header.variables.last_mut() {
             let value = Attribute::Text(text.into());
@@ -202,6 +224,7 @@ impl Start {
         for (a, axis) in ["coordx", "coordy", "coordz"].into_iter().enumerate() {
             let column = reference.iter().map(|x| x[a]).collect();
             self.doubles(axis, &[self.nodes], column);
+            self.unit(&layout.units.unit(Dim::LENGTH));
         }
         self.texts("coor_names", axes, ["x", "y", "z"].map(String::from).into());
         let identity = (1..=points as i32).collect();
@@ -236,13 +259,33 @@ impl Start {
         })
     }
 
+    /// Names with their units in lines of information.
+    fn information(&mut self, layout: &Layout, nodal: &[Variable]) {
+        let all = nodal.iter().chain(&layout.globals);
+        let with = all.filter(|v| !v.unit.is_empty());
+        let mut lines: Vec<String> = with.map(Variable::header).collect();
+        // a line that is cut says less than none
+        lines.retain(|line| line.len() < LINE);
+        if lines.is_empty() {
+            return;
+        }
+        let count = self.header.dimension("num_info", lines.len());
+        let width = self.header.dimension("len_line", LINE);
+        self.header
+            .variable("info_records", Type::Char, &[count, width]);
+        self.fixed.push(Numbers::Text(lines, LINE));
+    }
+
     /// What is recorded: time, global and nodal variables.
-    fn recorded(&mut self, globals: &[String], nodal: &[String]) {
+    fn recorded(&mut self, layout: &Layout, nodal: &[Variable]) {
         let (time, nodes) = (self.time, self.nodes);
         self.header.variable("time_whole", Type::Double, &[time]);
+        self.unit(&layout.time_unit);
+        let globals = &layout.globals;
         if !globals.is_empty() {
             let count = self.header.dimension("num_glo_var", globals.len());
-            self.texts("name_glo_var", count, globals.to_vec());
+            let names = globals.iter().map(|v| v.name.clone()).collect();
+            self.texts("name_glo_var", count, names);
             self.header
                 .variable("vals_glo_var", Type::Double, &[time, count]);
         }
@@ -250,10 +293,12 @@ impl Start {
             return;
         }
         let count = self.header.dimension("num_nod_var", nodal.len());
-        self.texts("name_nod_var", count, nodal.to_vec());
-        for n in 1..=nodal.len() {
-            let name = format!("vals_nod_var{n}");
+        let names = nodal.iter().map(|v| v.name.clone()).collect();
+        self.texts("name_nod_var", count, names);
+        for (n, variable) in nodal.iter().enumerate() {
+            let name = format!("vals_nod_var{}", n + 1);
             self.header.variable(&name, Type::Double, &[time, nodes]);
+            self.unit(&variable.unit);
         }
     }
 }
@@ -277,7 +322,7 @@ fn begun(
     path: &Path,
     layout: &Layout,
     reference: &[[f64; 3]],
-    nodal: &[String],
+    nodal: &[Variable],
 ) -> Result<(Start, u64), WriteError> {
     let failed = |e: io::Error| WriteError::at("write", path)(e);
     let points = reference.len();
@@ -297,12 +342,14 @@ fn begun(
         return Err(failed(invalid("a point is not in one block".into())));
     }
     let named = layout.blocks.iter().chain(&layout.sets).map(|b| &b.0);
-    let longest = named.chain(nodal).chain(&layout.globals).map(String::len);
+    let variables = nodal.iter().chain(&layout.globals).map(|v| &v.name);
+    let longest = named.chain(variables).map(String::len);
     let width = longest.max().unwrap_or(0).max(NAME - 1) + 1;
     let start = |version| {
         let mut start = Start::new(version, width, points);
         start.all(layout, reference);
-        start.recorded(&layout.globals, nodal);
+        start.information(layout, nodal);
+        start.recorded(layout, nodal);
         lay_out(&mut start.header).map(|length| (start, length))
     };
     start(Version::Offset64)
@@ -346,7 +393,8 @@ impl Exodus {
     ) -> Result<Self, WriteError> {
         let failed = |e: io::Error| WriteError::at("write", path)(e);
         let columns = fields(like).map_err(failed)?;
-        let nodal: Vec<String> = columns.iter().flat_map(|c| names_of(c)).collect();
+        let nodal = { columns.iter() }.flat_map(|c| variables_of(c, layout.units));
+        let nodal: Vec<Variable> = nodal.collect();
         let (begun, start) = begun(path, layout, &like.reference, &nodal)?;
         let sum = write(&begun)?.sum;
         let header = begun.header;
@@ -357,7 +405,7 @@ impl Exodus {
             record: header.record_bytes().unwrap_or(u64::MAX),
             header,
             start,
-            nodal,
+            nodal: nodal.into_iter().map(|v| v.name).collect(),
             globals: layout.globals.len(),
             step: None,
             sum,

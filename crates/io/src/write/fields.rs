@@ -7,6 +7,9 @@ use peridyne::observe::{Column, Snapshot, Values};
 /// The components of symmetric tensors in VTK's order, XX YY ZZ XY YZ XZ.
 pub(super) const SYMMETRIC: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
+/// The column that files of points always have: how large points are, without which nobody can draw them.
+pub const SIZE: &str = "volume";
+
 /// All columns that a snapshot carries beside the reference positions. An empty one was not asked for and is left out.
 ///
 /// # Errors

@@ -19,6 +19,7 @@ use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
 use super::shares;
 use super::vtu::{write_bonds, write_cells, write_points};
+use crate::deck::UnitSystem;
 use crate::read::Cells;
 
 /// What frames are of.
@@ -37,6 +38,8 @@ pub struct SeriesOptions {
     pub dump: Option<(PathBuf, DumpBox)>,
     /// Pictures of the last state, named after what they show.
     pub pictures: Vec<PictureOptions>,
+    /// Of the numbers, which VTU files say.
+    pub units: UnitSystem,
 }
 
 impl Default for SeriesOptions {
@@ -47,6 +50,7 @@ impl Default for SeriesOptions {
             bonds: false,
             dump: None,
             pictures: vec![PictureOptions::default()],
+            units: UnitSystem::default(),
         }
     }
 }
@@ -197,7 +201,8 @@ impl Series {
         ask: impl FnOnce(&str) -> Option<Vec<Vec<u8>>>,
     ) -> Result<bool, WriteError> {
         let name = frame_of_points(step);
-        let Some(seal) = shares::write_frame(&self.dir.join(&name), ask)? else {
+        let Some(seal) = shares::write_frame(&self.dir.join(&name), self.options.units, ask)?
+        else {
             return Ok(false);
         };
         self.points.push(time, &name, seal)?;
@@ -206,20 +211,21 @@ impl Series {
 
     /// Writes all files of a snapshot. One of the same step is replaced, but the dump keeps the first.
     pub fn write(&mut self, s: &Snapshot, bodies: &[Placed]) -> Result<(), WriteError> {
+        let units = self.options.units;
         if self.options.points {
             let name = frame_of_points(s.step);
-            let seal = write_sealed(&self.dir.join(&name), |w| write_points(w, s))?;
+            let seal = write_sealed(&self.dir.join(&name), |w| write_points(w, s, units))?;
             self.points.push(s.time, &name, seal)?;
         }
         if self.options.writes_cells() {
             let name = format!("cells_{:08}.vtu", s.step);
             let cells = &self.options.cells;
-            let seal = write_sealed(&self.dir.join(&name), |w| write_cells(w, s, cells))?;
+            let seal = write_sealed(&self.dir.join(&name), |w| write_cells(w, s, cells, units))?;
             self.cells.push(s.time, &name, seal)?;
         }
         if self.options.bonds {
             let name = format!("bonds_{:08}.vtu", s.step);
-            let seal = write_sealed(&self.dir.join(&name), |w| write_bonds(w, s))?;
+            let seal = write_sealed(&self.dir.join(&name), |w| write_bonds(w, s, units))?;
             self.bonds.push(s.time, &name, seal)?;
         }
         if let (Some((dump, last)), Some((_, cell))) = (&mut self.dump, &self.options.dump)

@@ -3,6 +3,7 @@
 use super::atomic::{WriteError, write_file};
 use super::grown::Seal;
 use super::vtu::{self, Part};
+use crate::deck::{Constants, UnitSystem};
 use crc32fast::Hasher;
 use peridyne::observe::Snapshot;
 use peridyne::run::ranks::Share;
@@ -10,10 +11,15 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// Writes a rank's share of a frame into the file of this name, which is there; answers for [`write_frame`].
-pub fn write_share(name: &str, frame: &Snapshot, share: Share) -> Vec<u8> {
+/// Writes a rank's share of a frame as [`write_frame`] asks, which says units and name of a file that is there; answers for it.
+pub fn write_share(asked: &str, frame: &Snapshot, share: Share) -> Vec<u8> {
+    let (units, name) = asked.split_once(' ').unwrap_or(("", asked));
+    let units = UNITS
+        .iter()
+        .find(|of| of.0 == units)
+        .map_or(UnitSystem::None, |of| of.1);
     let written = File::options().write(true).open(name).and_then(|mut file| {
-        let parts = vtu::write_share(&mut file, frame, share.first, share.points)?;
+        let parts = vtu::write_share(&mut file, frame, units, share)?;
         file.sync_all()?;
         Ok(parts)
     });
@@ -28,17 +34,34 @@ pub fn write_share(name: &str, frame: &Snapshot, share: Share) -> Vec<u8> {
     }
 }
 
+/// Units of a frame in a word.
+const UNITS: [(&str, UnitSystem); 3] = [
+    ("si", UnitSystem::Si),
+    // units of columns are those of any constants
+    ("metal", UnitSystem::Metal(Constants::Codata2018)),
+    ("none", UnitSystem::None),
+];
+
+fn word(units: UnitSystem) -> &'static str {
+    match units {
+        UnitSystem::Si => "si",
+        UnitSystem::Metal(_) => "metal",
+        UnitSystem::Lj | UnitSystem::None => "none",
+    }
+}
+
 /// What the answer of a rank begins with: it has written these parts, it does not see the file, it could not write.
 const WRITTEN: u8 = 0;
 const NOT_SEEN: u8 = 1;
 const FAILED: u8 = 2;
 
-/// Lets ranks write a frame into a file, `ask` told its name for the time being; `None`: `ask` says that there are none, or not all of them see the folder.
+/// Lets ranks write a frame into a file, `ask` told its units and name for the time being; `None`: `ask` says that there are none, or not all of them see the folder.
 ///
 /// # Errors
 /// As of [`write_file`], of any rank.
 pub fn write_frame(
     path: &Path,
+    units: UnitSystem,
     ask: impl FnOnce(&str) -> Option<Vec<Vec<u8>>>,
 ) -> Result<Option<Seal>, WriteError> {
     let mut seal = None;
@@ -49,7 +72,7 @@ pub fn write_frame(
             .path()
             .to_str()
             .filter(|name| !name.contains('\n'));
-        let said = name.and_then(ask);
+        let said = name.and_then(|name| ask(&format!("{} {name}", word(units))));
         seal = said.map(|said| joined(&said)).transpose()?.flatten();
         left = seal.is_none();
         match left {
@@ -141,7 +164,7 @@ mod tests {
         let (one, many) = (dir.path().join("one.vtu"), dir.path().join("many.vtu"));
         let mut s = small();
         s.bonds = None;
-        let seal = write_sealed(&one, |w| vtu::write_points(w, &s)).unwrap();
+        let seal = write_sealed(&one, |w| vtu::write_points(w, &s, UnitSystem::Si)).unwrap();
         let points = s.reference.len();
         for cuts in [vec![0, 3, 3, 3], vec![0, 1, 2, 3], vec![0, 2, 3, 3]] {
             let said = |name: &str| {
@@ -154,7 +177,10 @@ mod tests {
                 });
                 Some(own.collect())
             };
-            assert_eq!(write_frame(&many, said).unwrap(), Some(seal));
+            assert_eq!(
+                write_frame(&many, UnitSystem::Si, said).unwrap(),
+                Some(seal)
+            );
             let [a, b] = [&one, &many].map(|path| std::fs::read(path).unwrap());
             assert_eq!(a, b);
             seal.holds(&many).unwrap();
@@ -175,12 +201,16 @@ mod tests {
             ..small()
         };
         let written = |name: &str| write_share(name, &s, whole);
-        let elsewhere = |_: &str| write_share("/nowhere/frame.vtu", &s, whole);
-        let none = write_frame(&path, |name| Some(vec![written(name), elsewhere(name)]));
+        let elsewhere = |_: &str| write_share("si /nowhere/frame.vtu", &s, whole);
+        let none = write_frame(&path, UnitSystem::Si, |name| {
+            Some(vec![written(name), elsewhere(name)])
+        });
         assert_eq!(none.unwrap(), None);
-        assert_eq!(write_frame(&path, |_| None).unwrap(), None);
+        assert_eq!(write_frame(&path, UnitSystem::Si, |_| None).unwrap(), None);
         let full = |name: &str| Some(vec![written(name), b"\x02disk full".to_vec()]);
-        let text = write_frame(&path, full).unwrap_err().to_string();
+        let text = write_frame(&path, UnitSystem::Si, full)
+            .unwrap_err()
+            .to_string();
         assert!(
             text.contains("frame.vtu") && text.ends_with("rank 1: disk full"),
             "{text}"
@@ -189,7 +219,9 @@ mod tests {
             let second = Share { first: 1, ..whole };
             Some(vec![write_share(name, &part(&s, 1..3), second)])
         };
-        let text = write_frame(&path, half).unwrap_err().to_string();
+        let text = write_frame(&path, UnitSystem::Si, half)
+            .unwrap_err()
+            .to_string();
         assert!(text.contains("nobody wrote from byte 0 on"), "{text}");
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "of before");
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);

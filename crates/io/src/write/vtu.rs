@@ -8,9 +8,11 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::ops::Range;
 
 use peridyne::observe::{Snapshot, Values};
+use peridyne::run::ranks::Share;
 
 use super::fields::{SYMMETRIC, fields, integers, invalid, rows, write_positions, write_values};
 use super::grown::{Seal, Summed};
+use crate::deck::{Dim, UnitSystem};
 use crate::read::Cells;
 
 const VERTEX: u8 = 1;
@@ -79,10 +81,11 @@ struct Topology<'a> {
     types: Block<'a>,
 }
 
-/// An array of the file: where it goes, name, and contents. Blocks follow in the order of the header.
+/// An array of the file: where it goes, name, what it measures, and contents. Blocks follow in the order of the header.
 struct Array<'a> {
     section: &'static str,
     name: &'a str,
+    dimension: Dim,
     block: Block<'a>,
 }
 
@@ -90,8 +93,8 @@ struct Array<'a> {
 ///
 /// # Errors
 /// Those of `w`; `InvalidInput` for arrays of unequal lengths.
-pub fn write_points<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
-    write_grid(w, s, of_points(0..s.reference.len()))
+pub fn write_points<W: Write>(w: &mut W, s: &Snapshot, units: UnitSystem) -> io::Result<()> {
+    write_grid(w, s, of_points(0..s.reference.len()), units)
 }
 
 /// Vertices at the points with these ids.
@@ -121,7 +124,7 @@ pub struct Part {
     pub seal: Seal,
 }
 
-/// Writes, of the file that [`write_points`] would write of so many points, what is said of those of a snapshot, whose ids follow `first`; whoever has the first
+/// Writes, of the file that [`write_points`] would write of so many points, what is said of those of a snapshot, which are this share; whoever has the first
 /// point writes what is said of all. The parts that it has written.
 ///
 /// # Errors
@@ -129,8 +132,8 @@ pub struct Part {
 pub fn write_share(
     file: &mut File,
     s: &Snapshot,
-    first: usize,
-    points: usize,
+    units: UnitSystem,
+    Share { first, points }: Share,
 ) -> io::Result<Vec<Part>> {
     let own = s.reference.len();
     if own == 0 {
@@ -141,7 +144,7 @@ pub fn write_share(
         of_points(first..first + own),
     );
     let mut header = vec![];
-    write_header(&mut header, s, (points, (points, points)), &whole)?;
+    write_header(&mut header, s, (points, (points, points)), &whole, units)?;
     let mut parts = vec![];
     let mut put = |at: u64, write: &dyn Fn(&mut dyn Write) -> io::Result<()>| {
         file.seek(SeekFrom::Start(at))?;
@@ -182,7 +185,12 @@ pub fn write_share(
 ///
 /// # Errors
 /// Those of `w`; `InvalidInput` for arrays of unequal lengths.
-pub fn write_cells<W: Write>(w: &mut W, s: &Snapshot, cells: &Cells) -> io::Result<()> {
+pub fn write_cells<W: Write>(
+    w: &mut W,
+    s: &Snapshot,
+    cells: &Cells,
+    units: UnitSystem,
+) -> io::Result<()> {
     let of = cells.of_points(&s.reference);
     let shapes = Shapes { cells, of };
     let corners = shapes.corners();
@@ -196,7 +204,7 @@ pub fn write_cells<W: Write>(w: &mut W, s: &Snapshot, cells: &Cells) -> io::Resu
         offsets: Block::Ends(&shapes),
         types: Block::Kinds(&shapes),
     };
-    write_grid(w, s, topology)
+    write_grid(w, s, topology, units)
 }
 
 /// Writes the unbroken bonds as line cells between the current positions, with the same arrays on the points.
@@ -204,7 +212,7 @@ pub fn write_cells<W: Write>(w: &mut W, s: &Snapshot, cells: &Cells) -> io::Resu
 ///
 /// # Errors
 /// Those of `w`; `InvalidInput` when the snapshot carries no bonds or arrays of unequal lengths.
-pub fn write_bonds<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
+pub fn write_bonds<W: Write>(w: &mut W, s: &Snapshot, units: UnitSystem) -> io::Result<()> {
     let bonds = s
         .bonds
         .as_deref()
@@ -226,16 +234,21 @@ pub fn write_bonds<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
             kind: LINE,
         },
     };
-    write_grid(w, s, topology)
+    write_grid(w, s, topology, units)
 }
 
 /// What comes after all arrays.
 const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
 
-fn write_grid<W: Write>(w: &mut W, s: &Snapshot, topology: Topology) -> io::Result<()> {
+fn write_grid<W: Write>(
+    w: &mut W,
+    s: &Snapshot,
+    topology: Topology,
+    units: UnitSystem,
+) -> io::Result<()> {
     let (n, size) = (s.reference.len(), (topology.points, topology.cells));
     let arrays = arrays(s, topology)?;
-    write_header(w, s, (n, size), &arrays)?;
+    write_header(w, s, (n, size), &arrays, units)?;
     for array in &arrays {
         w.write_all(&array.block.bytes(n).to_le_bytes())?;
         array.block.write(w, s)?;
@@ -250,17 +263,20 @@ fn arrays<'a>(s: &'a Snapshot, topology: Topology<'a>) -> io::Result<Vec<Array<'
         arrays.push(Array {
             section: topology.section,
             name: column.name(),
+            dimension: column.declaration.dimension,
             block: Block::Field(&column.values),
         });
     }
     arrays.push(Array {
         section: topology.section,
         name: "id",
+        dimension: Dim::NUMBER,
         block: topology.ids,
     });
     arrays.push(Array {
         section: "Points",
         name: "position",
+        dimension: Dim::LENGTH,
         block: topology.places,
     });
     for (name, block) in [
@@ -271,6 +287,7 @@ fn arrays<'a>(s: &'a Snapshot, topology: Topology<'a>) -> io::Result<Vec<Array<'
         arrays.push(Array {
             section: "Cells",
             name,
+            dimension: Dim::NUMBER,
             block,
         });
     }
@@ -282,6 +299,7 @@ fn write_header<W: Write>(
     s: &Snapshot,
     (n, (points, cells)): (usize, (usize, usize)),
     arrays: &[Array],
+    units: UnitSystem,
 ) -> io::Result<()> {
     writeln!(w, r#"<?xml version="1.0"?>"#)?;
     writeln!(
@@ -323,9 +341,16 @@ fn write_header<W: Write>(
             writeln!(w, "<{section}{active}>")?;
         }
         let (kind, components) = a.block.kind();
+        let end = match units.unit(a.dimension) {
+            unit if unit.is_empty() => "/>".to_string(),
+            // where VTK keeps the unit of an array
+            unit => format!(
+                r#"><InformationKey name="UNITS_LABEL" location="vtkDataArray">{unit}</InformationKey></DataArray>"#
+            ),
+        };
         writeln!(
             w,
-            r#"<DataArray type="{kind}" Name="{}" NumberOfComponents="{components}"{} format="appended" offset="{offset}"/>"#,
+            r#"<DataArray type="{kind}" Name="{}" NumberOfComponents="{components}"{} format="appended" offset="{offset}"{end}"#,
             a.name,
             a.block.names()
         )?;
@@ -442,6 +467,7 @@ pub(super) mod tests {
     use super::super::fields::positions;
     use super::super::fields::tests::{put, small};
     use super::*;
+    use crate::deck::Constants;
 
     /// Reads an attribute of the `<DataArray>` with this name.
     fn attribute<'a>(header: &'a str, array: &str, key: &str) -> &'a str {
@@ -484,7 +510,7 @@ pub(super) mod tests {
     fn points_come_back() {
         let s = small();
         let mut file = Vec::new();
-        write_points(&mut file, &s).unwrap();
+        write_points(&mut file, &s, UnitSystem::Si).unwrap();
         assert_eq!(
             floats(&file, "position"),
             positions(&s).flatten().collect::<Vec<_>>()
@@ -528,7 +554,7 @@ pub(super) mod tests {
         ];
         cells.push(9, square.into_iter(), [-0.0; 3]);
         let mut file = Vec::new();
-        write_cells(&mut file, &s, &cells).unwrap();
+        write_cells(&mut file, &s, &cells, UnitSystem::Si).unwrap();
         let header = String::from_utf8_lossy(&file);
         assert!(header.contains(r#"NumberOfPoints="8" NumberOfCells="3""#));
         assert!(header.contains("<CellData ") && !header.contains("PointData"));
@@ -556,7 +582,7 @@ pub(super) mod tests {
         let rows = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
         put(&mut s, "gradient", Values::Tensors(vec![rows; 3]));
         let mut file = Vec::new();
-        write_points(&mut file, &s).unwrap();
+        write_points(&mut file, &s, UnitSystem::Si).unwrap();
         assert_eq!(floats(&file, "stress")[..6], [1.0, 2.0, 3.0, 4.0, 6.0, 5.0]);
         assert_eq!(floats(&file, "gradient")[9..18], rows);
         let header = String::from_utf8_lossy(&file);
@@ -567,7 +593,7 @@ pub(super) mod tests {
     #[test]
     fn header_says_what_is_there() {
         let mut file = Vec::new();
-        write_bonds(&mut file, &small()).unwrap();
+        write_bonds(&mut file, &small(), UnitSystem::Si).unwrap();
         let header = String::from_utf8_lossy(&file);
         assert!(header.contains(r#"NumberOfPoints="3" NumberOfCells="2""#));
         assert!(header.contains(r#"byte_order="LittleEndian" header_type="UInt64""#));
@@ -580,9 +606,45 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn arrays_say_their_units() {
+        let mut s = small();
+        let of = |name: &str, dimension| {
+            let column = s.columns.iter().find(|c| c.name() == name).unwrap();
+            let mut column = column.clone();
+            column.declaration.dimension = dimension;
+            column
+        };
+        s.columns = vec![
+            of("displacement", Dim::LENGTH),
+            of("velocity", Dim::VELOCITY),
+            of("damage", Dim::NUMBER),
+        ];
+        let units = |units: UnitSystem| -> Vec<String> {
+            let mut file = Vec::new();
+            write_points(&mut file, &s, units).unwrap();
+            let header = String::from_utf8_lossy(&file).into_owned();
+            let of = |name: &str| {
+                let (_, tag) = header.split_once(&format!("Name=\"{name}\"")).unwrap();
+                let (line, _) = tag.split_once('\n').unwrap();
+                let key = r#"<InformationKey name="UNITS_LABEL" location="vtkDataArray">"#;
+                line.split_once(key)
+                    .map(|(_, rest)| rest.split_once('<').unwrap().0.to_string())
+                    .unwrap_or_default()
+            };
+            ["displacement", "velocity", "damage", "position", "id"]
+                .map(of)
+                .into()
+        };
+        assert_eq!(units(UnitSystem::Si), ["m", "m/s", "", "m", ""]);
+        let metal = UnitSystem::Metal(Constants::default());
+        assert_eq!(units(metal), ["Å", "Å ps^-1", "", "Å", ""]);
+        assert_eq!(units(UnitSystem::None), [""; 5]);
+    }
+
+    #[test]
     fn bonds_come_back() {
         let mut file = Vec::new();
-        write_bonds(&mut file, &small()).unwrap();
+        write_bonds(&mut file, &small(), UnitSystem::Si).unwrap();
         assert_eq!(integers(&file, "connectivity"), [0, 1, 1, 2]);
         assert_eq!(integers(&file, "offsets"), [2, 4]);
         assert_eq!(appended(&file, "types"), [3, 3]);
@@ -591,7 +653,7 @@ pub(super) mod tests {
             ..small()
         };
         assert!(
-            write_bonds(&mut Vec::new(), &none)
+            write_bonds(&mut Vec::new(), &none, UnitSystem::Si)
                 .unwrap_err()
                 .to_string()
                 .contains("no bonds")
@@ -616,11 +678,11 @@ pub(super) mod tests {
             }
         }
         let mut whole = Vec::new();
-        write_points(&mut whole, &small()).unwrap();
+        write_points(&mut whole, &small(), UnitSystem::Si).unwrap();
         for room in 0..whole.len() {
-            let error = write_points(&mut Limited(room), &small()).unwrap_err();
+            let error = write_points(&mut Limited(room), &small(), UnitSystem::Si).unwrap_err();
             assert_eq!(error.kind(), io::ErrorKind::StorageFull);
         }
-        write_points(&mut Limited(whole.len()), &small()).unwrap();
+        write_points(&mut Limited(whole.len()), &small(), UnitSystem::Si).unwrap();
     }
 }

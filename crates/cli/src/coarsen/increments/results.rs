@@ -106,6 +106,7 @@ impl Written {
                 let folder = Folder::claim(&self.out)?;
                 let options = SeriesOptions {
                     pictures: vec![],
+                    units: self.units,
                     ..SeriesOptions::default()
                 };
                 let mut series = Series::new(&self.out, options)?;

@@ -8,7 +8,7 @@ use peridyne::run::Simulation;
 use peridyne::state::{Archive, Owner};
 
 use super::writer::{Made, Now, Writer};
-use crate::drive::plan::DriveError;
+use crate::drive::plan::{DriveError, Plan};
 use crate::write::exodus::{Exodus, Layout};
 use crate::write::history::Column;
 
@@ -60,7 +60,7 @@ impl Writer for ExodusFrames {
         let Some(plan) = &now.plan.exodus else {
             return Ok(());
         };
-        let layout = layout(plan, &now.plan.title, now.sim, &self.columns);
+        let layout = layout(now.plan, plan, now.sim, &self.columns);
         let path = now.plan.dir.join(&plan.path);
         if goes_on {
             // the first frame is that of the start
@@ -88,7 +88,7 @@ impl Writer for ExodusFrames {
 }
 
 /// Blocks by material and body, the deck's sets, and the names of the history's columns.
-fn layout(plan: &ExodusPlan, title: &str, sim: &mut dyn Simulation, columns: &[Column]) -> Layout {
+fn layout(all: &Plan, plan: &ExodusPlan, sim: &mut dyn Simulation, columns: &[Column]) -> Layout {
     let count = sim.info().points as usize;
     let mut of = |name: &str, several: bool| match sim.column(name).map(|c| c.values) {
         Some(Values::Counts(of)) if several => of,
@@ -115,16 +115,19 @@ fn layout(plan: &ExodusPlan, title: &str, sim: &mut dyn Simulation, columns: &[C
         let points = sim.members(name)?;
         (!points.is_empty()).then(|| (name.clone(), points))
     });
-    let mut globals = vec!["step".to_string()];
+    let mut globals = vec![Column::new("step", "")];
     // time has a place of its own
-    globals.extend(columns.iter().skip(1).map(|c| c.name.replace(' ', "_")));
+    let rest = columns.iter().skip(1);
+    globals.extend(rest.map(|c| Column::new(c.name.replace(' ', "_"), &*c.unit)));
     Layout {
-        title: title.to_string(),
+        title: all.title.clone(),
         blocks: { blocks.into_iter() }
             .map(|([body, material], points)| (name(body, material), points))
             .collect(),
         sets: sets.collect(),
         volume: sim.scalars("volume"),
         globals,
+        units: all.units,
+        time_unit: all.time_unit.clone(),
     }
 }

@@ -111,6 +111,7 @@ fn write_modes(now: &mut Now<'_>) -> Result<(), DriveError> {
         bonds: false,
         points: true,
         cells: plan.series.cells.clone(),
+        units: plan.units,
     };
     let mut series = Series::new(plan.dir.join(FOLDER), options)?;
     for (n, mode) in modes.into_iter().enumerate() {

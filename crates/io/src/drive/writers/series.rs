@@ -95,7 +95,7 @@ fn write(series: &mut Series, now: &mut Now<'_>, is_drawn: bool) -> Result<(), D
         let when = (now.sim.step_number(), frame_time(now.sim));
         let (sim, plan) = (&mut *now.sim, now.plan);
         let ask = |name: &str| {
-            let fields = plan.frame_fields(sim);
+            let fields = plan.written_fields(sim);
             let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
             sim.shares(&fields, name)
         };

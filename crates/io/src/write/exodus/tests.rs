@@ -10,7 +10,12 @@ fn layout() -> Layout {
         blocks: vec![("glass".into(), vec![0, 2]), ("steel".into(), vec![1])],
         sets: vec![("left".into(), vec![1, 2])],
         volume: vec![0.5, 0.25, 1.0],
-        globals: vec!["step".into(), "kinetic_energy".into()],
+        globals: vec![
+            Variable::new("step", ""),
+            Variable::new("kinetic_energy", "J"),
+        ],
+        units: UnitSystem::Si,
+        time_unit: "s".into(),
     }
 }
 
@@ -38,23 +43,30 @@ fn written(path: &Path) -> Vec<u8> {
 }
 
 /// A nodal variable in a frame.
-fn nodal(bytes: &[u8], name: &str, frame: u64) -> Vec<f64> {
-    let reader = Reader::new(bytes).unwrap();
+fn nodal(bytes: &[u8], name: &str, frame: usize) -> Vec<f64> {
+    let reader = Reader::new(bytes.to_vec()).unwrap();
     let names = reader.texts("name_nod_var").unwrap().unwrap();
     let at = names.iter().position(|n| n == name).expect(name) + 1;
-    let values = reader.record(&format!("vals_nod_var{at}"), frame);
-    values.unwrap().unwrap()
+    reader.record(&format!("vals_nod_var{at}"), frame)
+}
+
+/// Frames that a reader sees.
+fn frames(bytes: &[u8]) -> u64 {
+    Reader::new(bytes.to_vec())
+        .unwrap()
+        .length("time_step")
+        .unwrap()
 }
 
 #[test]
 fn frames_come_back() {
     let dir = tempfile::tempdir().unwrap();
     let bytes = written(&dir.path().join("a.e"));
-    let reader = Reader::new(&bytes).unwrap();
-    assert_eq!(reader.header.records, 2);
-    assert_eq!(reader.record("time_whole", 0), Ok(Some(vec![1.5e-7])));
-    assert_eq!(reader.record("time_whole", 1), Ok(Some(vec![2e-7])));
-    assert_eq!(reader.record("vals_glo_var", 1), Ok(Some(vec![12.0, 2.5])));
+    let reader = Reader::new(bytes.clone()).unwrap();
+    assert_eq!(frames(&bytes), 2);
+    assert_eq!(reader.record("time_whole", 0), [1.5e-7]);
+    assert_eq!(reader.record("time_whole", 1), [2e-7]);
+    assert_eq!(reader.record("vals_glo_var", 1), [12.0, 2.5]);
     let s = rich();
     for (a, axis) in ["x", "y", "z"].into_iter().enumerate() {
         let column: Vec<f64> = s.displacement().iter().map(|u| u[a]).collect();
@@ -73,9 +85,33 @@ fn frames_come_back() {
 }
 
 #[test]
+fn variables_have_units() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.e");
+    let mut s = small();
+    let velocity = s.columns.iter_mut().find(|c| c.name() == "velocity");
+    velocity.unwrap().declaration.dimension = Dim::VELOCITY;
+    Exodus::create(&path, &layout(), &s).unwrap();
+    let reader = Reader::new(std::fs::read(&path).unwrap()).unwrap();
+    let unit = |name: &str| reader.attribute(name, "units").unwrap_or_default();
+    let nodal = reader.texts("name_nod_var").unwrap().unwrap();
+    let of = |name: &str| nodal.iter().position(|n| n == name).unwrap() + 1;
+    assert_eq!(unit(&format!("vals_nod_var{}", of("velocity_z"))), "m/s");
+    assert_eq!(unit(&format!("vals_nod_var{}", of("damage"))), "");
+    assert_eq!(
+        (unit("coordy"), unit("time_whole")),
+        ("m".into(), "s".into())
+    );
+    let lines = reader.texts("info_records").unwrap().unwrap();
+    let axes = ["x", "y", "z"].map(|axis| format!("velocity_{axis} [m/s]"));
+    assert_eq!(lines[..3], axes);
+    assert_eq!(lines[3..], ["kinetic_energy [J]"]);
+}
+
+#[test]
 fn the_mesh_of_a_result_is_a_body_again() {
     let dir = tempfile::tempdir().unwrap();
-    let points = parse_exodus(&written(&dir.path().join("a.e")), "a.e").unwrap();
+    let points = parse_exodus(written(&dir.path().join("a.e")), "a.e").unwrap();
     let s = small();
     let order = [0, 2, 1].map(|i: usize| s.reference[i]);
     assert_eq!(points.cloud.position, order);
@@ -94,13 +130,7 @@ fn a_frame_that_was_cut_off_is_not_counted_and_is_written_over() {
     let path = dir.path().join("a.e");
     let whole = written(&path);
     let mut file = Exodus::create(&path, &layout(), &rich()).unwrap();
-    assert_eq!(
-        Reader::new(&std::fs::read(&path).unwrap())
-            .unwrap()
-            .header
-            .records,
-        0
-    );
+    assert_eq!(frames(&std::fs::read(&path).unwrap()), 0);
     file.push(&rich(), &[7.0, 1.5]).unwrap();
     // a run that was killed in the next frame
     let end = file.start + file.record;
@@ -108,7 +138,7 @@ fn a_frame_that_was_cut_off_is_not_counted_and_is_written_over() {
     half.seek(SeekFrom::Start(end)).unwrap();
     half.write_all(&[7; 40]).unwrap();
     let bytes = std::fs::read(&path).unwrap();
-    assert_eq!(Reader::new(&bytes).unwrap().header.records, 1);
+    assert_eq!(frames(&bytes), 1);
     assert_eq!(nodal(&bytes, "damage", 0), [0.0, 0.25, 1.0]);
     file.push(&later(), &[12.0, 2.5]).unwrap();
     // the same step again is the same frame
@@ -175,16 +205,11 @@ fn long_names_and_titles_fit() {
     layout.sets[0].0 = "a".repeat(70);
     Exodus::create(&path, &layout, &rich()).unwrap();
     let bytes = std::fs::read(&path).unwrap();
-    let reader = Reader::new(&bytes).unwrap();
+    let reader = Reader::new(bytes).unwrap();
     assert_eq!(reader.texts("ns_names"), Ok(Some(vec!["a".repeat(70)])));
-    let title = reader.header.attributes.iter().find(|a| a.0 == "title");
-    assert_eq!(title.unwrap().1, Attribute::Text("ä".repeat(40)));
-    let width = reader
-        .header
-        .attributes
-        .iter()
-        .find(|a| a.0 == "maximum_name_length");
-    assert_eq!(width.unwrap().1, Attribute::Ints(vec![70]));
+    assert_eq!(reader.global("title").as_string(), Some("ä".repeat(40)));
+    let width = reader.global("maximum_name_length");
+    assert_eq!(width.as_f64(), Some(70.0));
 }
 
 #[test]

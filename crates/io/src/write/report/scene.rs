@@ -6,6 +6,7 @@ use super::quantise::Codes;
 use crate::read::frames::Frames;
 use crate::read::vtu::{self, Array, Frame};
 use crate::read::{Atoms, ReadError};
+use crate::write::fields::SIZE;
 use crate::write::run_json::Setting;
 
 /// Numbers that are held at once, of all points, components and frames.
@@ -265,13 +266,16 @@ pub fn of_collection(
         return Ok(None);
     };
     let first = Frame::open(&folder.join(first))?;
-    let width: usize = first.arrays.iter().map(|a| a.components).sum();
+    let shown = |a: &&Array| is_shown(&a.name, setting);
+    let width: usize = { first.arrays.iter().filter(shown) }
+        .map(|a| a.components)
+        .sum();
     let numbers = chosen(entries.len(), width * first.points);
     let mut maker = Maker::new(kind, setting);
     for n in &numbers {
         let path = folder.join(&entries[*n].1);
         let frame = Frame::open(&path)?;
-        maker.push(look(&frame, &path, entries[*n].0)?, setting)?;
+        maker.push(look(&frame, (&path, entries[*n].0), setting)?, setting)?;
     }
     let mut scene = maker.made();
     if let Some(scene) = &mut scene {
@@ -280,7 +284,16 @@ pub fn of_collection(
     Ok(scene)
 }
 
-fn look<'a>(frame: &'a Frame, path: &'a Path, value: f64) -> Result<Look<'a>, ReadError> {
+/// Is an array of a file a field to look at? How large points are is in all files, and one of those that were asked for.
+fn is_shown(name: &str, setting: &Setting) -> bool {
+    name != SIZE || setting.fields.iter().any(|f| f.name == name)
+}
+
+fn look<'a>(
+    frame: &'a Frame,
+    (path, value): (&'a Path, f64),
+    setting: &'a Setting,
+) -> Result<Look<'a>, ReadError> {
     let read = move |array: &Array| {
         let numbers = frame.numbers(array);
         numbers.map_err(|e| ReadError::file(path, e.to_string()))
@@ -290,7 +303,7 @@ fn look<'a>(frame: &'a Frame, path: &'a Path, value: f64) -> Result<Look<'a>, Re
     let shown = frame
         .arrays
         .iter()
-        .filter(move |a| !hidden.contains(&&*a.name));
+        .filter(move |a| !hidden.contains(&&*a.name) && is_shown(&a.name, setting));
     let position = all("position")?.unwrap_or_default();
     let displacement = all("displacement")?;
     let arrays = shown.map(move |a| {
