@@ -1,6 +1,7 @@
 //! Probes of cracks: where they end, how far they open, what they cut off.
 
 use crate::sample::{PMB, block, hold, made, probe, run, shown, statics, text};
+use peridyne::space::region::Region;
 use peridyne::spec::*;
 
 /// A plate of 41 × 21 points at whole numbers with a crack of broken bonds.
@@ -59,7 +60,7 @@ fn a_crack_is_followed_along_any_direction_and_in_a_set() {
     let mut spec = cut([20.5, -1.0], [20.5, 8.5]);
     spec.sets.push(SetSpec {
         name: "below".into(),
-        members: Members::Region(peridyne::space::region::Region::Block {
+        members: Members::Region(Region::Block {
             low: [-1.0; 3],
             high: [50.0, 4.0, 1.0],
         }),
