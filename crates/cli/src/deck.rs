@@ -35,7 +35,7 @@ const OTHERS: [(&[u8], &str, bool); 11] = [
     (b"CDF\x01", "an Exodus mesh", true),
     (b"CDF\x02", "an Exodus mesh", true),
     (b"CDF\x05", "an Exodus mesh", true),
-    (b"\x89HDF", "a file of HDF5", false),
+    (b"\x89HDF", "a file of HDF5, perhaps an Exodus mesh", true),
     (b"PK\x03\x04", "an archive of arrays", true),
     (b"\x89PNG", "a picture", false),
     (b"<?xml", "an XML file", false),

@@ -79,3 +79,92 @@ fn files_stay_in_the_folder_and_a_mesh_is_no_deck() {
     let said = words.collect::<Vec<_>>().join(" ");
     assert!(said.contains("this is an Exodus mesh"), "{said}");
 }
+
+/// A file that verify/output/exodus_layouts.py made.
+fn layout(name: &str) -> Vec<u8> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../io/tests/data/exodus");
+    let packed = fs::File::open(folder.join(format!("{name}.gz"))).unwrap();
+    let mut all = vec![];
+    std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(packed), &mut all).unwrap();
+    all
+}
+
+#[test]
+fn netcdf4_is_read_like_netcdf3_and_what_is_damaged_is_an_error_of_input() {
+    let dir = TempDir::new().unwrap();
+    let (mesh, deck) = (dir.path().join("mesh.e"), dir.path().join("deck.toml"));
+    let text = "horizon = 3\nbody = { file = \"mesh.e\" }\n\
+        material = { density = 2440, law = { pmb = { young = \"72 GPa\" } } }\nrun = { steps = 4 }\n\
+        output = { picture = false, report = false }\n\
+        initial = [{ velocity = { x = \"1 m/s * x / 1 m\" } }]\n";
+    fs::write(&deck, text).unwrap();
+    let run = |bytes: &[u8]| {
+        fs::write(&mesh, bytes).unwrap();
+        let out = dir.path().join("out");
+        let (deck, out) = (deck.to_str().unwrap(), out.to_str().unwrap());
+        peridyne(&["run", deck, "--out", out])
+    };
+    let hash = |name: &str| {
+        let (code, _, said) = run(&layout(name));
+        assert_eq!(code, Some(0), "{name}: {said}");
+        let report = fs::read(dir.path().join("out/run.json")).unwrap();
+        let report: Value = serde_json::from_slice(&report).unwrap();
+        report["state_hash"].as_str().unwrap().to_string()
+    };
+    let wanted = hash("cubit_netcdf3_classic.g");
+    for name in ["cubit_netcdf4.g", "cubit_netcdf4_classic.g", "meshio.e"] {
+        assert_eq!(hash(name), wanted, "{name}");
+    }
+    let whole = layout("cubit_netcdf4.g");
+    for (bytes, told) in [
+        (
+            &whole[..whole.len() / 2],
+            "the file is cut short or damaged",
+        ),
+        (&layout("plain.g")[..], "it is no Exodus mesh"),
+        (&b"neither of them"[..], "it is no netCDF file"),
+        (
+            &layout("absurd.g")[..],
+            "more than a file of this size can hold",
+        ),
+    ] {
+        let (code, _, said) = run(bytes);
+        assert_eq!(code, Some(2), "{said}");
+        let words = said.split_whitespace().filter(|w| *w != "│");
+        let said = words.collect::<Vec<_>>().join(" ");
+        assert!(said.contains(told) && said.contains("mesh.e"), "{said}");
+    }
+}
+
+#[test]
+fn frames_have_volumes_whatever_fields_are_asked_for() {
+    let dir = TempDir::new().unwrap();
+    let deck = dir.path().join("deck.toml");
+    // 1 mm × 1 mm × 2 mm
+    let text = "horizon = { m_ratio = 3 }\nthickness = \"2 mm\"\nplane = \"stress\"\n\
+        body = { lattice = \"square\", spacing = \"1 mm\", cells = [4, 3] }\n\
+        material = { density = 2440, law = { pmb = { young = \"72 GPa\" } } }\nrun = { steps = 1 }\n\
+        output = { fields = [\"damage\"], bonds = true, picture = false, report = false }\n";
+    fs::write(&deck, text).unwrap();
+    let out = dir.path().join("out");
+    let (code, _, said) = peridyne(&[
+        "run",
+        deck.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(code, Some(0), "{said}");
+    for name in [
+        "points_00000000.vtu",
+        "points_00000001.vtu",
+        "bonds_00000001.vtu",
+    ] {
+        let frame = peridyne_io::read::vtu::Frame::open(&out.join(name)).unwrap();
+        let volume = frame.numbers(frame.array("volume").unwrap()).unwrap();
+        assert_eq!(volume.len(), 12, "{name}");
+        assert!(
+            volume.iter().all(|v| (v / 2e-9 - 1.0).abs() < 1e-12),
+            "{name}"
+        );
+    }
+}

@@ -265,7 +265,15 @@ fn a_mesh_in_netcdf4_is_that_of_netcdf3() {
     let (text, points) = of("cubit_netcdf4.g");
     assert_eq!(points.cloud.volume.len(), 2);
     let sets: Vec<&str> = points.cloud.sets.iter().map(|s| &*s.0).collect();
-    assert_eq!(sets[..4], ["steel", "block_20", "left", "nodelist_7"]);
+    let names = [
+        "steel",
+        "block_20",
+        "both",
+        "left",
+        "nodelist_7",
+        "surface_4",
+    ];
+    assert_eq!(sets, names);
     assert_eq!((text, points), of("cubit_netcdf3_classic.g"));
 }
 
