@@ -268,7 +268,7 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
     for picture in &done.pictures {
         say(&format!("picture: {}", plan.dir.join(picture).display()));
     }
-    if plan.report {
+    if plan.output.report {
         say(&report::told(&plan.dir));
     }
     say(&report::state(done.hash));
@@ -491,14 +491,12 @@ fn plan(
         sources: deck.sources(),
         rigid: RigidBodies::default(),
         marks: MarkNotes::default(),
-        report: output.report,
         allow_outside,
+        output: output.clone(),
         steps,
         increments: deck.increments(),
         every: output.every(steps),
         modes: deck.modes,
-        linear_body: output.linear_body,
-        fragments: output.fragments,
         history: output.history.unwrap_or((steps / 100).max(1)),
         series: SeriesOptions {
             points: output.vtu,
@@ -513,10 +511,8 @@ fn plan(
         },
         space_time: vec![],
         exodus: exodus(deck),
-        vtkhdf: output.vtkhdf.clone(),
         fields: deck::fields(deck),
         continuum: continuum(deck),
-        checkpoints: output.checkpoints,
         asked: Asked::default(),
         units: deck.units,
         time_unit: time_unit.to_string(),

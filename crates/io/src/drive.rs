@@ -78,7 +78,7 @@ impl Run {
         let told = sim.info().warnings.iter().map(|w| plan.units.tell(w));
         let mut run = Run {
             writers: writers::all(&columns),
-            checkpoints: Checkpoints::new(&plan.dir, plan.checkpoints, goes_on)?,
+            checkpoints: Checkpoints::new(&plan.dir, plan.output.checkpoints, goes_on)?,
             known: Known {
                 ways: row::Way::all(sim, plan),
                 warnings: plan.warnings.iter().cloned().chain(told).collect(),
@@ -333,7 +333,7 @@ impl Run {
             pictures: made.pictures,
         };
         report.write(&plan.dir.join("run.json"))?;
-        if plan.report {
+        if plan.output.report {
             progress.phase("report");
             report::of_run(&plan.dir, report.ended_by.is_some())?;
         }

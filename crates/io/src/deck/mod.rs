@@ -27,6 +27,7 @@ mod tests;
 pub use describe::{describe, sources};
 pub use doubts::{Doubt, doubts};
 pub use error::DeckError;
+pub use lower::{OutputSpec, PictureSpec, SpaceTimeSpec};
 pub use schema::{law_schema, schema};
 pub use source::Flag;
 pub use units::{
@@ -35,9 +36,6 @@ pub use units::{
 
 use crate::continuum::plan::FieldsSpec;
 use crate::read::Cells;
-use crate::write::checkpoint::CheckpointSchedule;
-use crate::write::space_time::Window;
-use crate::write::trajectory::Format;
 use document::Document;
 use lower::{Entries, Files};
 use peridyne::error::BuildError;
@@ -45,7 +43,7 @@ use peridyne::run::Info;
 use peridyne::spec::Spec;
 use source::Source;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// A deck that was understood.
@@ -75,92 +73,6 @@ pub struct Deck {
     /// Entries of the deck that those of the spec come from.
     entries: Entries,
     source: Source,
-}
-
-/// What a run writes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OutputSpec {
-    /// Folder; `None`: chosen by the caller.
-    pub dir: Option<PathBuf>,
-    /// Steps between frames; `None`: first and last state.
-    pub every: Option<u64>,
-    /// Or how many frames there are after the first.
-    pub frames: Option<u64>,
-    /// VTU series with PVD.
-    pub vtu: bool,
-    /// Exodus II file of this name.
-    pub exodus: Option<PathBuf>,
-    /// VTKHDF file of this name.
-    pub vtkhdf: Option<PathBuf>,
-    /// Unbroken bonds in the VTU.
-    pub bonds: bool,
-    /// The linear body about the last state.
-    pub linear_body: bool,
-    /// Write `fragments.csv` of the last state.
-    pub fragments: bool,
-    /// LAMMPS dump of points of this name; that of atoms is a trajectory.
-    pub dump: Option<PathBuf>,
-    /// Steps between rows of `history.csv`; `None`: chosen by the caller.
-    pub history: Option<u64>,
-    /// Pictures of the last state.
-    pub pictures: Vec<PictureSpec>,
-    /// Fields of a body on a line over place and time.
-    pub space_time: Vec<SpaceTimeSpec>,
-    /// `report.html` at the end.
-    pub report: bool,
-    /// Files of all frames of atoms.
-    pub trajectories: Vec<(PathBuf, Format)>,
-    /// LAMMPS data file of the last state of atoms.
-    pub data: Option<PathBuf>,
-    /// When states to go on from are written; `None`: only where a run is ended early.
-    pub checkpoints: Option<CheckpointSchedule>,
-    /// Keys whose names lead out of the folder they belong in, and the names.
-    pub outside: Vec<(&'static str, String)>,
-}
-
-impl OutputSpec {
-    /// Steps between frames of a run of `steps`; `None`: first and last state.
-    pub fn every(&self, steps: u64) -> Option<u64> {
-        let shared = |frames: u64| steps.div_ceil(frames).max(1);
-        self.every.or(self.frames.map(shared))
-    }
-}
-
-/// A picture that a deck asks for.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct PictureSpec {
-    /// `None`: what the run is about.
-    pub field: Option<String>,
-    pub component: Option<String>,
-    pub scale: Option<f64>,
-    /// Plain numbers of the deck.
-    pub range: Option<[f64; 2]>,
-    /// A vector field.
-    pub arrows: Option<String>,
-    pub film: bool,
-}
-
-/// A field over place and time that a deck asks for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpaceTimeSpec {
-    /// [`DENSITY`](crate::write::space_time::DENSITY) or a field of points.
-    pub field: String,
-    pub component: Option<String>,
-    /// Plain numbers of the deck.
-    pub range: Option<[f64; 2]>,
-    pub window: Window,
-}
-
-impl SpaceTimeSpec {
-    /// The whole of a field.
-    pub fn of(field: String) -> SpaceTimeSpec {
-        SpaceTimeSpec {
-            field,
-            component: None,
-            range: None,
-            window: Window::default(),
-        }
-    }
 }
 
 impl Deck {

@@ -17,7 +17,7 @@ impl Plan {
         });
         let points = self.series.dump.iter().map(|(name, _)| name);
         let exodus = self.exodus.iter().map(|e| &e.path);
-        let named = atoms.chain(points).chain(exodus).chain(&self.vtkhdf);
+        let named = atoms.chain(points).chain(exodus).chain(&self.output.vtkhdf);
         named.map(|p| &**p)
     }
 

@@ -5,8 +5,8 @@ use super::options::{ExodusPlan, SpaceTimeOptions};
 use super::rigid::RigidBodies;
 
 use crate::continuum::run::FieldsPlan;
-use crate::deck::UnitSystem;
-use crate::write::checkpoint::{Asked, CheckpointSchedule, ResumeError};
+use crate::deck::{OutputSpec, UnitSystem};
+use crate::write::checkpoint::{Asked, ResumeError};
 use crate::write::fields::SIZE;
 use crate::write::picture::rigid::Placed;
 use crate::write::picture::shown::About;
@@ -38,10 +38,10 @@ pub struct Plan {
     pub rigid: RigidBodies,
     /// What is done to the body, for the report.
     pub marks: MarkNotes,
-    /// Write `report.html` at the end.
-    pub report: bool,
     /// May files that the deck names lie outside `dir`?
     pub allow_outside: bool,
+    /// What the deck asks for: below is what follows for this model.
+    pub output: OutputSpec,
     pub steps: u64,
     /// Of these, increments of statics before motion.
     pub increments: u64,
@@ -51,17 +51,11 @@ pub struct Plan {
     pub history: u64,
     /// Modes of vibration about the last state.
     pub modes: usize,
-    /// Write `linear_body.npz` about the last state.
-    pub linear_body: bool,
-    /// Write `fragments.csv` of the last state.
-    pub fragments: bool,
     pub series: SeriesOptions,
     /// Fields of a body on a line over place and time.
     pub space_time: Vec<SpaceTimeOptions>,
     /// Frames in an Exodus file.
     pub exodus: Option<ExodusPlan>,
-    /// Frames in a VTKHDF file of this name.
-    pub vtkhdf: Option<PathBuf>,
     /// Columns of a frame; [`SIZE`] is added.
     pub fields: Vec<String>,
     /// Of the numbers that are computed, for headers of probes.
@@ -76,8 +70,6 @@ pub struct Plan {
     pub atoms: Option<AtomsPlan>,
     /// Continuum fields, where any are asked for.
     pub continuum: Option<FieldsPlan>,
-    /// When states to go on from are written; `None`: only where the run is ended early, or somebody asks.
-    pub checkpoints: Option<CheckpointSchedule>,
     /// What such a state says of how the run was asked for.
     pub asked: Asked,
 }

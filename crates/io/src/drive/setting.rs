@@ -23,11 +23,11 @@ impl Plan {
         let modes = self.modes > 0 && self.dir.join("modes.csv").is_file();
         file(modes, "modes.csv");
         file(modes, "modes/points.pvd");
-        file(self.linear_body, "linear_body.npz");
-        file(self.fragments, "fragments.csv");
+        file(self.output.linear_body, "linear_body.npz");
+        file(self.output.fragments, "fragments.csv");
         let dump = series.dump.iter().map(|(name, _)| name);
         let dump = dump.chain(self.exodus.iter().map(|e| &e.path));
-        let dump = dump.chain(&self.vtkhdf);
+        let dump = dump.chain(&self.output.vtkhdf);
         let atoms = self.atoms.iter();
         let named = atoms.flat_map(|a| a.trajectories.iter().map(|(n, _)| n).chain(&a.data));
         files.extend(dump.chain(named).map(|n| n.display().to_string()));

@@ -2,6 +2,7 @@
 
 use super::atoms::AtomsPotentials;
 use super::context::{Context, Result};
+use super::output::{OutputSpec, output};
 use super::section::{plane, section};
 use super::stage::{Entries, Stages};
 use super::units::{measured_constants, units};
@@ -10,7 +11,6 @@ use super::{
     names, periods, probes, schedule, sets, transfer, warnings,
 };
 use crate::continuum::plan::FieldsSpec;
-use crate::deck::OutputSpec;
 use crate::deck::document::Document;
 use crate::deck::error::DeckError;
 use crate::deck::source::Source;
@@ -133,7 +133,7 @@ pub(in crate::deck) fn lower(
     names::folders(&context, &document.output, &document.fields)?;
     let moves = spec.run.schedule.statics().is_none();
     let kinds = [spec.potential().is_some(), moves];
-    let output = schedule::output(&context, &document.output, kinds)?;
+    let output = output(&context, &document.output, kinds)?;
     Ok(Lowered {
         corner: periods::corner(&context, &document.body.value, &spec.body),
         species: species.collect(),

@@ -36,11 +36,11 @@ impl Writer for LastState {
         {
             write_data(&now.plan.dir.join(name), &atoms.last(now.sim))?;
         }
-        if now.plan.fragments {
+        if now.plan.output.fragments {
             let state = now.sim.snapshot(&fragments::COLUMNS, false);
             fragments::write(&inside(now.plan, "fragments.csv"), &state, now.plan.units)?;
         }
-        if now.plan.linear_body {
+        if now.plan.output.linear_body {
             let path = inside(now.plan, "linear_body.npz");
             match now.sim.linear_body() {
                 AnyLinearBody::One(body) => write_linear(&path, &body)?,

@@ -37,7 +37,7 @@ impl Owner for VtkHdfFrames {
 
 impl Writer for VtkHdfFrames {
     fn open(&mut self, now: &mut Now<'_>, goes_on: bool) -> Result<(), DriveError> {
-        let Some(name) = &now.plan.vtkhdf else {
+        let Some(name) = &now.plan.output.vtkhdf else {
             return Ok(());
         };
         let path = now.plan.dir.join(name);
