@@ -4,11 +4,17 @@
 //! ([`received`]) the first signal is a request to end at the next step, and a second one ends the program at once. SIGUSR1 asks for a
 //! state from which the run can go on ([`asked_for_checkpoint`]).
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
+#[cfg(unix)]
+use signal_hook::consts::{SIGHUP, SIGUSR1};
+use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, LazyLock};
+
+/// Windows has none: it is passed over.
+#[cfg(not(unix))]
+const SIGHUP: i32 = 1;
 
 /// A signal that ends runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,7 +89,9 @@ pub fn listen() -> std::io::Result<()> {
             .and_then(|_| flag::register_usize(number, LAST.clone(), number as usize))
             .and_then(|_| flag::register(number, AT_ONCE.clone()))?;
     }
-    flag::register(SIGUSR1, ASKED.clone()).map(drop)
+    #[cfg(unix)]
+    flag::register(SIGUSR1, ASKED.clone())?;
+    Ok(())
 }
 
 /// The signal that this run is to end for. From the first call on the run ends at its next step instead of at once.

@@ -13,6 +13,7 @@ const PORTABLE: bool =
 
 /// For work on the engine: built with PERIDYNE_AVX2_ALONE=1 it has one path. So have its unit tests: that widths do not show is for the
 /// tests of the library as it is.
+#[cfg(target_arch = "x86_64")]
 const WIDE: bool = option_env!("PERIDYNE_AVX2_ALONE").is_none() && cfg!(not(test));
 
 /// Instruction sets with a path of their own. All give the same bits.
