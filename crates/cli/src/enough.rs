@@ -80,7 +80,9 @@ pub fn enough(deck: &Deck, sim: &mut dyn Simulation, dir: &Path) -> Result<(), F
         room(sim.info())
             .map_err(|e| wrong(BuildError::invalid("output.linear_body", e.to_string())))?;
     }
-    if deck.output.fragments && deck.spec.bonds.family != FamilyChoice::Reference {
+    let of_now =
+        deck.spec.potential().is_some() && deck.spec.bonds.family != FamilyChoice::Reference;
+    if deck.output.fragments && of_now {
         let message = "fragments hang together by bonds of the reference, and these atoms are near each other now";
         let error = BuildError::unsupported("output.fragments", message);
         return Err(wrong(error.help("leave it out")));

@@ -204,7 +204,8 @@ fn of_probes(spec: &Spec) -> Vec<Lack> {
     };
     let mut all = vec![];
     let bonds = |m: &Measure| matches!(m, Measure::CrackTip(_) | Measure::Fragments { .. });
-    all.extend(first(&bonds).map(|lack| {
+    let atoms = spec.potential().is_some();
+    all.extend(first(&bonds).filter(|_| atoms).map(|lack| {
         lack(
             Property::OfNow,
             "cracks and fragments are of bonds of the reference, and these atoms are near each other now",
