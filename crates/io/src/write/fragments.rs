@@ -68,3 +68,55 @@ pub fn write(path: &Path, state: &Snapshot, units: UnitSystem) -> Result<(), Wri
     }
     table.save(path)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use peridyne::columns::{Declaration, Shape};
+    use peridyne::observe::{Column, Values};
+
+    #[test]
+    fn each_fragment_has_its_mass_place_and_velocity() {
+        let column = |name: &'static str, shape, values| Column {
+            declaration: Declaration::of_points(name, shape, Dimension::NUMBER, ""),
+            values,
+        };
+        let scalars =
+            |name, values: [f64; 3]| column(name, Shape::Scalar, Values::Scalars(values.to_vec()));
+        let vectors =
+            |name, values: Vec<[f64; 3]>| column(name, Shape::Vector, Values::Vectors(values));
+        // two points of masses 2 and 6, and one of mass 5 by itself
+        let state = Snapshot {
+            dimension: 2,
+            reference: vec![[0.0, 0.0, 0.0], [4.0, 4.0, 0.0], [1.0, 0.0, 0.0]],
+            columns: vec![
+                column("fragment", Shape::Scalar, Values::Counts(vec![0, 1, 0])),
+                scalars("volume", [1.0, 1.0, 2.0]),
+                scalars("density", [2.0, 5.0, 3.0]),
+                vectors(
+                    "velocity",
+                    vec![[4.0, 0.0, 0.0], [7.0, 1.0, 0.0], [0.0, 8.0, 0.0]],
+                ),
+                vectors(
+                    "displacement",
+                    vec![[0.0, 4.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]],
+                ),
+            ],
+            ..Snapshot::default()
+        };
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("fragments.csv");
+        write(&path, &state, UnitSystem::Si).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let rows: Vec<&str> = text.lines().collect();
+        assert_eq!(
+            rows[0],
+            "fragment,points,mass [kg],x [m],y [m],velocity_x [m/s],velocity_y [m/s]"
+        );
+        let numbers =
+            |row: &str| -> Vec<f64> { row.split(',').map(|x| x.parse().unwrap()).collect() };
+        assert_eq!(numbers(rows[1]), [0.0, 2.0, 8.0, 3.0, 1.0, 1.0, 6.0]);
+        assert_eq!(numbers(rows[2]), [1.0, 1.0, 5.0, 5.0, 4.0, 7.0, 1.0]);
+        assert_eq!(rows.len(), 3);
+    }
+}
