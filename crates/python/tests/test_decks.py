@@ -1,5 +1,6 @@
 """Decks, runs and models from Python."""
 
+import io
 import json
 import subprocess
 import sys
@@ -124,6 +125,14 @@ def test_a_force_of_python_acts():
     before = sim.energies()["kinetic"]
     sim.step(400)
     assert sim.energies()["kinetic"] < 0.9 * before
+
+
+def test_a_bar_shows_how_far_a_run_is(tmp_path):
+    text = io.StringIO()
+    run = peridyne.Deck.from_dict(crack()).run(tmp_path / "out", progress=peridyne.progress_bar(file=text, desc="crack"))
+    assert run.record["steps"] == 300
+    shown = text.getvalue()
+    assert shown.startswith("\rcrack:") and "300/300" in shown and "100%" in shown
 
 
 def test_a_run_is_observed_and_ended(tmp_path):

@@ -11,6 +11,7 @@ columns as arrays of NumPy. `peridyne.ase` has calculators for ASE. The program 
 """
 
 from ._peridyne import Deck, DeckError, Error, RunError, Simulation, __version__, resume
+from .bar import progress_bar
 from .results import Run
 
-__all__ = ["Deck", "DeckError", "Error", "Run", "RunError", "Simulation", "__version__", "resume"]
+__all__ = ["Deck", "DeckError", "Error", "Run", "RunError", "Simulation", "__version__", "progress_bar", "resume"]
