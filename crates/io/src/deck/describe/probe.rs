@@ -73,9 +73,9 @@ fn measured(measure: &Measure, set: &str, units: UnitSystem, dimension: usize) -
             place(a),
             place(b)
         ),
-        Measure::Fragments { points: 0 | 1 } => "fragments: number and masses".into(),
+        Measure::Fragments { points: 0 | 1 } => "number and masses of fragments".into(),
         Measure::Fragments { points } => {
-            format!("fragments: number of those of {points} points and more, and masses")
+            format!("number and masses of fragments of {points} points and more")
         }
     }
 }
