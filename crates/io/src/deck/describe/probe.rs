@@ -75,7 +75,7 @@ fn measured(measure: &Measure, set: &str, units: UnitSystem, dimension: usize) -
         ),
         Measure::Fragments { points: 0 | 1 } => "number and masses of fragments".into(),
         Measure::Fragments { points } => {
-            format!("number and masses of fragments of {points} points and more")
+            format!("number of fragments of {points} points and more, and masses")
         }
     }
 }
