@@ -9,7 +9,7 @@ use crate::numbers::duration;
 use crate::signals;
 use crate::study::{Row, Setting, Study, StudyArguments};
 use crate::sweep::design::{Values, vary};
-use curve::Curve;
+use curve::{Curve, CurveArguments};
 use key::Key;
 use peridyne_io::deck::{Deck, rounded};
 use peridyne_theory::fit::{Effort, Ended, Fit, Sure, Unfit, fit, sure};
@@ -32,18 +32,8 @@ pub struct CalibrateArguments {
     /// Where a key begins, e.g. `--start 'material.law.pmb.young=60 GPa'`; the middle of its bounds if not given.
     #[arg(long, value_name = "KEY=VALUE", value_parser = crate::pair)]
     pub start: Vec<(String, String)>,
-    /// What was measured: CSV, whose first line names columns and their units, `opening [mm],pull [kN]`.
-    #[arg(long, value_name = "FILE")]
-    pub measured: PathBuf,
-    /// Column of the measured file, and of `history.csv`, along which curves are compared.
-    #[arg(long, value_name = "COLUMN")]
-    pub x: String,
-    /// Column of both that is fitted.
-    #[arg(long, value_name = "COLUMN")]
-    pub y: String,
-    /// Column of the measured file with the standard deviation of each y: residuals are divided by it.
-    #[arg(long, value_name = "COLUMN")]
-    pub sigma: Option<String>,
+    #[command(flatten)]
+    pub curve: CurveArguments,
     /// Runs at most, those of an earlier part among them.
     #[arg(long, default_value_t = 100)]
     pub evaluations: usize,
@@ -165,11 +155,11 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
     }
     let setting = key::setting(&keys, &start);
     let columns = study.columns(&study.deck(&setting)?, &setting)?;
-    let curve = Curve::read(arguments, &columns)?;
+    let curve = Curve::read(&arguments.curve, &columns)?;
     if curve.x.len() < keys.len() {
         return Err(Failure::input(format!(
             "{}: {} points tell no {} keys apart: measure more, or fit fewer",
-            arguments.measured.display(),
+            arguments.curve.measured.display(),
             curve.x.len(),
             keys.len()
         )));
@@ -183,7 +173,7 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
         key::names(keys.iter()),
         arguments.study.input.file.display(),
         curve.x.len(),
-        arguments.measured.display(),
+        arguments.curve.measured.display(),
         study.dir.display()
     ));
     curve

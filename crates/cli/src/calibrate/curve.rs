@@ -1,15 +1,30 @@
 //! A measured curve, and how far those of runs are from it.
 
-use super::CalibrateArguments;
 use crate::failure::Failure;
 use peridyne_io::deck::rounded;
 use peridyne_io::read::measured;
 use peridyne_io::write::history::Column;
 use peridyne_io::write::report::history;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Ends that differ by less than this part of the curve are one.
 const SAME: f64 = 1e-9;
+
+#[derive(clap::Args)]
+pub struct CurveArguments {
+    /// What was measured: CSV, whose first line names columns and their units, `opening [mm],pull [kN]`.
+    #[arg(long, value_name = "FILE")]
+    pub measured: PathBuf,
+    /// Column of the measured file, and of `history.csv`, along which curves are compared.
+    #[arg(long, value_name = "COLUMN")]
+    pub x: String,
+    /// Column of both that is fitted.
+    #[arg(long, value_name = "COLUMN")]
+    pub y: String,
+    /// Column of the measured file with the standard deviation of each y: residuals are divided by it.
+    #[arg(long, value_name = "COLUMN")]
+    pub sigma: Option<String>,
+}
 
 pub struct Curve {
     /// Columns of runs, with their units.
@@ -25,7 +40,7 @@ pub struct Curve {
 
 impl Curve {
     /// What was measured, in the units of runs, whose `history.csv` has these columns.
-    pub fn read(arguments: &CalibrateArguments, columns: &[Column]) -> Result<Curve, Failure> {
+    pub fn read(arguments: &CurveArguments, columns: &[Column]) -> Result<Curve, Failure> {
         let path = &arguments.measured;
         let step = Column::new("step", "");
         let [x, y] = [("--x", &arguments.x), ("--y", &arguments.y)].map(|(flag, name)| {

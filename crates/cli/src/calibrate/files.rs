@@ -115,8 +115,8 @@ fn json(c: &Calibrated) -> Value {
     let sure = c.sure.as_ref();
     json!({
         "deck": arguments.study.input.file,
-        "measured": arguments.measured,
-        "columns": { "x": arguments.x, "y": arguments.y, "sigma": arguments.sigma },
+        "measured": arguments.curve.measured,
+        "columns": { "x": arguments.curve.x, "y": arguments.curve.y, "sigma": arguments.curve.sigma },
         "points": c.fit.residuals.len(),
         "keys": keys.collect::<Vec<_>>(),
         "correlation": sure.map(|s| &s.correlation),

@@ -6,10 +6,8 @@
 
 mod tree;
 
-pub use tree::{Chunks, Tree};
+pub use tree::{Chunks, NOWHERE, Tree};
 
-/// An address of nothing.
-pub const NOWHERE: u64 = u64::MAX;
 /// Length of the superblock, the first of a file.
 pub const SUPERBLOCK: u64 = 96;
 

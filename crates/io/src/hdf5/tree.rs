@@ -1,7 +1,8 @@
 //! Where the chunks of datasets are: B-trees of version 1 that grow to the right alone, so that all nodes but the last of each level are
 //! full, and what is in a node follows from how many chunks there are.
 
-use super::NOWHERE;
+/// An address of nothing.
+pub const NOWHERE: u64 = u64::MAX;
 
 /// Children of a full node: twice the K that a superblock of version 0 means.
 const FULL: u64 = 64;

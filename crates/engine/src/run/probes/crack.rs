@@ -1,4 +1,4 @@
-//! A crack that is followed: its tip, its length, its branches.
+//! A crack that is followed: its tip, its length, its branches; how far its faces are apart, and what it cuts off.
 //!
 //! A crack is the damaged points of a set that are connected, by steps of at most a horizon in the reference, with the place where it starts.
 //! A point in the row beside a straight crack of the square lattice has lost 33, 39, 42 % of its bonds (horizons of 2, 3, 4 spacings), one in the
@@ -7,6 +7,9 @@
 use std::collections::HashMap;
 
 use crate::body::Body;
+use crate::execute::exact::Exact;
+use crate::fracture::fragments::Fragments;
+use crate::run::system::System;
 use crate::space::Point;
 use crate::spec::CrackTipSpec;
 
@@ -87,6 +90,40 @@ fn of(damaged: &[Damaged], spec: &CrackTipSpec, horizon: f64) -> Tip {
         length: ahead(end),
         branches: branches.max().unwrap_or(0) as f64,
     }
+}
+
+/// How much farther the second of two points is from the first one than in the reference (length), and how far it has moved from it
+/// along each axis.
+pub(super) fn opening<const D: usize>(system: &System<D>, ends: &[Vec<u32>; 2]) -> Vec<f64> {
+    // one rank knows each
+    let [from, to] = ends.each_ref().map(|end| {
+        let slots = { end.iter() }.map(|id| system.body.slots()[*id as usize] as usize);
+        let x = |a: usize| slots.clone().map(|s| system.body.position(s)[a]).collect();
+        let u = |a: usize| slots.clone().map(|s| system.u[a][s]).collect();
+        let sums: [[Exact; D]; 2] = [crate::array::from_fn(x), crate::array::from_fn(u)];
+        sums.map(|sums| system.body.sums(sums))
+    });
+    let apart = |n: usize| -> [f64; D] { crate::array::from_fn(|a| to[n][a] - from[n][a]) };
+    let (xi, eta) = (apart(0), apart(1));
+    // |ξ + η| − |ξ| without cancellation
+    let size = |v: &dyn Fn(usize) -> f64| (0..D).map(|a| v(a).powi(2)).sum::<f64>().sqrt();
+    let (before, now) = (size(&|a| xi[a]), size(&|a| xi[a] + eta[a]));
+    let along: f64 = (0..D).map(|a| eta[a] * (2.0 * xi[a] + eta[a])).sum();
+    let longer = along / (before + now);
+    [longer].into_iter().chain(eta).collect()
+}
+
+/// How many pieces of so many points there are, the mass of the one with the most points, and that of all others (mass).
+pub(super) fn pieces<const D: usize>(system: &System<D>, points: u32) -> [f64; 3] {
+    let pieces = Fragments::of(&system.body, system.interaction.as_ref());
+    let count = pieces.size.iter().filter(|size| **size >= points).count();
+    let of = |largest: bool| {
+        let each = pieces.label.iter().zip(system.body.slots());
+        let own = each.filter(|(label, _)| (**label == 0) == largest);
+        let mass = |s: usize| system.body.volume().at(s) * system.body.density().at(s);
+        system.body.sum(own.map(|(_, slot)| mass(*slot as usize)))
+    };
+    [count as f64, of(true), of(false)]
 }
 
 /// Points in cells as wide as the horizon, which are taken out when they are found.

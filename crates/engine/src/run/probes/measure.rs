@@ -6,7 +6,6 @@ use crate::body::Body;
 use crate::columns::{Dimension, Shape};
 use crate::error::BuildError;
 use crate::execute::exact::Exact;
-use crate::fracture::fragments::Fragments;
 use crate::observe::{Column, ProbeColumn};
 use crate::run::model::Model;
 use crate::run::system::System;
@@ -282,8 +281,8 @@ impl<const D: usize> Model<D> {
                     values.extend(&tip.place[..D]);
                     values.extend([tip.length, tip.branches]);
                 }
-                Kind::Opening(ends) => values.extend(self.system.opening_of(ends)),
-                Kind::Fragments(points) => values.extend(self.system.pieces_of(*points)),
+                Kind::Opening(ends) => values.extend(crack::opening(&self.system, ends)),
+                Kind::Fragments(points) => values.extend(crack::pieces(&self.system, *points)),
                 Kind::Rigid(n, of) => values.extend(self.system.rigid_values(*n, of)),
             }
         }
@@ -338,40 +337,6 @@ impl<const D: usize> System<D> {
         let along = |a: usize| forces.iter().map(|(_, force)| force[a]).collect();
         let sums: [Exact; D] = crate::array::from_fn(along);
         self.body.sums(sums).to_vec()
-    }
-
-    /// How much farther the second of two points is from the first one than in the reference (length), and how far it has moved from it
-    /// along each axis.
-    fn opening_of(&self, ends: &[Vec<u32>; 2]) -> Vec<f64> {
-        // one rank knows each
-        let [from, to] = ends.each_ref().map(|end| {
-            let slots = { end.iter() }.map(|id| self.body.slots()[*id as usize] as usize);
-            let x = |a: usize| slots.clone().map(|s| self.body.position(s)[a]).collect();
-            let u = |a: usize| slots.clone().map(|s| self.u[a][s]).collect();
-            let sums: [[Exact; D]; 2] = [crate::array::from_fn(x), crate::array::from_fn(u)];
-            sums.map(|sums| self.body.sums(sums))
-        });
-        let apart = |n: usize| -> [f64; D] { crate::array::from_fn(|a| to[n][a] - from[n][a]) };
-        let (xi, eta) = (apart(0), apart(1));
-        // |ξ + η| − |ξ| without cancellation
-        let size = |v: &dyn Fn(usize) -> f64| (0..D).map(|a| v(a).powi(2)).sum::<f64>().sqrt();
-        let (before, now) = (size(&|a| xi[a]), size(&|a| xi[a] + eta[a]));
-        let along: f64 = (0..D).map(|a| eta[a] * (2.0 * xi[a] + eta[a])).sum();
-        let longer = along / (before + now);
-        [longer].into_iter().chain(eta).collect()
-    }
-
-    /// How many pieces of so many points there are, the mass of the one with the most points, and that of all others (mass).
-    fn pieces_of(&self, points: u32) -> [f64; 3] {
-        let pieces = Fragments::of(&self.body, self.interaction.as_ref());
-        let count = pieces.size.iter().filter(|size| **size >= points).count();
-        let of = |largest: bool| {
-            let each = pieces.label.iter().zip(self.body.slots());
-            let own = each.filter(|(label, _)| (**label == 0) == largest);
-            let mass = |s: usize| self.body.volume().at(s) * self.body.density().at(s);
-            self.body.sum(own.map(|(_, slot)| mass(*slot as usize)))
-        };
-        [count as f64, of(true), of(false)]
     }
 
     fn moment_of(&self, ids: &[u32], about: &Point) -> Vec<f64> {

@@ -109,33 +109,6 @@ pub(super) fn output(
         )),
         other => Ok(other.as_ref().map(|n| n.value)),
     };
-    let mut trajectories: Vec<(PathBuf, Format)> = Vec::new();
-    trajectories.extend(match &written.trajectory {
-        None => None,
-        Some(name) if !atoms => {
-            return Err(context.error_with(
-                &name.span,
-                "a trajectory is one of atoms",
-                "points have VTU series and dumps: output.vtu, output.dump",
-            ));
-        }
-        Some(name) if name.value.ends_with(".extxyz") || name.value.ends_with(".xyz") => {
-            Some((name.value.clone().into(), Format::Extxyz))
-        }
-        Some(name) if name.value.ends_with(".lammpstrj") || name.value.ends_with(".dump") => {
-            Some((name.value.clone().into(), Format::Dump))
-        }
-        Some(name) => {
-            return Err(context.error_with(
-                &name.span,
-                format!("unknown kind of trajectory {:?}", name.value),
-                "name it trajectory.extxyz or trajectory.lammpstrj",
-            ));
-        }
-    });
-    if let Some(name) = written.dump.as_ref().filter(|_| atoms) {
-        trajectories.push((PathBuf::from(&name.value), Format::Dump));
-    }
     let data = match &written.data {
         Some(name) if !atoms => {
             return Err(context.error_with(
@@ -218,9 +191,45 @@ pub(super) fn output(
         space_time: space_times(context, written, moves)?,
         report: written.report.unwrap_or(true),
         checkpoints,
-        trajectories,
+        trajectories: trajectories(context, written, atoms)?,
         data,
     })
+}
+
+/// Files of all frames of atoms.
+fn trajectories(
+    context: &Context,
+    written: &Output,
+    atoms: bool,
+) -> Result<Vec<(PathBuf, Format)>> {
+    let mut trajectories: Vec<(PathBuf, Format)> = Vec::new();
+    trajectories.extend(match &written.trajectory {
+        None => None,
+        Some(name) if !atoms => {
+            return Err(context.error_with(
+                &name.span,
+                "a trajectory is one of atoms",
+                "points have VTU series and dumps: output.vtu, output.dump",
+            ));
+        }
+        Some(name) if name.value.ends_with(".extxyz") || name.value.ends_with(".xyz") => {
+            Some((name.value.clone().into(), Format::Extxyz))
+        }
+        Some(name) if name.value.ends_with(".lammpstrj") || name.value.ends_with(".dump") => {
+            Some((name.value.clone().into(), Format::Dump))
+        }
+        Some(name) => {
+            return Err(context.error_with(
+                &name.span,
+                format!("unknown kind of trajectory {:?}", name.value),
+                "name it trajectory.extxyz or trajectory.lammpstrj",
+            ));
+        }
+    });
+    if let Some(name) = written.dump.as_ref().filter(|_| atoms) {
+        trajectories.push((PathBuf::from(&name.value), Format::Dump));
+    }
+    Ok(trajectories)
 }
 
 /// When states are written.
