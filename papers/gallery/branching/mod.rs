@@ -141,7 +141,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         ),
         more.branches > 2,
     );
-    // under 28 MPa the farthest cracked point need not be of the same crack
+    // under 28 MPa damage ahead of the tip joins it, and it jumps
     let speeds = [twelve.speed, fourteen.speed];
     found.holds(
         "speed",
