@@ -54,6 +54,18 @@ fn the_tip_is_the_last_point_that_has_lost_so_many_bonds() {
     assert_eq!(value("away_branches"), 0.0);
 }
 
+/// A place beside the body is a slip, of units perhaps.
+#[test]
+fn a_crack_starts_in_the_body() {
+    let mut spec = cut([-1.0, 10.5], [20.5, 10.5]);
+    probe(&mut spec, "tip", "all", crack([44.0, 10.5], [1.0, 0.0]));
+    let error = peridyne::run::build(&spec, peridyne::run::Options::default()).err();
+    let error = error.unwrap();
+    assert_eq!(error.path, "probes[0].from");
+    let said = error.message.to_string();
+    assert!(said.contains("within a horizon"), "{said}");
+}
+
 /// Lengths count along the direction, whichever it is; a set limits what counts.
 #[test]
 fn a_crack_is_followed_along_any_direction_and_in_a_set() {

@@ -6,6 +6,7 @@ use crate::body::Body;
 use crate::columns::{Dimension, Shape};
 use crate::error::BuildError;
 use crate::execute::exact::Exact;
+use crate::message;
 use crate::observe::{Column, ProbeColumn};
 use crate::run::model::Model;
 use crate::run::system::System;
@@ -115,6 +116,16 @@ impl<const D: usize> Model<D> {
             Measure::CrackTip(crack) => {
                 self.look().check_column("damage", &at("measure"))?;
                 let horizon = self.system.info.horizon;
+                let far = self.system.body.least(self.nearest(&ids, &crack.from));
+                if far > horizon * horizon {
+                    let message = message![
+                        "no point that is measured lies within a horizon of it: the nearest is ",
+                        Dimension::LENGTH.of(far.sqrt()),
+                        " away",
+                    ];
+                    return Err(BuildError::invalid(at("from"), message)
+                        .help("write where the crack starts in the reference"));
+                }
                 let axes = &Shape::Vector.components()[..D];
                 let mut columns: Vec<_> = { axes.iter() }
                     .map(|a| column(a, Dimension::LENGTH))
@@ -149,14 +160,23 @@ impl<const D: usize> Model<D> {
         Ok(Probe { ids, kind, columns })
     }
 
+    /// Square of the least distance of these points, of this rank, from a place in the reference.
+    fn nearest(&self, ids: &[u32], at: &Point) -> f64 {
+        let far = |id: &u32| self.square_from(*id, at);
+        ids.iter().map(far).fold(f64::INFINITY, f64::min)
+    }
+
+    fn square_from(&self, id: u32, at: &Point) -> f64 {
+        let body = &self.system.body;
+        let x = body.position(body.slots()[id as usize] as usize);
+        (0..D).map(|a| (x[a] - at[a]).powi(2)).sum()
+    }
+
     /// The point of these, of all ranks, that is nearest to a place in the reference, the first of several; nothing on the other ranks.
     fn nearest_of(&self, ids: &[u32], at: &Point) -> Vec<u32> {
         let body = &self.system.body;
-        let far = |id: &u32| -> f64 {
-            let x = body.position(body.slots()[*id as usize] as usize);
-            (0..D).map(|a| (x[a] - at[a]).powi(2)).sum()
-        };
-        let nearest = body.least(ids.iter().map(far).fold(f64::INFINITY, f64::min));
+        let far = |id: &u32| self.square_from(*id, at);
+        let nearest = body.least(self.nearest(ids, at));
         let own = ids.iter().find(|id| far(id) == nearest);
         let of_all = |id: &u32| body.id_of_all(*id as usize) as f64;
         let first = body.least(own.map_or(f64::INFINITY, of_all));
