@@ -116,7 +116,7 @@ impl<const D: usize> Model<D> {
             Measure::CrackTip(crack) => {
                 self.look().check_column("damage", &at("measure"))?;
                 let horizon = self.system.info.horizon;
-                let far = self.system.body.least(self.nearest(&ids, &crack.from));
+                let far = least_square(&self.system.body, &ids, &crack.from);
                 if far > horizon * horizon {
                     let message = message![
                         "no point that is measured lies within a horizon of it: the nearest is ",
@@ -160,23 +160,11 @@ impl<const D: usize> Model<D> {
         Ok(Probe { ids, kind, columns })
     }
 
-    /// Square of the least distance of these points, of this rank, from a place in the reference.
-    fn nearest(&self, ids: &[u32], at: &Point) -> f64 {
-        let far = |id: &u32| self.square_from(*id, at);
-        ids.iter().map(far).fold(f64::INFINITY, f64::min)
-    }
-
-    fn square_from(&self, id: u32, at: &Point) -> f64 {
-        let body = &self.system.body;
-        let x = body.position(body.slots()[id as usize] as usize);
-        (0..D).map(|a| (x[a] - at[a]).powi(2)).sum()
-    }
-
     /// The point of these, of all ranks, that is nearest to a place in the reference, the first of several; nothing on the other ranks.
     fn nearest_of(&self, ids: &[u32], at: &Point) -> Vec<u32> {
         let body = &self.system.body;
-        let far = |id: &u32| self.square_from(*id, at);
-        let nearest = body.least(self.nearest(ids, at));
+        let far = |id: &u32| square(body, *id, at);
+        let nearest = least_square(body, ids, at);
         let own = ids.iter().find(|id| far(id) == nearest);
         let of_all = |id: &u32| body.id_of_all(*id as usize) as f64;
         let first = body.least(own.map_or(f64::INFINITY, of_all));
@@ -377,6 +365,18 @@ impl<const D: usize> System<D> {
         };
         turns.map(moment).collect()
     }
+}
+
+/// Square of the distance of a point from a place in the reference.
+fn square<const D: usize>(body: &Body<D>, id: u32, at: &Point) -> f64 {
+    let x = body.position(body.slots()[id as usize] as usize);
+    (0..D).map(|a| (x[a] - at[a]).powi(2)).sum()
+}
+
+/// The least of these, of the points of all ranks.
+fn least_square<const D: usize>(body: &Body<D>, ids: &[u32], at: &Point) -> f64 {
+    let squares = ids.iter().map(|id| square(body, *id, at));
+    body.least(squares.fold(f64::INFINITY, f64::min))
 }
 
 const ENERGIES: [&str; 3] = [
