@@ -20,7 +20,7 @@ LJ_DECK = f"""units = "lj"
 periodic = ["x", "y", "z"]
 body = {{ lattice = "fcc", spacing = 1.6795961913825074, cells = [{N}, {N}, {N}] }}
 material = {{ mass = 1, law = {{ lennard_jones = {{ epsilon = 1, sigma = 1, cutoff = 2.5 }} }} }}
-thermal = {{ temperature = 1.44, seed = 87287 }}
+initial_velocities = {{ temperature = 1.44, seed = 87287 }}
 run = {{ steps = 200, time_step = 0.005 }}
 output = {{ vtu = false, history = 200 }}
 """
@@ -55,7 +55,7 @@ body = {{ lattice = "fcc", spacing = 3.9, cells = [{N}, {N}, {N}] }}
 sets.Bb.random = {{ part = 0.5, seed = 1 }}
 material.Aa.law.eam = {{ file = "{ALLOY}", element = "Aa" }}
 material.Bb.law.eam = {{ file = "{ALLOY}", element = "Bb" }}
-thermal = {{ temperature = 800, seed = 376847 }}
+initial_velocities = {{ temperature = 800, seed = 376847 }}
 run = {{ steps = 100, time_step = 0.002 }}
 output = {{ vtu = false, history = 100 }}
 """
@@ -80,7 +80,7 @@ CU_DECK = """units = "metal"
 periodic = ["x", "y", "z"]
 body = {{ lattice = "fcc", spacing = 3.615, cells = [{n}, {n}, {n}] }}
 material.law = {{ eam = {{ file = "{table}" }} }}
-thermal = {{ temperature = 1600, seed = 376847 }}
+initial_velocities = {{ temperature = 1600, seed = 376847 }}
 run = {{ steps = 100, time_step = 0.005 }}
 output = {{ vtu = false, history = 100 }}
 """
@@ -104,7 +104,7 @@ SI_DECK = """units = "metal"
 periodic = ["x", "y", "z"]
 body = {{ lattice = "diamond", spacing = 5.431, cells = [{n}, {n}, {n}] }}
 material = {{ mass = 28.0855, law = {{ {law} = {{ file = "{table}", element = "Si" }} }} }}
-thermal = {{ temperature = 1000, seed = 376847 }}
+initial_velocities = {{ temperature = 1000, seed = 376847 }}
 run = {{ steps = 100, time_step = 0.001 }}
 output = {{ vtu = false, history = 100 }}
 """
@@ -127,7 +127,7 @@ run 100
 """
 CHAIN_DECK = f"""units = "none"
 horizon = {{ m_ratio = {REACH} }}
-volume_scaling = false
+partial_volume_correction = false
 body = {{ lattice = "chain", spacing = 1, cells = [{CHAIN}] }}
 material = {{ density = 1, law = {{ springs = {{ young = 1 }} }} }}
 initial = [{{ displacement = ["0.1*exp(-((x-50000)/20)^2)"] }}]

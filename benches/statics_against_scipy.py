@@ -22,10 +22,10 @@ statics = {{ method = "linear", solver = "{solver}" }}
 output = {{ picture = false, vtu = false, linear_body = {linear} }}
 [sets.wall]
 where = "x < 0.0025"
-[[condition]]
+[[boundary_condition]]
 set = "wall"
 displacement = {hold}
-[[condition]]
+[[boundary_condition]]
 body_force = {{ x = 0.077 }}
 """
 LPS, PMB = 'lps = { young = "200 GPa", poisson = 0.3 }', 'pmb = { young = "200 GPa" }'
@@ -60,7 +60,7 @@ def peridyne(law, size, solver, linear, out):
     run = json.loads((out / "run.json").read_text())
     rows = list(csv.reader(open(out / "history.csv")))
     iterations = float(rows[-1][rows[0].index("iterations")])
-    return run["seconds_stepping"], run["energy"]["work_conditions"], iterations, run["peak_memory_bytes"]
+    return run["seconds_stepping"], run["energy"]["work_boundary_conditions"], iterations, run["peak_memory_bytes"]
 
 
 def matrix(archive):

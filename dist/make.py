@@ -86,15 +86,17 @@ def tar(files):
 
 
 def archive(out, program):
-    """The program with its licences, manual page and completions."""
+    """The program with its licences, manual pages and completions."""
     folder = f"peridyne-{version()}"
     shells = {"bash": "bash-completion/completions/peridyne", "zsh": "zsh/site-functions/_peridyne",
               "fish": "fish/vendor_completions.d/peridyne.fish"}
     files = [(f"{folder}/bin/peridyne", program.read_bytes(), 0o755)]
     for name in ["README.md", "CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT"]:
         files.append((f"{folder}/{name}", (ROOT / name).read_bytes(), 0o644))
-    page = answer(program, "man").encode()
-    files.append((f"{folder}/share/man/man1/peridyne.1", page, 0o644))
+    with tempfile.TemporaryDirectory() as pages:
+        answer(program, "man", "--out", pages)
+        for page in sorted(Path(pages).iterdir()):
+            files.append((f"{folder}/share/man/man1/{page.name}", page.read_bytes(), 0o644))
     for shell, place in shells.items():
         files.append((f"{folder}/share/{place}", answer(program, "completions", shell).encode(), 0o644))
     path = out / f"{folder}-{TARGET}.tar.gz"
@@ -189,8 +191,13 @@ def check_archive(path, room, released):
     strangers = [n for n in needed if not SYSTEM.match(n)]
     assert not strangers, f"{path.name}: needs {strangers}"
     assert not released or newest <= GLIBC, f"{path.name}: needs glibc {newest}"
-    assert answer(program, "--version").strip() == f"peridyne {version()}", "another version"
-    assert len(list((folder / "share").rglob("*peridyne*"))) == 4, "manual page, completions"
+    # of a clone with its commit
+    said = answer(program, "--version").strip()
+    assert re.fullmatch(re.escape(f"peridyne {version()}") + r"( \([0-9a-f]{7,}, \d{4}-\d\d-\d\d\))?", said), said
+    pages = {page.name for page in (folder / "share" / "man" / "man1").iterdir()}
+    verbs = set(re.findall(r"^  ([a-z]+)  +\S", answer(program, "--help"), re.M)) - {"help"}
+    assert pages == {"peridyne.1", *(f"peridyne-{verb}.1" for verb in verbs)}, "manual pages"
+    assert len([f for f in (folder / "share").rglob("*peridyne*") if f.suffix != ".1"]) == 3, "completions"
     return tries(room, program), f"libraries {', '.join(needed)}; glibc {'.'.join(map(str, newest))}"
 
 

@@ -80,7 +80,7 @@ pub fn against_lammps(
     let last = ours.last().map_or(f64::NAN, |row| row[1]);
     found.measured("broken directed bonds at the end", last, "");
     let of = ledger(bench)?;
-    found.measured("work of the sphere", of.work_indenter, "J");
+    found.measured("work of the sphere", of.work_rigid_bodies, "J");
     found.measured("kinetic energy of the pieces", of.kinetic, "J");
     found.measured("energy of the broken bonds", of.released, "J");
     found.measured("fragments", bench.sim.fragments() as f64, "");
@@ -139,12 +139,17 @@ pub fn cut(context: &Context, bench: &mut Bench, found: &mut Findings) -> Result
     let whole = bench.sim.snapshot(&["damage"], false);
     let shown = layer(&whole, (2, 0.0), [0, 1]);
     let spec = &bench.deck.spec;
-    let bodies: Vec<Placed> = { spec.loading.indenters.iter().zip(bench.sim.indenters()) }
-        .map(|(body, center)| Placed {
-            center,
-            ..Placed::at(body, 2, shown.time)
-        })
-        .collect();
+    let bodies: Vec<Placed> = {
+        spec.loading
+            .rigid_bodies
+            .iter()
+            .zip(bench.sim.rigid_bodies())
+    }
+    .map(|(body, center)| Placed {
+        center,
+        ..Placed::at(body, 2, shown.time)
+    })
+    .collect();
     let options = PictureOptions {
         title: "Cut during the impact".into(),
         length_unit: "m".into(),

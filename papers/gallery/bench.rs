@@ -104,7 +104,11 @@ impl Bench {
         };
         let shown = self.sim.snapshot(&[field], false);
         let spec = &self.deck.spec;
-        let centers = spec.loading.indenters.iter().zip(self.sim.indenters());
+        let centers = spec
+            .loading
+            .rigid_bodies
+            .iter()
+            .zip(self.sim.rigid_bodies());
         let bodies = centers.map(|(body, center)| Placed {
             center,
             ..Placed::at(body, spec.space.dimension, shown.time)

@@ -3,7 +3,7 @@
 use peridyne::law::number::Number;
 use peridyne::law::potential::Potential;
 use peridyne::law::terms::{OfSites, Sites};
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::spec::{Parameter, Parameters, PotentialSpec};
 use peridyne_fields::specimen::Random;
 use peridyne_fields::{Cell, FieldsError, Frame, Kernel, Method, Shape};
@@ -54,8 +54,10 @@ fn of_shelf(name: &str, parameters: Parameters) -> Result<Box<dyn Sites>, Failur
         parameters,
         reach: f64::INFINITY,
     };
-    let shelf = Shelf::standard();
-    shelf.sites(&spec).map_err(|e| Failure::new(e.to_string()))
+    let registry = Registry::standard();
+    registry
+        .sites(&spec)
+        .map_err(|e| Failure::new(e.to_string()))
 }
 
 /// ε = 1, σ = 1, smooth to the third derivative where it ends.

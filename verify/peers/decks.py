@@ -181,7 +181,7 @@ class Conditions:
         self.at = np.pad(self.at, ((0, 0), (0, 3 - self.at.shape[1])))
         self.free = np.ones((len(self.at), 3), bool)
         self.loads = []
-        for condition in deck.get("condition", []):
+        for condition in deck.get("boundary_condition", []):
             members = np.arange(len(self.at))
             if condition.get("set") in names:
                 members = data[f"node_ns{names.index(condition['set']) + 1}"].data - 1
@@ -287,7 +287,7 @@ def twice_as_heavy(new, damping):
     if damping and "\ndamping = " not in text:
         material = tomllib.loads(text)["material"]
         for m in [material] if "law" in material else material.values():
-            text += f"\n[[condition]]\nset = \"{m.get('set', 'all')}\"\ndamping = {m['density'] * damping!r}\n"
+            text += f"\n[[boundary_condition]]\nset = \"{m.get('set', 'all')}\"\ndamping = {m['density'] * damping!r}\n"
     new.write_text(text)
 
 

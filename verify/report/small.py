@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A report in a browser, in a minute: small.py PROGRAM [--out DIR] [--learn]
 
-Runs a plate that breaks, an indenter that flies and a script of LAMMPS, opens their reports from the disk in a headless Chromium (Debian's, installed
+Runs a plate that breaks, a rigid body that flies and a script of LAMMPS, opens their reports from the disk in a headless Chromium (Debian's, installed
 where it is missing and this is root; or the one that CHROMIUM names) without a network, clicks, and compares pixels: those that the page's own loops
 draw are the same on every machine; what a graphics driver draws must be there and change. verify/report/run.sh does much more.
 Needs playwright (pip); expected.small.json holds the pixels, --learn writes them anew.

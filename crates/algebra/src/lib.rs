@@ -1,6 +1,9 @@
 //! Factors of sparse and banded matrices and eigenvalues of small ones: faer behind a small face. A crate of its own, because faer is
 //! generic and slow to compile: here it is compiled once. The same bits for any number of threads.
 
+// the same bits on every machine: libm, not that of C (clippy.toml)
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod banded;
 mod plan;
 

@@ -158,7 +158,7 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
     let curve = Curve::read(&arguments.curve, &columns)?;
     if curve.x.len() < keys.len() {
         return Err(Failure::input(format!(
-            "{}: {} points tell no {} keys apart: measure more, or fit fewer",
+            "{}: {} points do not determine {} keys: measure more, or fit fewer",
             arguments.curve.measured.display(),
             curve.x.len(),
             keys.len()
@@ -171,7 +171,7 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
     say(&format!(
         "fitting {} of {} to {} points of {}, results in {}",
         key::names(keys.iter()),
-        arguments.study.input.file.display(),
+        arguments.study.input.name(),
         curve.x.len(),
         arguments.curve.measured.display(),
         study.dir.display()
@@ -266,8 +266,8 @@ fn warnings(keys: &[Key], fit: &Fit, sure: Option<&Sure>) -> Vec<String> {
     let mut all: Vec<String> = why(keys, fit).into_iter().collect();
     let Some(sure) = sure else {
         all.push(match fit.slopes {
-            Some(_) => "as many keys as points: nothing tells how sure they are".into(),
-            None => "no slopes were found at the end: nothing tells how sure keys are".into(),
+            Some(_) => "as many keys as points: there are no standard errors".into(),
+            None => "no slopes were found at the end: there are no standard errors".into(),
         });
         return all;
     };
@@ -283,7 +283,7 @@ fn warnings(keys: &[Key], fit: &Fit, sure: Option<&Sure>) -> Vec<String> {
         all.push(match alike.len() {
             1 => format!("{names} hardly changes this curve: it is not known"),
             _ => format!(
-                "{names} cannot be told apart by this curve: only a combination of them is known; give one by --set, or measure something else besides"
+                "{names} are not determined by this curve, only a combination of them is; give one by --set, or measure something else besides"
             ),
         });
     }
@@ -294,7 +294,7 @@ fn warnings(keys: &[Key], fit: &Fit, sure: Option<&Sure>) -> Vec<String> {
             .filter(|(_, r)| r.abs() > CORRELATED)
         {
             all.push(format!(
-                "{} and {} are correlated by {}: this curve hardly tells them apart",
+                "{} and {} are correlated by {}: this curve hardly separates them",
                 keys[j].name,
                 keys[k].name,
                 rounded(*r, 5)

@@ -21,7 +21,6 @@ use peridyne::space::Point;
 use peridyne::spec::{BodySpec, Criterion, Moduli, Spec};
 use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::{Deck, UnitSystem};
-use peridyne_io::drive::default_dir;
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
 use peridyne_theory::nominal::nominal_moduli;
 use peridyne_theory::patch_test::{PatchTest, patch_test};
@@ -84,7 +83,7 @@ struct Findings<'a> {
     threads: usize,
     /// Continuum fields that the deck asks for.
     fields: Vec<continuum::Found>,
-    /// Points of each indenter that two of its sides push alike.
+    /// Points of each rigid_body that two of its sides push alike.
     ties: Vec<usize>,
     /// Can ranks share the run? What they do not share yet.
     ranks: Result<(), String>,
@@ -217,7 +216,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             note(remarks.trim_start());
         }
         let dir = deck.output.dir.clone();
-        let dir = dir.unwrap_or_else(|| default_dir(&input.file));
+        let dir = dir.unwrap_or_else(|| input.default_dir());
         enough(&deck, sim.as_mut(), &dir)?;
         let subject = Subject::of_deck(&deck, warnings, sim.info());
         report(arguments, &subject, sim.as_mut(), threads)
@@ -242,7 +241,7 @@ pub fn checked(deck: &Deck, threads: usize) -> Result<serde_json::Value, Failure
     if let Some(plan) = &subject.fields {
         found.fields = continuum::find(sim.as_mut(), plan, subject.steps, deck.file())?;
     }
-    if visits(sim.as_ref()) < QUICK {
+    if visits(sim.as_ref(), &subject.spec) < QUICK {
         found.examine(&subject, sim.as_mut());
     }
     found.trial = trial(sim.as_mut(), subject.steps, subject.increments);
@@ -267,12 +266,7 @@ fn report(
         say(&report::first(&found));
     }
     if let Some(plan) = &subject.fields {
-        found.fields = continuum::find(
-            sim,
-            plan,
-            subject.steps,
-            &arguments.input.file.display().to_string(),
-        )?;
+        found.fields = continuum::find(sim, plan, subject.steps, &arguments.input.name())?;
     }
     let ends = |found: &Findings, why: String| {
         let told = Findings {
@@ -292,7 +286,7 @@ fn report(
             limit.as_secs()
         )
     };
-    if visits(sim) < PATIENCE {
+    if visits(sim, &subject.spec) < PATIENCE {
         let late = late(
             LONGEST_PATCH,
             "the patch test (stiffness by place), and so a trial step,",
@@ -336,9 +330,14 @@ fn within<T>(limit: Duration, late: impl FnOnce() + Send, work: impl FnOnce() ->
     })
 }
 
-/// Visits of bonds by the patch test.
-fn visits(sim: &dyn Simulation) -> u64 {
-    let passes = [1, 6, 21][sim.info().dimension.clamp(1, 3) - 1];
+/// Visits of bonds by the patch test: strains and rotations, and of linear bodies all gradients.
+fn visits(sim: &dyn Simulation, spec: &Spec) -> u64 {
+    let axis = sim.info().dimension.clamp(1, 3) - 1;
+    let more = match spec.micromoduli() {
+        Some(_) => [0, 10, 45][axis],
+        None => 0,
+    };
+    let passes = [3, 9, 26][axis] + more;
     sim.info().directed_bonds.saturating_mul(passes)
 }
 
@@ -452,7 +451,7 @@ fn materials(
         let nominal = nominal_moduli(&m.law, d, spec.space.plane, moments);
         let s00 = info.critical_stretch.get(n).copied();
         let (pressure, shear) = match patch.and_then(|p| p.best(n)) {
-            Some(class) => waves(&class.stiffness, thin),
+            Some((_, stiffness)) => waves(stiffness, thin),
             None => (f64::NAN, f64::NAN),
         };
         Material {

@@ -65,8 +65,7 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
         way,
     };
     let out = arguments.out.clone().unwrap_or_else(|| {
-        let name = arguments.input.file.file_stem();
-        let name = name.map_or("deck".into(), |n| n.to_string_lossy());
+        let name = arguments.input.stem();
         Path::new("out").join(format!("{name}-coarsened"))
     });
     let relaxed = match (spec.potential(), &arguments.average) {

@@ -4,19 +4,20 @@ mod around;
 mod files;
 mod level;
 
-use crate::Input;
 use crate::deck;
-use crate::failure::{Failure, say};
+use crate::failure::{Failure, note, say};
 use crate::run::with_threads;
-use level::{Level, Reference, measure};
+use crate::signals;
+use crate::study::{Study, StudyArguments};
+use level::{Keep, Level, Reference, measure};
 use peridyne::expression::Expression;
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use peridyne_theory::convergence::{Kind, Order, Verdict, order};
 use peridyne_theory::refine::refine;
-use std::path::{Path, PathBuf};
+use serde_json::json;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Study {
+enum Lengths {
     /// Horizon and spacing shrink together, m = δ/Δx stays.
     Delta,
     /// The spacing shrinks, the horizon δ stays.
@@ -27,13 +28,12 @@ enum Study {
 
 #[derive(clap::Args)]
 pub struct ConvergeArguments {
-    /// Deck of solids on a lattice: the coarsest level.
     #[command(flatten)]
-    pub input: Input,
+    pub study: StudyArguments,
     /// Which lengths shrink.
-    #[arg(long, value_enum)]
-    study: Study,
-    /// Levels, each with half the spacing of the one before.
+    #[arg(long = "study", value_enum)]
+    lengths: Lengths,
+    /// Levels, each with half the spacing of the one before; the deck is the coarsest.
     #[arg(long, default_value_t = 4)]
     pub levels: u32,
     /// Exact displacement along x, y, z at the end, an expression of x, y, z, t and `pi`; once per component, `0` for none.
@@ -43,12 +43,6 @@ pub struct ConvergeArguments {
     /// All levels take the deck's step on the finest level (its fraction of the stability limit there) over this number.
     #[arg(long, default_value_t = 4)]
     pub substeps: u32,
-    /// Folder for the results; `out/<name of the deck>-<study>` if not given.
-    #[arg(long)]
-    pub out: Option<PathBuf>,
-    /// Threads; all cores if not given.
-    #[arg(long)]
-    pub threads: Option<usize>,
 }
 
 /// A finished study.
@@ -81,22 +75,20 @@ impl Finished {
 
 fn words(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Converges => "errors fall with one order",
+        Verdict::Converges => "consistent order of convergence",
         Verdict::Preasymptotic => {
-            "errors fall, the order has not settled: more levels, or a finer first one, would tell"
+            "errors fall, the order is not yet consistent: take more levels, or a finer first one"
         }
         Verdict::Stalls => {
             "errors stop falling: another error remains (the model's distance from the exact solution, the time step, round-off)"
         }
-        Verdict::Diverges => "errors do not fall",
-        Verdict::Undecided => {
-            "one pair of levels has an order and no verdict: more levels tell whether it is settled"
-        }
+        Verdict::Diverges => "no convergence: errors do not fall",
+        Verdict::Undecided => "one pair of levels has an order and no verdict: take more levels",
     }
 }
 
 pub fn converge(arguments: &ConvergeArguments) -> Result<(), Failure> {
-    if !deck::is_deck(&arguments.input) {
+    if !deck::is_deck(&arguments.study.input) {
         return Err(Failure::input(
             "converge takes a deck (.toml) with a lattice body",
         ));
@@ -116,11 +108,18 @@ pub fn converge(arguments: &ConvergeArguments) -> Result<(), Failure> {
     if arguments.substeps == 0 {
         return Err(Failure::input("--substeps 0: take 1 or more"));
     }
-    let deck = deck::read(&arguments.input)?;
+    let kind = match arguments.lengths {
+        Lengths::Delta => Kind::Delta,
+        Lengths::M => Kind::M,
+        Lengths::DeltaM => Kind::DeltaM,
+    };
+    let name = ["delta", "m", "delta-m"][kind as usize];
+    let mut study = Study::of(&arguments.study, name)?;
+    study.made_by("converge", &format!("--study {name}"));
+    let deck = study.deck(&vec![])?;
     deck::is_plain(&deck, "converge")?;
     let exact = expressions(&arguments.exact, deck.spec.space.dimension)?;
-    let threads = arguments.threads.or(deck.threads);
-    with_threads(threads, |_| all(arguments, &deck, &exact))
+    all(arguments, (&study, kind), &deck, &exact)
 }
 
 fn expressions(texts: &[String], dimension: usize) -> Result<Vec<Expression>, Failure> {
@@ -147,12 +146,12 @@ fn expressions(texts: &[String], dimension: usize) -> Result<Vec<Expression>, Fa
         .collect()
 }
 
-fn all(arguments: &ConvergeArguments, deck: &Deck, exact: &[Expression]) -> Result<(), Failure> {
-    let kind = match arguments.study {
-        Study::Delta => Kind::Delta,
-        Study::M => Kind::M,
-        Study::DeltaM => Kind::DeltaM,
-    };
+fn all(
+    arguments: &ConvergeArguments,
+    (study, kind): (&Study, Kind),
+    deck: &Deck,
+    exact: &[Expression],
+) -> Result<(), Failure> {
     // every deck is refined before any is run
     let mut decks = vec![];
     for k in 0..arguments.levels {
@@ -163,7 +162,13 @@ fn all(arguments: &ConvergeArguments, deck: &Deck, exact: &[Expression]) -> Resu
         })?;
         decks.push(finer);
     }
-    let step = level::common_step(&decks, &arguments.input, arguments.substeps)?;
+    let mut step = None;
+    with_threads(study.arguments.threads, |_| {
+        let input = &arguments.study.input;
+        step = Some(level::common_step(&decks, input, arguments.substeps)?);
+        Ok(())
+    })?;
+    let step = step.ok_or_else(|| Failure::input("no levels"))?;
     say(&format!(
         "{}: {} levels to the time {}, all with the step {}",
         kind.name(),
@@ -171,34 +176,67 @@ fn all(arguments: &ConvergeArguments, deck: &Deck, exact: &[Expression]) -> Resu
         deck.units.show(step.time, Dim::TIME),
         deck.units.show(step.time_step, Dim::TIME)
     ));
-    let mut levels = vec![];
-    for finer in &decks {
-        let level = Level::run(finer, &arguments.input, &step, 1)?;
+    let finest = decks.last().ok_or_else(|| Failure::input("no levels"))?;
+    let mut runs: Vec<Deck> = decks.iter().map(|deck| step.of(deck, 1)).collect();
+    runs.push(step.of(finest, 2));
+    let levels =
+        json!({ "study": kind.name(), "levels": arguments.levels, "substeps": arguments.substeps });
+    study.claim("converge.json", ("levels", levels))?;
+    let work = |n: usize| level_of(study, (&runs, n), deck.units);
+    let made = study.side_by_side(runs.len(), &work)?;
+    let made = made
+        .into_iter()
+        .collect::<Result<Vec<Option<Level>>, _>>()?;
+    let mut levels: Vec<Level> = made.into_iter().flatten().collect();
+    if let Some(signal) = signals::received() {
+        note("ended: the same command goes on");
+        return Err(Failure::Ended(signal));
+    }
+    let coarser_step = levels.pop().ok_or_else(|| Failure::input("no levels"))?;
+    let finished = finish(kind, levels, &coarser_step, exact, &step)
+        .map_err(|m| Failure::input(format!("{}: {m}", deck.file())))?;
+    files::write(&study.dir, &finished, deck.units).map_err(|e| Failure::Run(e.to_string()))?;
+    say(&report(&finished, deck.units));
+    say(&format!("written: {}", study.dir.display()));
+    Ok(())
+}
+
+/// The level of a run, the last of which has the coarser step; `None`: a signal has ended it.
+fn level_of(
+    study: &Study,
+    (runs, n): (&[Deck], usize),
+    units: UnitSystem,
+) -> Result<Option<Level>, Failure> {
+    let again = n + 1 == runs.len();
+    let dir = study.dir.join(match again {
+        true => "coarser-step".to_string(),
+        false => format!("level{}", n + 1),
+    });
+    let mut keep = Keep::of(&runs[n], &dir);
+    let row = study.watched(&runs[n], &vec![], dir, &mut keep);
+    if let Some(error) = keep.failed {
+        return Err(Failure::Run(error.to_string()));
+    }
+    let why = || row.why.clone().unwrap_or_default();
+    match &*row.status {
+        "done" => {}
+        "ended" if signals::received().is_some() => return Ok(None),
+        "refused" => return Err(Failure::input(why())),
+        _ => return Err(Failure::Run(format!("{}: {}", row.dir.display(), why()))),
+    }
+    let level = Level::of(&row)?;
+    if !again {
         say(&format!(
             "  spacing {}, horizon {}: {} points, volume {}, {} steps in {:.2} s",
-            deck.units.show(level.spacing, Dim::LENGTH),
-            deck.units.show(level.horizon, Dim::LENGTH),
+            units.show(level.spacing, Dim::LENGTH),
+            units.show(level.horizon, Dim::LENGTH),
             level.points,
-            deck.units.show(level.volume, Dim::VOLUME),
+            units.show(level.volume, Dim::VOLUME),
             level.steps,
             level.seconds
         ));
-        levels.push(level);
     }
-    let finest = decks.last().ok_or_else(|| Failure::input("no levels"))?;
-    let coarser_step = Level::run(finest, &arguments.input, &step, 2)?;
-    let finished = finish(kind, levels, &coarser_step, exact, &step)
-        .map_err(|m| Failure::input(format!("{}: {m}", deck.file())))?;
-    let out = arguments.out.clone().unwrap_or_else(|| {
-        let name = arguments.input.file.file_stem();
-        let name = name.map_or("deck".into(), |n| n.to_string_lossy());
-        let study = ["delta", "m", "delta-m"][kind as usize];
-        Path::new("out").join(format!("{name}-{study}"))
-    });
-    files::write(&out, &finished, deck.units).map_err(|e| Failure::Run(e.to_string()))?;
-    say(&report(&finished, deck.units));
-    say(&format!("written: {}", out.display()));
-    Ok(())
+    Ok(Some(level))
 }
 
 /// Errors, differences and orders.
@@ -258,7 +296,7 @@ fn finish(
         && d.fitted > e.fitted + 0.5
     {
         notes.push(format!(
-            "The levels draw together with order {:.2}, towards another solution than the exact one: at fixed δ the nonlocal one, at fixed m that of the lattice's own stiffness (`peridyne waves` tells it).",
+            "The levels draw together with order {:.2}, towards another solution than the exact one: at fixed δ the nonlocal one, at fixed m that of the lattice's own stiffness (`peridyne waves` computes it).",
             d.fitted
         ));
     }

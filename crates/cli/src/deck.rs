@@ -1,22 +1,106 @@
 //! Reading decks for the verbs.
 
 use crate::Input;
-use crate::failure::Failure;
+use crate::failure::{Failure, note};
 use crate::numbers::{memory, whole};
 use crate::ranks::agreed;
-use peridyne::error::BuildErrorKind;
+use peridyne::error::{BuildError, BuildErrorKind};
 use peridyne::execute::simd::Simd;
 use peridyne::observe::observables::USUAL;
-use peridyne::run::{Info, Options, Simulation, TransferInfo, build};
-use peridyne::spec::{Spec, TransferMethod};
-use peridyne_comm::Comm;
-use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
+use peridyne::run::initial::InitialState;
+use peridyne::run::ranks::build_from;
+use peridyne::run::{DiffusionInfo, Info, Options, Simulation, build};
+use peridyne::spec::{DiffusionMethod, Spec};
+use peridyne_comm::{Comm, launcher};
+use peridyne_io::deck::{Deck, Dim, UnitSystem, each_once, rounded};
+use peridyne_io::drive::{default_dir, take_state};
 use peridyne_io::read::{encoding, source};
+use peridyne_io::write::checkpoint::{Asked, Checkpoint};
 use peridyne_io::write::shares::write_share;
-use std::sync::Arc;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What a deck from standard input is called in messages.
+pub const STDIN: &str = "<stdin>";
+/// Its text, which comes once: several ranks of one process read it, and more than one look.
+static PIPED: Mutex<Option<String>> = Mutex::new(None);
+
+/// Is this the deck from standard input?
+pub fn is_piped(file: &Path) -> bool {
+    file == Path::new("-")
+}
+
+impl Input {
+    /// What its file is called in messages.
+    pub fn name(&self) -> String {
+        match is_piped(&self.file) {
+            true => STDIN.into(),
+            false => self.file.to_string_lossy().into_owned(),
+        }
+    }
+
+    /// What results are called after: the file without its ending.
+    pub fn stem(&self) -> String {
+        match is_piped(&self.file) {
+            true => "stdin".into(),
+            false => self
+                .file
+                .file_stem()
+                .map_or("deck".into(), |stem| stem.to_string_lossy().into_owned()),
+        }
+    }
+
+    /// Where its results go if nobody says it.
+    pub fn default_dir(&self) -> PathBuf {
+        match is_piped(&self.file) {
+            true => default_dir(Path::new("stdin")),
+            false => default_dir(&self.file),
+        }
+    }
+}
+
+/// The deck of a run that is resumed, in the place of standard input; `None`: another command reads its own.
+pub fn pipe(text: Option<&str>) {
+    let mut piped = PIPED.lock().unwrap_or_else(PoisonError::into_inner);
+    *piped = text.map(str::to_string);
+}
+
+/// The deck from standard input.
+fn piped() -> Result<String, Failure> {
+    let mut piped = PIPED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(text) = &*piped {
+        return Ok(text.clone());
+    }
+    if let Some(launched) = launcher::launched() {
+        return Err(Failure::input(format!(
+            "-: standard input goes to one process, and {launched}: write the deck to a file"
+        )));
+    }
+    if std::io::stdin().is_terminal() {
+        note("reading a deck from standard input; Ctrl-D ends it");
+    }
+    let bytes = source::within(std::io::stdin().lock(), LARGEST);
+    let bytes = bytes.map_err(|e| Failure::input(format!("{STDIN}: {e}")))?;
+    refuse_others(STDIN, &bytes)?;
+    let text = decoded(STDIN, bytes)?;
+    *piped = Some(text.clone());
+    Ok(text)
+}
+
+/// The text that bytes are.
+fn decoded(name: &str, bytes: Vec<u8>) -> Result<String, Failure> {
+    encoding::text(bytes, 0).map_err(|e| {
+        let place = e.line.map_or(String::new(), |l| format!(":{l}"));
+        Failure::input(format!("{name}{place}: {}", e.message))
+    })
+}
 
 /// Is this file a deck, as opposed to a LAMMPS script?
 pub fn is_deck(input: &Input) -> bool {
+    if is_piped(&input.file) {
+        return true;
+    }
     input
         .file
         .extension()
@@ -67,6 +151,9 @@ fn refuse_others(name: &str, bytes: &[u8]) -> Result<(), Failure> {
 }
 
 pub fn text(input: &Input) -> Result<String, Failure> {
+    if is_piped(&input.file) {
+        return piped();
+    }
     let name = input.file.display();
     let bytes = source::open_given(&input.file)
         .and_then(|file| source::within(file, LARGEST))
@@ -79,10 +166,7 @@ pub fn text(input: &Input) -> Result<String, Failure> {
             "{name}: this looks like a deck, and is read as a LAMMPS script because of its name: name it .toml"
         )));
     }
-    encoding::text(bytes, 0).map_err(|e| {
-        let place = e.line.map_or(String::new(), |l| format!(":{l}"));
-        Failure::input(format!("{name}{place}: {}", e.message))
-    })
+    decoded(&name.to_string(), bytes)
 }
 
 /// Variables are those of scripts.
@@ -98,7 +182,7 @@ pub fn no_variables(input: &Input) -> Result<(), Failure> {
 pub fn read(input: &Input) -> Result<Deck, Failure> {
     let text = text(input)?;
     no_variables(input)?;
-    let name = input.file.to_string_lossy();
+    let name = input.name();
     Deck::parse(&text, &name, &input.set).map_err(|e| Failure::Input(e.into()))
 }
 
@@ -148,24 +232,59 @@ pub fn model_of(deck: &Deck, spec: &Spec, input: &Input) -> Result<Box<dyn Simul
     build(spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
 }
 
-/// The same, of which ranks have parts. The first has the model; others have followed it to its end, and have none.
+/// The same, of which ranks have parts, in the state of an earlier run if there is one. The first has the model; others have followed it to its end, and
+/// have none.
 pub fn model_among(
-    deck: &Deck,
+    (deck, state): (&Deck, Option<Checkpoint>),
     spec: &Spec,
     input: &Input,
     comm: &Arc<Comm>,
 ) -> Result<Option<Box<dyn Simulation>>, Failure> {
+    let wrong = |e: BuildError| match e.kind {
+        BuildErrorKind::Elsewhere => Failure::Elsewhere,
+        _ => Failure::Input(deck.explain(&e).into()),
+    };
+    let earlier = state.map(|state| {
+        let Asked {
+            deck, text, set, ..
+        } = &state.asked;
+        let earlier = Deck::parse(text, &deck.to_string_lossy(), set);
+        let earlier = earlier.map_err(|e| Failure::Input(e.into()))?;
+        Ok((state, earlier))
+    });
+    let mut earlier = agreed(comm, earlier.transpose())?;
+    let bring = |sim: &mut dyn Simulation, state: &mut Checkpoint| {
+        let taken = take_state(sim, state);
+        taken.map_err(|e| BuildError::invalid("", e.to_string()))
+    };
     if comm.ranks() == 1 {
-        return model_of(deck, spec, input).map(Some);
+        let state = match &mut earlier {
+            Some((state, earlier)) => {
+                let mut before = model_of(earlier, &earlier.spec, input)?;
+                bring(before.as_mut(), state).map_err(wrong)?;
+                Some(InitialState::of(before.as_mut()))
+            }
+            None => None,
+        };
+        let mut sim = model_of(deck, spec, input)?;
+        if let Some(state) = state {
+            state.give(sim.as_mut()).map_err(wrong)?;
+        }
+        return Ok(Some(sim));
     }
     let options = Options {
         simd: agreed(comm, simd(input))?,
         ..Options::default()
     };
-    peridyne::run::ranks::build(spec, options, comm, write_share).map_err(|e| match e.kind {
-        BuildErrorKind::Elsewhere => Failure::Elsewhere,
-        _ => Failure::Input(deck.explain(&e).into()),
-    })
+    let made = match &mut earlier {
+        Some((state, earlier)) => {
+            let mut bring = |sim: &mut dyn Simulation| bring(sim, state);
+            let before = (&earlier.spec, &mut bring as _);
+            build_from(Some(before), spec, options, comm, write_share)
+        }
+        None => build_from(None, spec, options, comm, write_share),
+    };
+    made.map_err(wrong)
 }
 
 /// Columns of a frame.
@@ -174,7 +293,7 @@ pub fn fields(deck: &Deck) -> Vec<String> {
     let spread = deck
         .spec
         .interactions
-        .transfers
+        .diffusions
         .iter()
         .map(|t| t.quantity.column());
     let spread = || spread.map(str::to_string).chain(usual()).collect();
@@ -184,7 +303,7 @@ pub fn fields(deck: &Deck) -> Vec<String> {
 /// What looks wrong in a deck of which this was built.
 pub fn warnings(deck: &Deck, info: &Info) -> Vec<String> {
     let first = deck.warnings.iter().cloned();
-    first.chain(deck.doubts(info)).collect()
+    first.chain(deck.lints(info)).collect()
 }
 
 /// What a deck passed over and what looks wrong in it, in lines.
@@ -197,10 +316,10 @@ pub fn remarks(notes: &[String], warnings: &[String]) -> String {
 /// Decks of two stages, and points with horizons of their own, which `verb` does not know.
 pub fn is_plain(deck: &Deck, verb: &str) -> Result<(), Failure> {
     let (spec, mut pieces) = (&deck.spec, deck.spec.body.pieces().iter());
-    let own = spec.bonds.own_horizon.is_some() || pieces.any(|p| p.own_horizon.is_some());
+    let own = spec.bonds.variable_horizon.is_some() || pieces.any(|p| p.variable_horizon.is_some());
     let what = match (&spec.run.preload, own) {
         (Some(_), _) => "a deck of [run] or of [statics], and this one has both",
-        (_, true) => "one horizon, and the points of this deck have their own (own_horizon)",
+        (_, true) => "one horizon, and the points of this deck have their own (variable_horizon)",
         (None, false) => return Ok(()),
     };
     Err(Failure::input(format!(
@@ -210,7 +329,7 @@ pub fn is_plain(deck: &Deck, verb: &str) -> Result<(), Failure> {
 }
 
 /// How fast something spreads, and what its steps are beside those of the run.
-fn spreads(t: &TransferInfo, step: f64, units: UnitSystem) -> String {
+fn spreads(t: &DiffusionInfo, step: f64, units: UnitSystem) -> String {
     let all = t.diffusivity.iter();
     let all: Vec<String> = all.map(|d| units.show(*d, Dim::DIFFUSIVITY)).collect();
     let time = |x: f64| units.show(x, Dim::TIME);
@@ -221,7 +340,7 @@ fn spreads(t: &TransferInfo, step: f64, units: UnitSystem) -> String {
         time(t.spread),
         time(t.stable_step),
     );
-    if let TransferMethod::Explicit { safety } = t.method {
+    if let DiffusionMethod::Explicit { safety } = t.method {
         let parts = (step / (safety * t.stable_step)).ceil().max(1.0);
         if parts > 1.0 {
             text += &format!(" ({} parts of a step)", whole(parts as u64));
@@ -235,12 +354,12 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
     let i = sim.info();
     let bytes = i.bytes as f64;
     let mut text = format!(
-        "points    {} in {}-D, spacing {}, mass {}\nbonds     {} directed, {} to {} per point (mean {}), {}\nhorizon   {}{}\nmemory    {}, {:.0} bytes per point\nlanes     {}",
+        "points    {} in {}-D, spacing {}, mass {}\nbonds     {}, {} to {} per point (mean {}), {}\nhorizon   {}{}\nmemory    {}, {:.0} bytes per point\nSIMD      {}",
         whole(i.points),
         i.dimension,
         units.show(i.spacing, Dim::LENGTH),
         units.show(i.mass, Dim::MASS),
-        whole(i.directed_bonds),
+        whole(each_once(i.directed_bonds)),
         i.family.0,
         i.family.2,
         rounded(i.family.1, 4),
@@ -252,7 +371,7 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         i.simd,
     );
     text.extend(
-        i.transfers
+        i.diffusions
             .iter()
             .map(|t| format!("\n{}", spreads(t, i.time_step, units))),
     );
@@ -266,7 +385,7 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         text += &format!("\nmicromodulus {}", units.show(*c, Dim::MICROMODULUS));
     }
     if i.cut > 0 {
-        text += &format!("\npre-cracks cut {} directed bonds", whole(i.cut));
+        text += &format!("\npre-cracks cut {} bonds", whole(each_once(i.cut)));
     }
     for w in &i.warnings {
         text += &format!("\nwarning: {}", units.tell(w));

@@ -3,9 +3,13 @@
 mod book;
 
 use crate::failure::{Failure, say};
+use crate::keys::{all, measured, paths};
+use crate::laws::one;
+use crate::pager::Paged;
 use peridyne::observe::observables;
-use peridyne_io::deck::reference::{Key, Page, pages};
-use peridyne_io::deck::{Dim, UnitSystem, law_schema, named, schema};
+use peridyne::run::Registry;
+use peridyne_io::deck::reference::{Key, Page};
+use peridyne_io::deck::renamed;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -20,14 +24,11 @@ pub struct DocArguments {
     /// With --book: take examples from the decks in this folder.
     #[arg(long, value_name = "FOLDER", requires = "book")]
     pub decks: Option<PathBuf>,
-}
-
-/// The two kinds of deck, with what the top of each is called.
-fn all() -> [(&'static str, Vec<Page>); 2] {
-    [
-        ("deck", pages(&schema())),
-        ("conservation_law", pages(&law_schema())),
-    ]
+    /// Print all keys as `--set` takes them, one a line; completions of shells read them.
+    #[arg(long, conflicts_with_all = ["key", "book"])]
+    pub keys: bool,
+    #[command(flatten)]
+    pub paged: Paged,
 }
 
 /// `[body]`, `[[probe]]`, `[sets.NAME]`.
@@ -37,20 +38,6 @@ fn header(top: &str, page: &Page) -> String {
         p if p.named => format!("[{}.NAME]", p.path),
         p if p.repeated => format!("[[{}]]", p.path),
         p => format!("[{}]", p.path),
-    }
-}
-
-/// A dimension with the units that plain numbers have.
-fn measured(dimension: &str) -> String {
-    let Some(dim) = named(dimension) else {
-        return dimension.to_string();
-    };
-    let [si, metal] =
-        [UnitSystem::Si, UnitSystem::Metal(Default::default())].map(|s| s.plain_unit(dim));
-    match (dim == Dim::NUMBER, si == metal) {
-        (true, _) => dimension.to_string(),
-        (false, true) => format!("{dimension} ({si})"),
-        (false, false) => format!("{dimension} ({si}; in metal {metal})"),
     }
 }
 
@@ -70,7 +57,7 @@ fn explain(top: &str, page: &Page, key: &Key) -> String {
     line("measures", &measured(&key.dimension));
     line("bounds", &key.bounds);
     line(
-        "left out",
+        "default",
         if key.must {
             "must be given"
         } else {
@@ -118,6 +105,10 @@ pub fn doc(arguments: &DocArguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.book {
         return book::write(folder, arguments.decks.as_deref(), &all);
     }
+    if arguments.keys {
+        say(&paths().join("\n"));
+        return Ok(());
+    }
     let Some(asked) = &arguments.key else {
         let mut text =
             String::from("peridyne doc KEY explains a key, a table, a law or a field; tables:\n");
@@ -127,14 +118,29 @@ pub fn doc(arguments: &DocArguments) -> Result<(), Failure> {
                 let _ = writeln!(text, "  {:<34}{first}", header(top, page));
             }
         }
-        say(text.trim_end());
+        arguments.paged.show(&text);
         return Ok(());
     };
-    let found = find(&all, asked.trim_matches(['[', ']']));
-    if found.is_empty() {
-        return Err(Failure::input(unknown(&all, asked)));
+    explained(asked, arguments.paged)
+}
+
+/// Prints what is known of a name.
+///
+/// # Errors
+/// There is nothing of this name.
+pub fn explained(asked: &str, paged: Paged) -> Result<(), Failure> {
+    let asked = asked.trim_matches(['[', ']']);
+    let mut found = find(&all(), asked);
+    if found.is_empty()
+        && let Some(new) = renamed(asked)
+    {
+        found = find(&all(), &new);
+        found.insert(0, format!("`{asked}` is called `{new}` now\n"));
     }
-    say(found.join("\n").trim_end());
+    if found.is_empty() {
+        return Err(Failure::input(unknown(asked)));
+    }
+    paged.show(&found.join("\n"));
     Ok(())
 }
 
@@ -142,12 +148,21 @@ pub fn doc(arguments: &DocArguments) -> Result<(), Failure> {
 fn find(all: &[(&str, Vec<Page>)], asked: &str) -> Vec<String> {
     let mut exact = vec![];
     let mut ending = vec![];
+    let registry = Registry::standard();
     for (top, pages) in all {
         for page in pages {
+            // a law says more of itself
+            let law = || page.path.rsplit('.').next().unwrap_or_default();
+            let law = one::named(&registry, law()).into_iter();
+            let law = { law }.find(|(place, d)| page.path == format!("{place}.{}", d.name));
+            let list = || match law {
+                Some((place, law)) => one::told(place, law, &registry),
+                None => list(top, page),
+            };
             if page.path == asked || (page.path.is_empty() && *top == asked) {
-                exact.push(list(top, page));
+                exact.push(list());
             } else if page.path.ends_with(&format!(".{asked}")) {
-                ending.push(list(top, page));
+                ending.push(list());
             }
             for key in &page.keys {
                 let path = format!("{}.{}", page.path, key.name);
@@ -180,12 +195,17 @@ fn find(all: &[(&str, Vec<Page>)], asked: &str) -> Vec<String> {
     }
 }
 
-fn unknown(all: &[(&str, Vec<Page>)], asked: &str) -> String {
+/// There is nothing of this name.
+pub fn unknown(asked: &str) -> String {
+    let all = all();
     let mut names: Vec<&str> = vec![];
-    for (_, pages) in all {
+    for (_, pages) in &all {
         names.extend(pages.iter().map(|p| &*p.path));
         names.extend(pages.iter().flat_map(|p| &p.keys).map(|k| &*k.name));
     }
+    let registry = Registry::standard();
+    let laws = registry.descriptors().chain(registry.forces());
+    names.extend(laws.map(|d| &*d.name));
     names.extend(observables::ALL.iter().map(|o| &*o.declaration.name));
     let last = asked.rsplit('.').next().unwrap_or(asked);
     let near = names

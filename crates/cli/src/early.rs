@@ -1,6 +1,7 @@
 //! Runs that end before their last step, and what they go on with.
 
 use crate::Input;
+use crate::deck::{STDIN, is_piped};
 use crate::failure::Failure;
 use peridyne_io::deck::clock_time;
 use peridyne_io::read::source;
@@ -36,17 +37,20 @@ impl Early {
 
 /// What a state says of how its run was asked for: command, name of the deck and its text.
 pub fn asked(input: &Input, records: [String; 3]) -> Asked {
-    asked_by(&input.file, input.set.clone(), records)
+    asked_by(&input.file, input.set.clone(), records, source::sums())
 }
 
-/// The same of a deck's file and what overrides it.
+/// The same of a deck's file, what overrides it, and the files that were read for it.
 pub fn asked_by(
     file: &Path,
     set: Vec<(String, String)>,
     [command, name, text]: [String; 3],
+    mut files: Vec<(PathBuf, u32)>,
 ) -> Asked {
-    let deck = file.canonicalize().unwrap_or_else(|_| file.to_path_buf());
-    let mut files = source::sums();
+    let deck = match is_piped(file) || file == Path::new(STDIN) {
+        true => PathBuf::from("-"),
+        false => file.canonicalize().unwrap_or_else(|_| file.to_path_buf()),
+    };
     files.retain(|(path, _)| *path != deck);
     Asked {
         version: env!("CARGO_PKG_VERSION").to_string(),

@@ -40,7 +40,7 @@ fn amounts(deck: &Deck, sim: &mut dyn Simulation) -> [f64; 5] {
     let numbers = 5 + numbers.sum::<u64>();
     let (info, output) = (sim.info(), &deck.output);
     let steps = deck.steps(info.time_step);
-    let films = || output.pictures.iter().filter(|p| p.film);
+    let films = || output.pictures.iter().filter(|p| p.film.is_some());
     let cells = output.vtu && !deck.cells.is_empty();
     let amount = Amount {
         steps,

@@ -48,7 +48,7 @@ impl Failure {
         match self {
             Failure::Input(report) => {
                 // its colours are ours
-                written(&format!("{:?}", miette::Report::new(Told::of(report))));
+                written(&format!("{:?}", miette::Report::new(Brief::of(report))));
                 2
             }
             Failure::Run(message) => {
@@ -63,15 +63,15 @@ impl Failure {
 
 /// A mistake of the input in words that are safe to print; its source is an excerpt, which is so.
 #[derive(Debug)]
-struct Told {
+struct Brief {
     message: String,
     help: Option<String>,
     report: miette::Report,
 }
 
-impl Told {
-    fn of(report: miette::Report) -> Told {
-        Told {
+impl Brief {
+    fn of(report: miette::Report) -> Brief {
+        Brief {
             message: brief(&report.to_string()),
             help: report.help().map(|help| brief(&help.to_string())),
             report,
@@ -79,15 +79,15 @@ impl Told {
     }
 }
 
-impl fmt::Display for Told {
+impl fmt::Display for Brief {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
     }
 }
 
-impl std::error::Error for Told {}
+impl std::error::Error for Brief {}
 
-impl Diagnostic for Told {
+impl Diagnostic for Brief {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         let help = self.help.as_ref()?;
         Some(Box::new(help))

@@ -185,10 +185,10 @@ fn frames(request: &Request, count: usize, made: &mut Made) -> Result<(), Failur
 struct Clock {
     begun: Instant,
     frames: usize,
-    told: Mutex<Told>,
+    told: Mutex<Progressed>,
 }
 
-struct Told {
+struct Progressed {
     /// Frames that are done, and when the last of them was.
     done: usize,
     since: Instant,
@@ -201,7 +201,7 @@ impl Clock {
         Clock {
             begun,
             frames,
-            told: Mutex::new(Told {
+            told: Mutex::new(Progressed {
                 done: 0,
                 since: begun,
                 spoken: begun,

@@ -6,10 +6,11 @@ use crate::early::{Early, asked, same_files};
 use crate::failure::{Failure, json_text, note, say};
 use crate::report;
 use crate::signals;
-use peridyne_io::conservation::{self, LawError, Listener, Told, evaluation_name, method_name};
+use peridyne_io::conservation::{
+    self, LawError, Listener, RunInputs, evaluation_name, method_name,
+};
 use peridyne_io::deck::conservation::LawDeck;
 use peridyne_io::deck::{Dim, counted, rounded};
-use peridyne_io::drive::default_dir;
 use peridyne_io::excerpt::one_line;
 use peridyne_io::write::checkpoint::Checkpoint;
 use peridyne_transport::{RunError, StepSize, Stop, exact, measure};
@@ -35,10 +36,10 @@ pub fn read(input: &Input) -> Result<Option<LawDeck>, Failure> {
     deck::no_variables(input)?;
     if input.simd.is_some() {
         return Err(Failure::input(
-            "--simd belongs to bodies: a conservation law takes the widest instruction set, and gives the same bits on all",
+            "--simd belongs to bodies: a conservation law takes the widest instruction set, and gives bitwise the same results on all",
         ));
     }
-    let name = input.file.to_string_lossy();
+    let name = input.name();
     let read = LawDeck::parse(&text, &name, &input.set);
     Ok(Some(read.map_err(|e| Failure::Input(e.into()))?))
 }
@@ -88,10 +89,10 @@ pub fn run(place: &Place<'_>, mut deck: LawDeck, from: Option<Checkpoint>) -> Re
         deck.stays_inside().map_err(|e| Failure::Input(e.into()))?;
     }
     let dir = out.map(Path::to_path_buf).or(deck.dir.clone());
-    let dir = dir.unwrap_or_else(|| default_dir(&input.file));
+    let dir = dir.unwrap_or_else(|| input.default_dir());
     let name = deck.file().to_string();
     let (command, text) = (deck::command(input), deck.text().to_string());
-    let mut told = Told {
+    let mut told = RunInputs {
         asked: asked(input, [command.clone(), name, text]),
         command,
         understood: headline(&deck),

@@ -1,9 +1,13 @@
 //! `peridyne laws`: what a deck can name, read from its schema and the descriptors of laws, so that nothing is forgotten.
 
-use crate::failure::{Failure, say};
-use peridyne::columns::Dimension;
-use peridyne::law::descriptor::{Bounds, Descriptor, Key, Need, Value};
-use peridyne::run::Shelf;
+pub mod one;
+
+use crate::doc;
+use crate::failure::Failure;
+use crate::pager::Paged;
+use peridyne::columns::Declaration;
+use peridyne::law::descriptor::{Descriptor, Value};
+use peridyne::run::Registry;
 use peridyne::space::lattice::LatticeKind;
 use serde_json::Value as Json;
 use std::fmt::Write;
@@ -12,17 +16,17 @@ use std::fmt::Write;
 const ORDER: [(&str, &str); 13] = [
     ("Fracture", "fracture (material.fracture)"),
     (
-        "ReleaseName",
-        "when a bond past its critical stretch lets go (material.fracture.release)",
+        "BreakageName",
+        "when a bond past its critical stretch breaks (material.fracture.breakage)",
     ),
     ("InfluenceName", "influence functions (influence)"),
     (
-        "InterfaceName",
-        "bonds between unlike materials (interface)",
+        "BondMixingName",
+        "bonds between unlike materials (bond_mixing)",
     ),
     (
         "SurfaceName",
-        "factors of bonds near the surface of a lattice body (surface)",
+        "surface corrections of a lattice body (surface)",
     ),
     (
         "CalibrationName",
@@ -48,10 +52,114 @@ const LEFT_OUT: [&str; 7] = [
     "AxisName",
     "PlaneName",
     "UnitName",
-    "Mark",
+    "Block",
 ];
 
-pub fn print() -> Result<(), Failure> {
+#[derive(clap::Args)]
+pub struct LawsArguments {
+    /// A law, a force or a field: all that is known of it, with a deck that runs it.
+    pub name: Option<String>,
+    /// List the fields of points that output.fields, pictures and probes take: those of every body, and those that laws bring along.
+    #[arg(long)]
+    pub fields: bool,
+    #[command(flatten)]
+    pub paged: Paged,
+}
+
+pub fn laws(arguments: &LawsArguments) -> Result<(), Failure> {
+    let registry = Registry::standard();
+    let text = match (&arguments.name, arguments.fields) {
+        (None, false) => list(&registry),
+        (None, true) => fields(&registry),
+        (Some(name), fields) => {
+            let found = one::named(&registry, name);
+            let [(_, law), ..] = found[..] else {
+                // keys and fields are explained there
+                return match fields {
+                    false => doc::explained(name, arguments.paged),
+                    true => Err(Failure::input(doc::unknown(name))),
+                };
+            };
+            let each = found.iter();
+            match fields {
+                true => match one::field_lines(law, &registry) {
+                    none if none.is_empty() => format!(
+                        "{name} has no fields of its own; those of every body: peridyne laws --fields"
+                    ),
+                    own => own,
+                },
+                false => each
+                    .map(|(place, law)| one::told(place, law, &registry))
+                    .collect::<Vec<_>>()
+                    .join("\n"),
+            }
+        }
+    };
+    arguments.paged.show(&text);
+    Ok(())
+}
+
+/// The fields of every body.
+fn usual_fields() -> String {
+    let mut text = String::new();
+    for observable in peridyne::observe::observables::ALL {
+        let mut line = one::field_line(&observable.declaration);
+        if !observable.equation.is_empty() {
+            let _ = write!(line, " {}", observable.equation);
+        }
+        if !observable.source.is_empty() {
+            let _ = write!(line, " [{}]", observable.source);
+        }
+        let _ = writeln!(text, "{line}");
+    }
+    text
+}
+
+/// All fields of points, law by law.
+fn fields(registry: &Registry) -> String {
+    let mut text = format!(
+        "fields of points of every body (output.fields)\n{}",
+        usual_fields()
+    );
+    let (mut own, mut none) = (String::new(), vec![]);
+    // those of breaking bonds, with the laws that have them
+    let mut broken: Vec<(Declaration, Vec<&str>)> = vec![];
+    for law in registry.descriptors() {
+        let all = one::fields(law, registry);
+        let (breaks, always): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, b)| *b);
+        match always.is_empty() {
+            true => none.push(&*law.name),
+            false => {
+                let _ = writeln!(own, "fields of {}", law.name);
+            }
+        }
+        for (column, _) in always {
+            let _ = writeln!(own, "{}", one::field_line(&column));
+        }
+        for (column, _) in breaks {
+            match broken.iter_mut().find(|(c, _)| c.name == column.name) {
+                Some((_, laws)) => laws.push(&law.name),
+                None => broken.push((column, vec![&law.name])),
+            }
+        }
+    }
+    let _ = writeln!(
+        text,
+        "fields of points whose bonds break (material.fracture)"
+    );
+    for (column, laws) in broken {
+        let _ = writeln!(text, "{} Of {}.", one::field_line(&column), laws.join(", "));
+    }
+    let _ = writeln!(
+        text,
+        "{own}without fields of their own: {}",
+        none.join(", ")
+    );
+    text
+}
+
+/// All that a deck can name.
+fn list(registry: &Registry) -> String {
     let schema = peridyne_io::deck::schema();
     let none = serde_json::Map::new();
     let all = schema["$defs"].as_object().unwrap_or(&none);
@@ -59,54 +167,44 @@ pub fn print() -> Result<(), Failure> {
         let known = ORDER.iter().any(|(o, _)| o == name) || LEFT_OUT.contains(&name.as_str());
         !known && (table.get("oneOf").is_some() || table.get("enum").is_some())
     });
-    let shelf = Shelf::standard();
-    say(&format!(
-        "laws (material.law)\n{}",
-        named(shelf.descriptors())
-    ));
-    say(&format!(
-        "forces on points (condition.force)\n{}",
-        named(shelf.forces())
-    ));
+    let mut text = format!(
+        "laws (material.law); peridyne laws NAME explains one, with a deck\n{}\n",
+        named(registry.descriptors())
+    );
+    let _ = writeln!(
+        text,
+        "forces on points (boundary_condition.force)\n{}",
+        named(registry.forces())
+    );
     let titled = ORDER.iter().map(|(name, title)| (*name, *title));
     for (name, title) in titled.chain(others.map(|(name, _)| (name.as_str(), name.as_str()))) {
         if let Some(table) = all.get(name) {
-            say(&format!("{title}\n{}", names(table, all)));
+            let _ = writeln!(text, "{title}\n{}", names(table, all));
         }
     }
-    say("fields of points (output.fields), beside those that laws declare");
-    for observable in peridyne::observe::observables::ALL {
-        let declaration = &observable.declaration;
-        let shape = match declaration.shape.components() {
-            [] => String::new(),
-            components => format!(" ({})", components.join(" ")),
-        };
-        let mut line = format!(
-            "  {:<26} {}{shape}; {}",
-            declaration.name, declaration.dimension, declaration.doc
-        );
-        if !observable.equation.is_empty() {
-            let _ = write!(line, " {}", observable.equation);
-        }
-        if !observable.source.is_empty() {
-            let _ = write!(line, " [{}]", observable.source);
-        }
-        say(&line);
-    }
-    say("lattices (body.lattice), spacing = edge of the cell (triangular: nearest neighbours)");
+    let _ = writeln!(
+        text,
+        "fields of points (output.fields); those that laws bring along: peridyne laws --fields\n{}",
+        usual_fields()
+    );
+    let _ = writeln!(
+        text,
+        "lattices (body.lattice), spacing = edge of the cell (triangular: nearest neighbours)"
+    );
     for kind in LatticeKind::ALL {
-        say(&format!(
+        let _ = writeln!(
+            text,
             "  {:<14} {}-D, {} sites per cell, nearest neighbours at {:.4} spacings",
             kind.name(),
             kind.dimension(),
             kind.basis().len(),
             kind.nearest()
-        ));
+        );
     }
-    Ok(())
+    text
 }
 
-/// All of a list of the shelf with their keys; words that several share are explained at the first.
+/// All of a list of the registry with their keys; words that several share are explained at the first.
 fn named<'a>(all: impl Iterator<Item = &'a Descriptor>) -> String {
     let mut text = String::new();
     let mut explained: Vec<&[(&str, &str)]> = vec![];
@@ -117,7 +215,7 @@ fn named<'a>(all: impl Iterator<Item = &'a Descriptor>) -> String {
         };
         let _ = writeln!(text, "  {:<14} {}{source}", d.name, d.doc);
         for key in d.taken() {
-            let _ = writeln!(text, "  {:<16} {}", "", explain(key));
+            let _ = writeln!(text, "  {:<16} {}", "", one::explain(key));
             if let Value::Word(words) = key.value
                 && !explained.contains(&words)
             {
@@ -129,46 +227,6 @@ fn named<'a>(all: impl Iterator<Item = &'a Descriptor>) -> String {
         }
     }
     text
-}
-
-/// `young: Young's modulus E. (a pressure, positive; one of those)`.
-fn explain(key: &Key) -> String {
-    let number = |dimension: Dimension, bounds: &Bounds| match bounds {
-        b if *b == Bounds::ANY => format!("{dimension}"),
-        b => format!("{dimension}, {}", b.words()),
-    };
-    let value = match key.value {
-        Value::Number(dimension, bounds) => number(dimension, &bounds),
-        Value::List(count, dimension, bounds) => {
-            format!("{count} numbers, each {}", number(dimension, &bounds))
-        }
-        Value::Rows(columns) => {
-            let each = columns
-                .iter()
-                .map(|(name, d, b)| format!("{name} ({})", number(*d, b)));
-            format!("rows of {}", each.collect::<Vec<_>>().join(", "))
-        }
-        Value::Direction => "three numbers or expressions of x, y, z".into(),
-        Value::Word(words) => {
-            let words: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
-            format!("one of {}", words.join(", "))
-        }
-        Value::Name => "a name".into(),
-        Value::Formula(variables, dimension) => {
-            let measures = dimension.map(|d| format!(", {d}")).unwrap_or_default();
-            format!("an expression of {}{measures}", variables.join(", "))
-        }
-        Value::Table | Value::Entries(_) => "a file".into(),
-    };
-    let need = match key.need {
-        Need::Given | Need::Refused => String::new(),
-        Need::Default(x) => format!("; {x} when left out"),
-        Need::Word(word) => format!("; {word} when left out"),
-        Need::Optional => "; may be left out".into(),
-        Need::OneOf => "; one of these is given".into(),
-        Need::TwoOf => "; two of these are given".into(),
-    };
-    format!("{}: {} ({value}{need})", key.name, key.doc)
 }
 
 /// One line for each name: what it is, and its keys; those that must be given are marked.
@@ -229,6 +287,6 @@ fn keys(table: &Json, all: &serde_json::Map<String, Json>) -> Option<String> {
     Some(match (must.is_empty(), may.is_empty()) {
         (_, true) => format!("keys: {}", list(must)),
         (true, false) => format!("keys: {}", list(may)),
-        (false, false) => format!("keys: {}; may be left out: {}", list(must), list(may)),
+        (false, false) => format!("keys: {}; optional: {}", list(must), list(may)),
     })
 }

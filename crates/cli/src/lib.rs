@@ -1,5 +1,8 @@
 //! The peridyne program, as a library: each verb is a function of its arguments. The program and the Python module call it.
 
+// the same bits on every machine: libm, not that of C (clippy.toml)
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 mod bar;
 mod calibrate;
 mod check;
@@ -12,11 +15,12 @@ mod early;
 mod enough;
 mod failure;
 mod fields;
-mod initial;
+mod keys;
 mod law;
 mod laws;
 mod new;
 mod numbers;
+mod pager;
 mod plan;
 mod progress;
 mod ranks;
@@ -32,17 +36,18 @@ mod signals;
 mod study;
 mod sweep;
 mod upscale;
+mod verbs;
 mod waves;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
 pub use failure::Failure;
 use peridyne_io::excerpt::steers;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Peridynamics and molecular dynamics: points that talk to a family of points.
+/// Peridynamics and molecular dynamics: points that interact with those within a horizon.
 #[derive(Parser)]
-#[command(name = "peridyne", version, about, max_term_width = 100)]
+#[command(name = "peridyne", version = env!("PERIDYNE_VERSION"), max_term_width = 100, subcommand_value_name = "VERB")]
 struct Arguments {
     #[command(subcommand)]
     verb: Verb,
@@ -54,24 +59,23 @@ enum Verb {
     New(new::NewArguments),
     /// Run a deck (TOML) or a LAMMPS input script.
     Run(run::RunArguments),
-    /// Go on with a run that was ended before its last step, bit for bit.
+    /// Go on with a run that ended before its last step, bit for bit.
     Resume(resume::ResumeArguments),
-    /// Say what a deck would run: points, bonds, moduli this cloud really has, stable step, memory, warnings.
+    /// Say what a deck would run: points, bonds, effective moduli, stable step, memory, warnings.
     Check(check::CheckArguments),
     /// From atoms (or fine points) to coarse peridynamic points: decks of both, and an error card.
     Upscale(upscale::UpscaleArguments),
-    /// From a linear body (a deck about its reference) to coarser ones, level by level, in equilibrium alike, and moving alike
-    /// in waves of some ten coarse spacings and more: `--mass`.
+    /// From a linear body to coarser ones, level by level, alike in equilibrium and (`--mass`) in long waves.
     Coarsen(coarsen::CoarsenArguments),
     /// Waves of a lattice deck: dispersion, stability, elastic constants, gradient coefficients.
     Waves(waves::WavesArguments),
     /// Refine a lattice deck level by level, and fit the order with which its error falls.
     Converge(converge::ConvergeArguments),
-    /// Run a deck with many values of its keys: each with each, in lists, or a Latin hypercube; one table of what came out.
+    /// Run a deck with many values of its keys: each with each, in lists, or a Latin hypercube; one table of results.
     Sweep(Box<sweep::SweepArguments>),
     /// Fit keys of a deck to a measured curve, between bounds, with uncertainties.
     Calibrate(Box<calibrate::CalibrateArguments>),
-    /// A deck of Peridigm (YAML, XML) or PeriLab (YAML) as one of peridyne; what has no counterpart is named line by line.
+    /// Convert a deck of Peridigm (YAML, XML) or PeriLab (YAML); what has no counterpart is named line by line.
     Convert(convert::ConvertArguments),
     /// Continuum fields from the particles of a trajectory: stress, heat flux and their balance laws.
     Fields(Box<fields::FieldsArguments>),
@@ -81,20 +85,20 @@ enum Verb {
     Report(report::ReportArguments),
     /// Run the experiments of the papers and compare with what was published.
     Reproduce(reproduce::ReproduceArguments),
-    /// Which MPI is found under a launcher, whether messages between all ranks come as they were sent, and how fast.
+    /// Check MPI under a launcher: which library is found, whether messages between ranks are right, and how fast.
     Ranks(ranks::RanksArguments),
-    /// How long a deck would take on many machines, what each holds, and how well they share it: measured by a few steps here.
+    /// Estimate the time and memory of a deck on many machines from a few steps here.
     Plan(plan::PlanArguments),
-    /// List the laws, lattices and influence functions with their parameters.
-    Laws,
+    /// List the laws, lattices and influence functions, or explain a law by its name: keys, units, bounds, a deck.
+    Laws(laws::LawsArguments),
     /// Explain a key, a table, a law or a field of decks.
     Doc(doc::DocArguments),
     /// Print the JSON schema of decks, for editors.
     Schema(SchemaArguments),
     /// Print completions for a shell: `peridyne completions bash > ~/.local/share/bash-completion/completions/peridyne`.
     Completions(shell::CompletionsArguments),
-    /// Print the manual page: `peridyne man | man -l -`.
-    Man,
+    /// Print a manual page, `peridyne man run | man -l -`, or write all: `peridyne man --out DIR`.
+    Man(shell::ManArguments),
 }
 
 #[derive(clap::Args)]
@@ -116,7 +120,7 @@ enum DeckKind {
 /// What `run` and `check` both take.
 #[derive(clap::Args, Clone)]
 pub struct Input {
-    /// Deck (`.toml`) or LAMMPS input script (any other name).
+    /// Deck (`.toml`; `-`: from standard input) or LAMMPS input script (any other name).
     pub file: PathBuf,
     /// Override a key of the deck, e.g. `--set run.steps=100`; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = pair)]
@@ -141,13 +145,16 @@ fn pair(text: &str) -> Result<(String, String), String> {
 /// The program with these words, the first of which is its name; its exit code.
 pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
-    let arguments = match Arguments::try_parse_from(&words) {
+    let matches = verbs::command().try_get_matches_from(&words);
+    let arguments = match matches.and_then(|m| Arguments::from_arg_matches(&m)) {
         Ok(arguments) => arguments,
         Err(answer) => return answered(&answer, &words),
     };
     if let Err(e) = signals::listen() {
         return Failure::Run(format!("signals cannot be listened to: {e}")).report();
     }
+    // a program in Python gives several commands
+    deck::pipe(None);
     let outcome = match arguments.verb {
         Verb::New(arguments) => new::new(&arguments),
         Verb::Run(arguments) => run::run(&arguments),
@@ -166,14 +173,14 @@ pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Ranks(arguments) => ranks::ranks(&arguments),
         Verb::Plan(arguments) => plan::plan(&arguments),
-        Verb::Laws => laws::print(),
+        Verb::Laws(arguments) => laws::laws(&arguments),
         Verb::Doc(arguments) => doc::doc(&arguments),
         Verb::Schema(arguments) => print_schema(arguments.kind),
         Verb::Completions(arguments) => {
-            shell::completions(&arguments, Arguments::command());
+            shell::completions(&arguments, verbs::command());
             Ok(())
         }
-        Verb::Man => shell::man(Arguments::command()),
+        Verb::Man(arguments) => shell::man(&arguments, &verbs::command()),
     };
     match outcome.and_then(|()| failure::printed()) {
         Ok(()) => 0,
@@ -183,6 +190,9 @@ pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// Help or the version were asked for, or the command line is wrong.
 fn answered(answer: &clap::Error, words: &[OsString]) -> u8 {
+    if let Some(why) = verbs::mistaken(answer, words) {
+        return Failure::input(why).report();
+    }
     if answer.use_stderr() {
         let odd = |word: &OsString| word.to_string_lossy().chars().any(steers);
         match words.iter().any(odd) {

@@ -13,7 +13,7 @@ pub fn digits(value: f64) -> String {
         let before = if size < 1.0 {
             1
         } else {
-            size.log10().floor() as usize + 1
+            libm::log10(size).floor() as usize + 1
         };
         format!("{value:.*}", 5usize.saturating_sub(before))
     }

@@ -7,7 +7,7 @@ use crate::numbers::{duration, memory};
 use crate::run::with_threads;
 use peridyne::run::ranks::{Shares, StepCost, plan as planned};
 use peridyne::run::{Info, Options};
-use peridyne_io::deck::counted;
+use peridyne_io::deck::{counted, each_once};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -63,7 +63,7 @@ fn step(shares: &Shares, per_point: f64, cost: &StepCost, network: Network) -> f
     );
     // as many points have partners elsewhere as there are copies of others'
     let inside = during.part * per_point * (points - copies).max(0.0);
-    let deep = (shares.ranks as f64).log2().ceil();
+    let deep = libm::log2(shares.ranks as f64).ceil();
     let rounds = cost.rounds * 2.0 * deep * network.latency;
     per_point * points + (ahead - inside).max(0.0) + rest + rounds
 }
@@ -143,7 +143,7 @@ impl Plan {
         });
         let cost = &self.cost;
         json!({
-            "points": self.info.points, "directed_bonds": self.info.directed_bonds, "steps": self.steps, "threads": self.threads, "cores": self.cores,
+            "points": self.info.points, "bonds": each_once(self.info.directed_bonds), "steps": self.steps, "threads": self.threads, "cores": self.cores,
             "seconds_per_step": cost.seconds, "messages": cost.messages, "bytes_per_copy": cost.bytes_per_copy, "rounds": cost.rounds,
             "meanwhile": { "messages": cost.meanwhile.messages, "bytes_per_copy": cost.meanwhile.bytes_per_copy, "part": cost.meanwhile.part },
             "two_ranks": { "seconds_per_step": cost.seconds_of_two, "foreseen": self.foreseen },

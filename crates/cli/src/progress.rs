@@ -100,7 +100,7 @@ impl Progress for Terminal {
             self.state = format!("{:.0} % of the load, ", 100.0 * time);
             return;
         };
-        let work = ledger.work_conditions.abs() + ledger.work_indenter.abs();
+        let work = ledger.work_boundary_conditions.abs() + ledger.work_rigid_bodies.abs();
         let given = work + ledger.initial.abs();
         let time = units.show(time, Dim::TIME);
         self.state = match given > 0.0 {

@@ -26,9 +26,6 @@ const TRIES: usize = 5;
 const BIG: usize = 4 << 20;
 const BIG_ROUNDS: usize = 5;
 
-/// What is written instead where ranks do not share something.
-pub const ALONE: &str = "run it in one process, on as many threads as there are";
-
 fn no_launcher() -> Result<(), Failure> {
     match launcher::launched() {
         Some(launched) => Err(Failure::input(format!(
@@ -64,19 +61,6 @@ pub fn agreed<T>(comm: &Comm, made: Result<T, Failure>) -> Result<T, Failure> {
     match all.iter().position(|failed| *failed == 1) {
         Some(first) if first != comm.rank() => Err(Failure::Elsewhere),
         Some(_) | None => made,
-    }
-}
-
-/// Ranks do not share this.
-pub fn alone(comm: &Comm, what: &str) -> Result<(), Failure> {
-    match comm.ranks() {
-        1 => Ok(()),
-        _ => agreed(
-            comm,
-            Err(Failure::input(format!(
-                "ranks do not share {what} yet: {ALONE}"
-            ))),
-        ),
     }
 }
 

@@ -4,9 +4,8 @@ use crate::Input;
 use crate::deck;
 use crate::early::{Early, same_files};
 use crate::failure::{Failure, note};
-use crate::initial::InitialState;
 use crate::law;
-use crate::ranks::{agreed, alone, by_the_first, shared, threads_here};
+use crate::ranks::{agreed, by_the_first, shared, threads_here};
 use crate::run::{Begin, RunArguments, run_deck, with_threads};
 use crate::script;
 use peridyne_comm::Comm;
@@ -56,6 +55,10 @@ fn resume_among(arguments: &ResumeArguments, comm: &Arc<Comm>) -> Result<(), Fai
     let from = agreed(comm, newest)?;
     let asked = from.asked.clone();
     let anew = arguments.as_initial.as_ref();
+    if anew.is_none() && deck::is_piped(&asked.deck) {
+        // it is nowhere else
+        deck::pipe(Some(&asked.text));
+    }
     let run = RunArguments {
         input: Input {
             file: anew.unwrap_or(&asked.deck).clone(),
@@ -98,10 +101,7 @@ fn resume_among(arguments: &ResumeArguments, comm: &Arc<Comm>) -> Result<(), Fai
     let deck = agreed(comm, read())?;
     let threads = threads_here(comm, arguments.threads.or(deck.threads))?;
     let begin = match anew {
-        Some(_) => {
-            alone(comm, "states to begin anew from")?;
-            Begin::Anew(InitialState::of(from)?)
-        }
+        Some(_) => Begin::Anew(Box::new(from)),
         None => {
             if comm.rank() == 0 {
                 going_on(&asked);

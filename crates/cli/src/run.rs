@@ -5,7 +5,6 @@ use crate::deck;
 use crate::early::{Early, asked, same_files};
 use crate::enough::enough;
 use crate::failure::{Failure, note, say};
-use crate::initial::InitialState;
 use crate::law;
 use crate::progress::Terminal;
 use crate::ranks::{agreed, by_the_first, shared, some_threads, threads_here};
@@ -21,8 +20,7 @@ use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, SpaceTimeSpec, UnitSystem, counted};
 use peridyne_io::drive::{
-    AtomsPlan, DriveError, ExodusPlan, Plan, RigidBodies, SpaceTimeOptions, default_dir, drive,
-    too_many_threads,
+    AtomsPlan, DriveError, ExodusPlan, Plan, RigidBodies, SpaceTimeOptions, drive, too_many_threads,
 };
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::checkpoint::{Asked, Checkpoint};
@@ -128,7 +126,7 @@ pub enum Begin {
     /// Where an earlier run of this deck was ended, in its folder.
     Ended(Box<Checkpoint>),
     /// At time 0 from a state of an earlier run, of this or another deck.
-    Anew(InitialState),
+    Anew(Box<Checkpoint>),
 }
 
 /// Runs a deck.
@@ -139,23 +137,20 @@ pub fn run_deck(
     begin: Begin,
 ) -> Result<(), Failure> {
     let (rigid, spec) = RigidBodies::watched(&deck.spec);
-    let made = deck::model_among(deck, &spec, &arguments.input, comm)?;
+    let (from, anew) = match begin {
+        Begin::Unloaded => (None, None),
+        Begin::Ended(state) => (Some(*state), None),
+        Begin::Anew(state) => (None, Some(*state)),
+    };
+    let made = deck::model_among((deck, anew), &spec, &arguments.input, comm)?;
     // it has followed the first rank to the end
     let Some(mut sim) = made else { return Ok(()) };
     drop(spec);
-    let from = match begin {
-        Begin::Unloaded => None,
-        Begin::Ended(state) => Some(*state),
-        Begin::Anew(state) => {
-            state.give(sim.as_mut())?;
-            None
-        }
-    };
     let dir = arguments
         .out
         .clone()
         .or(deck.output.dir.clone())
-        .unwrap_or_else(|| default_dir(&arguments.input.file));
+        .unwrap_or_else(|| arguments.input.default_dir());
     let mut plan = planned(deck, sim.as_mut(), dir, arguments.allow_outside)?;
     say(&deck.describe());
     let remarks = deck::remarks(&deck.notes, &plan.warnings);
@@ -258,7 +253,7 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
         match done.fragments {
             Some(fragments) => format!(
                 ", {} broken, {}",
-                counted(done.broken_directed_bonds, "directed bond"),
+                counted(done.broken_bonds, "bond"),
                 counted(fragments, "fragment")
             ),
             None => String::new(),
@@ -285,9 +280,10 @@ fn ended(done: &RunReport, plan: &Plan) -> Result<(), Failure> {
 /// Plans what is left of a run that was ended.
 ///
 /// # Errors
-/// A file is another one than when the run began, or the deck asks for fewer steps than were done.
+/// A file is another one than when the run began, the deck asks for fewer steps than were done, or a program gave other things than at the beginning.
 pub fn go_on(plan: &mut Plan, asked: &Asked) -> Result<(), Failure> {
     same_files(&asked.files, &plan.asked.files)?;
+    same_given(&asked.given, &plan.asked.given)?;
     // records are those of the run that began
     (plan.command, plan.deck) = (asked.command.clone(), asked.name.clone());
     plan.asked = asked.clone();
@@ -298,6 +294,23 @@ pub fn go_on(plan: &mut Plan, asked: &Asked) -> Result<(), Failure> {
             asked.step, plan.steps
         ))),
         false => Ok(()),
+    }
+}
+
+/// Is what a program gave beside the deck what the run began with?
+fn same_given(then: &[String], now: &[String]) -> Result<(), Failure> {
+    let told = |given: &[String]| match given {
+        [] => "nothing".to_string(),
+        given => given.join(", "),
+    };
+    match then == now {
+        true => Ok(()),
+        false => Err(Failure::input(format!(
+            "beside its deck the run was given {} by the program that began it, and now {}: functions are in no state, so go on from that program and give them again, \
+             in the same order (in Python: peridyne.resume(folder, prepare=…))",
+            told(then),
+            told(now)
+        ))),
     }
 }
 
@@ -322,7 +335,7 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
         // a film is begun before it is known what the run was about
         let about = match (breaks, still) {
             _ if deck.spec.run.schedule.stepper == Stepper::Still
-                && let Some(t) = deck.spec.interactions.transfers.first() =>
+                && let Some(t) = deck.spec.interactions.diffusions.first() =>
             {
                 About::Spread(t.quantity.column())
             }
@@ -332,7 +345,7 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
         };
         let field = match (
             &asked.field,
-            asked.film || asked.component.is_some() || asked.range.is_some(),
+            asked.film.is_some() || asked.component.is_some() || asked.range.is_some(),
         ) {
             (None, true) => Some(about.field().to_string()),
             (field, _) => field.clone(),

@@ -8,6 +8,7 @@ use crate::run::{go_on, planned};
 use peridyne::run::{Options, Simulation, build};
 use peridyne_io::deck::Deck;
 use peridyne_io::drive::{DriveError, Plan, Progress, RigidBodies, drive};
+use peridyne_io::read::source::sums_of;
 use peridyne_io::write::checkpoint::Checkpoint;
 use peridyne_io::write::history::Column;
 use peridyne_io::write::run_json::RunReport;
@@ -42,7 +43,9 @@ impl Run<'_> {
         (plan.rigid, plan.threads) = (rigid, rayon::current_num_threads());
         let records = [&self.command, deck.file(), deck.text()].map(String::from);
         plan.command = self.command.clone();
-        plan.asked = early::asked_by(deck.file().as_ref(), self.set.to_vec(), records);
+        // a program may have read others for other runs
+        let files = sums_of(deck.files.clone());
+        plan.asked = early::asked_by(deck.file().as_ref(), self.set.to_vec(), records, files);
         Ok((sim, plan))
     }
 
@@ -58,13 +61,24 @@ impl Run<'_> {
     /// Runs it on the threads of now, from the beginning or from where it was ended.
     ///
     /// # Errors
-    /// The deck is wrong, a file is another one than when the run began, the run goes bad, or a file could not be written.
+    /// The deck is wrong, what [`Progress::prepare`] gives is not what the run began with, a file is another one than when the run began, the run goes bad, or a file could not be written.
     pub fn done(
         self,
         from: Option<Checkpoint>,
         progress: &mut dyn Progress,
     ) -> Result<RunReport, Stopped> {
         let (mut sim, mut plan) = self.made().map_err(Stopped::Deck)?;
+        let Some(given) = progress.prepare(sim.as_mut(), from.is_some()) else {
+            let why = progress.ended().unwrap_or_default();
+            return Err(Stopped::Deck(Failure::Run(why)));
+        };
+        plan.asked.given = given;
+        if !plan.asked.given.is_empty() {
+            let given = plan.asked.given.join(", ");
+            plan.warnings.push(format!(
+                "the deck alone does not make this run again: a program gave it {given}"
+            ));
+        }
         if let Some(from) = &from {
             go_on(&mut plan, &from.asked).map_err(Stopped::Deck)?;
         }

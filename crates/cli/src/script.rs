@@ -10,7 +10,7 @@ use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne::state::Archive;
 use peridyne_comm::Comm;
-use peridyne_io::deck::{Dim, UnitSystem, counted};
+use peridyne_io::deck::{Dim, UnitSystem, counted, each_once};
 use peridyne_io::drive::default_dir;
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::checkpoint::{Asked, Checkpoint, CheckpointSchedule, Checkpoints};
@@ -282,7 +282,7 @@ fn run(
     let (ended, signal) = (outcome.ended, signals::received());
     let signal = signal.filter(|_| ended && console.ended_by.is_none());
     let ended_by = console.ended_by.take().or(signal.map(|s| s.to_string()));
-    let told = Told {
+    let told = Summary {
         name: &name,
         text: &text,
         command,
@@ -387,7 +387,7 @@ impl Host for Holder {
 }
 
 /// What a script was, for the files that tell of it.
-struct Told<'a> {
+struct Summary<'a> {
     name: &'a str,
     text: &'a str,
     command: String,
@@ -397,7 +397,7 @@ struct Told<'a> {
     ended_by: Option<String>,
 }
 
-impl Told<'_> {
+impl Summary<'_> {
     /// `run.json`, `report.html`, history, last state and picture of a script that ran.
     fn finish(&self, mut outcome: Outcome, dir: &Path) -> Result<(), Failure> {
         let engine = outcome.engine.as_mut().map(|e| e.as_any());
@@ -476,7 +476,7 @@ impl Told<'_> {
             report.ns_per_bond_step.map_or(String::new(), |ns| format!(
                 ", {ns:.2} ns per bond and step"
             )),
-            counted(report.broken_directed_bonds, "directed bond"),
+            counted(report.broken_bonds, "bond"),
             counted(report.fragments.unwrap_or(0), "fragment"),
             spent.told(seconds),
             dir.display(),
@@ -515,7 +515,7 @@ impl Told<'_> {
                 time: time.into(),
                 energy: model.units().system().unit(Dim::ENERGY),
             },
-            indenters: record.notes.clone(),
+            rigid_bodies: record.notes.clone(),
             columns: columns.collect(),
             files: ["points.pvd".to_string()]
                 .into_iter()
@@ -549,7 +549,7 @@ impl Told<'_> {
             status: Status::Done,
             ended_by: None,
             particles: info.points,
-            directed_bonds: info.directed_bonds,
+            bonds: each_once(info.directed_bonds),
             steps,
             time_step: info.time_step,
             parts_of_a_step: info.parts,
@@ -557,7 +557,7 @@ impl Told<'_> {
             seconds: Spent::default(),
             ns_per_bond_step: run_json::ns_per_bond_step(seconds, info.directed_bonds, steps),
             peak_memory_bytes: run_json::peak_memory_bytes(),
-            broken_directed_bonds: broken,
+            broken_bonds: each_once(broken),
             fragments: Some(fragments),
             hash,
             ranks: self.ranks,

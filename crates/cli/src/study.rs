@@ -22,7 +22,7 @@ use std::time::Duration;
 pub struct StudyArguments {
     #[command(flatten)]
     pub input: Input,
-    /// Folder for the table and the results; `out/<name of the deck>-sweep` or `-calibrate` if not given. A study that was ended goes on there.
+    /// Folder for the table and the results; `out/<name of the deck>-sweep`, `-calibrate` or `-delta` (`-m`, `-delta-m`) if not given. A study that was ended goes on there.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Runs at the same time, each on its share of the threads.
@@ -58,7 +58,7 @@ impl Row {
 }
 
 /// Nobody listens but signals.
-struct Quiet;
+pub struct Quiet;
 
 impl Progress for Quiet {
     fn step(&mut self, _: u64, _: u64, _: Duration) {}
@@ -74,6 +74,8 @@ pub struct Study<'a> {
     pub arguments: &'a StudyArguments,
     text: String,
     pub dir: PathBuf,
+    /// What makes its runs where `peridyne run` does not.
+    made_by: Option<String>,
 }
 
 impl<'a> Study<'a> {
@@ -87,18 +89,26 @@ impl<'a> Study<'a> {
         if input.simd.is_some() {
             return Err(Failure::input("--simd belongs to run and check"));
         }
-        let name = input.file.file_stem().unwrap_or_default().to_string_lossy();
+        let name = input.stem();
         let own = || PathBuf::from("out").join(format!("{name}-{verb}"));
         Ok(Study {
             arguments,
             text: text(input)?,
             dir: arguments.out.clone().unwrap_or_else(own),
+            made_by: None,
         })
+    }
+
+    /// Its decks are changed beyond their keys, by this verb.
+    pub fn made_by(&mut self, verb: &str, flags: &str) {
+        let run = self.command_of(&self.arguments.input.set);
+        let words = run.trim_start_matches("peridyne run");
+        self.made_by = Some(format!("peridyne {verb}{words} {flags}"));
     }
 
     /// The deck with the values of a run.
     pub fn deck(&self, setting: &Setting) -> Result<Deck, Failure> {
-        let name = self.arguments.input.file.to_string_lossy();
+        let name = self.arguments.input.name();
         let deck = Deck::parse(&self.text, &name, &self.overrides(setting));
         let deck = deck.map_err(|e| Failure::Input(e.into()))?;
         // each has a folder of its own
@@ -150,7 +160,7 @@ impl<'a> Study<'a> {
         Run {
             deck,
             set,
-            command: self.command_of(set),
+            command: { self.made_by.clone() }.unwrap_or_else(|| self.command_of(set)),
             dir: dir.to_path_buf(),
             allow_outside: false,
         }
@@ -169,6 +179,17 @@ impl<'a> Study<'a> {
 
     /// One run: what it was, if it is done; else from where it was ended, or from the beginning.
     pub fn one(&self, deck: &Deck, setting: &Setting, dir: PathBuf) -> Row {
+        self.watched(deck, setting, dir, &mut Quiet)
+    }
+
+    /// The same, with somebody who listens.
+    pub fn watched(
+        &self,
+        deck: &Deck,
+        setting: &Setting,
+        dir: PathBuf,
+        progress: &mut dyn Progress,
+    ) -> Row {
         let row = |status: &str, why: Option<String>| Row {
             setting: setting.clone(),
             record: record(&dir),
@@ -185,7 +206,7 @@ impl<'a> Study<'a> {
             false => None,
         };
         let set = self.overrides(setting);
-        match self.run(deck, &set, &dir).done(from, &mut Quiet) {
+        match self.run(deck, &set, &dir).done(from, progress) {
             Ok(report) => match report.ended_by {
                 None => row("done", None),
                 Some(why) => row("ended", Some(why)),

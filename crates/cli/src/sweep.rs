@@ -48,7 +48,7 @@ pub fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
     say(&format!(
         "{} runs of {}, results in {}",
         settings.len(),
-        study.arguments.input.file.display(),
+        study.arguments.input.name(),
         study.dir.display()
     ));
     let begun = Instant::now();

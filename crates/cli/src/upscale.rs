@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct UpscaleArguments {
-    /// Deck of atoms or fine points on a lattice; or a law and a lattice, see below.
+    /// Deck (`-`: from standard input) of atoms or fine points on a lattice; or a law and a lattice, see below.
     #[arg(conflicts_with = "potential")]
     pub file: Option<PathBuf>,
     /// Set a key of the deck, e.g. `--set run.steps=100`; may be repeated.
@@ -68,7 +68,7 @@ pub fn upscale(arguments: &UpscaleArguments) -> Result<(), Failure> {
                     "upscale takes a deck (.toml): a lattice body with a law of springs, solids or atoms",
                 ));
             }
-            let name = file.file_stem().map(|n| n.to_string_lossy().into_owned());
+            let name = Some(input.stem());
             let deck = deck::read(&input)?;
             deck::is_plain(&deck, "upscale")?;
             (deck, name)

@@ -75,7 +75,7 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
     }
     if let Stepper::Newmark(_) = deck.spec.run.schedule.stepper {
         return Err(Failure::input(format!(
-            "{}: waves are told as velocity Verlet steps through them, and this deck has integrator = \"newmark\": leave it out",
+            "{}: waves are those of velocity Verlet, and this deck has integrator = \"newmark\": leave it out",
             deck.file()
         )));
     }
@@ -94,8 +94,7 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
         estimate,
     };
     let out = arguments.out.clone().unwrap_or_else(|| {
-        let name = arguments.input.file.file_stem();
-        let name = name.map_or("deck".into(), |n| n.to_string_lossy());
+        let name = arguments.input.stem();
         Path::new("out").join(format!("{name}-waves"))
     });
     let json = files::json(&found);
@@ -114,7 +113,7 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
 fn explained(error: &UpscaleError, deck: &Deck) -> String {
     match error {
         UpscaleError::NoLattice => "plane waves are those of an endless lattice, and this body is a cloud, a mesh or a \
-             perturbed lattice: give it as `lattice` with `spacing`; `peridyne check` tells stiffness and stable step of \
+             perturbed lattice: give it as `lattice` with `spacing`; `peridyne check` computes stiffness and stable step of \
              any body"
             .into(),
         UpscaleError::SeveralMaterials => "waves of several materials are known of atoms, whose unlike ones repeat from cell to cell: \

@@ -139,7 +139,10 @@ fn a_mixture_keeps_its_kinds_in_every_file() {
             "body = { lattice = \"fcc\", spacing = 1.63, cells = [5, 5, 5] }",
             "body = { file = \"FILE\" }",
         )
-        .replace("thermal = { temperature = 1.2, seed = 87287 }\n", "")
+        .replace(
+            "initial_velocities = { temperature = 1.2, seed = 87287 }\n",
+            "",
+        )
         .replace("[sets.heavy]\nrandom = { part = 0.3, seed = 5 }\n", "")
         .replace("mass = 2.5\n", "")
         .replace("mass = 1\n", "");
@@ -237,7 +240,7 @@ fn a_dump_of_atoms_is_the_system() {
     let copper = format!(
         "units = \"metal\"\nperiodic = [\"x\", \"y\", \"z\"]\n\
          body = {{ lattice = \"fcc\", spacing = 3.615, origin = [1, 2, 3], cells = [4, 4, 4] }}\n\
-         material.law = {{ eam = {{ file = {table:?} }} }}\nthermal = {{ temperature = 300, seed = 4 }}\n\
+         material.law = {{ eam = {{ file = {table:?} }} }}\ninitial_velocities = {{ temperature = 300, seed = 4 }}\n\
          run = {{ steps = 20, time_step = 0.002 }}\n\
          output = {{ dump = \"given.dump\", trajectory = \"t.extxyz\", vtu = false, history = 20 }}\n"
     );
@@ -316,7 +319,7 @@ fn a_dump_of_atoms_is_the_system() {
                 &format!("file = \"{file}\""),
             )
             .replace("periodic = [\"x\", \"y\", \"z\"]\n", "")
-            .replace("thermal = { temperature = 300, seed = 4 }\n", "");
+            .replace("initial_velocities = { temperature = 300, seed = 4 }\n", "");
         std::fs::write(&deck, again).unwrap();
         let out = dir.path().join(format!("again{n}"));
         let (code, text) = run(&deck, &out, &["--set", "run.steps=1"]);

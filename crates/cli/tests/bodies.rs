@@ -158,10 +158,10 @@ thickness = "10 mm"
 body = { file = "plate.msh", file_unit = "1 mm" }
 material = { density = "1000 kg/m^3", law = { pmb = { young = "1 GPa" } } }
 sets.left.where = "x < 1 mm"
-[[condition]]
+[[boundary_condition]]
 set = "left"
 displacement = { x = 0, y = 0 }
-[[condition]]
+[[boundary_condition]]
 set = "right"
 traction = { x = "1 MPa*t" }
 [statics]
@@ -262,12 +262,12 @@ fn a_body_is_as_large_as_its_region() {
 }
 
 #[test]
-fn an_indenter_without_stiffness_has_that_of_the_material() {
+fn a_rigid_body_without_stiffness_has_that_of_the_material() {
     let deck = r#"horizon = { m_ratio = 2 }
 material = { density = "1000 kg/m^3", law = { lps = { bulk = "2 GPa", shear = "1 GPa" } } }
 run = { steps = 1 }
 body = { lattice = "cubic", spacing = "1 mm", cells = [6, 6, 6] }
-indenter = [{ radius = "3 mm", center = ["3 mm", "3 mm", "8 mm"] }]
+rigid_body = [{ radius = "3 mm", center = ["3 mm", "3 mm", "8 mm"] }]
 "#;
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("deck.toml");
@@ -276,7 +276,7 @@ indenter = [{ radius = "3 mm", center = ["3 mm", "3 mm", "8 mm"] }]
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     // ten times 2 GPa over 1 mm³
     assert!(
-        said.contains("stiffness of indenters that give none: 2e19"),
+        said.contains("stiffness of rigid bodies that give none: 2e19"),
         "{said}"
     );
 }

@@ -20,10 +20,10 @@ right.where = "x > 17 mm"
 [material]
 density = "1000 kg/m^3"
 law = { pmb = { young = "10 GPa" } }
-[[condition]]
+[[boundary_condition]]
 set = "left"
 displacement = { x = "1e-3 * x * t" }
-[[condition]]
+[[boundary_condition]]
 set = "right"
 displacement = { x = "1e-3 * x * t" }
 [[probe]]
@@ -264,7 +264,7 @@ fn what_cannot_be_known_is_told() {
     let done = calibrate(dir.path(), &[&CURVE[..], &both].concat());
     assert_eq!(done.status.code(), Some(0), "{}", told(&done));
     assert!(
-        told(&done).contains("constants.a, constants.b cannot be told apart"),
+        told(&done).contains("constants.a, constants.b are not determined by this curve"),
         "{}",
         told(&done)
     );
@@ -305,7 +305,7 @@ fn mistakes_are_found_before_the_first_run() {
         (
             "move_x [um],pull_x [kN]\n1,2\n",
             and(&["--fit", "material.density=1:2"]),
-            "1 points tell no 2 keys apart",
+            "1 points do not determine 2 keys",
         ),
         (good, and(&["--sigma", "sd"]), "one column `sd`"),
         (

@@ -31,7 +31,7 @@ region = {{ block = {{ low = [0, 0, 0], high = ["0.5 mm", "12 mm", "9 mm"] }} }}
 [material]
 density = "2700 kg/m^3"
 law = {{ lps = {{ young = "70 GPa", poisson = 0.35 }} }}
-[[condition]]
+[[boundary_condition]]
 set = "left"
 displacement = {{ x = 0, y = 0, z = 0 }}
 {schedule}
@@ -62,7 +62,7 @@ fn a_thin_plate_has_moduli_along_its_axes() {
     assert!(!told.contains("softer than asked for"), "{told}");
     assert!(
         told.contains(
-            "all of it is surface, and its Young's modulus is off what was asked for along x +5"
+            "it is thinner than two horizons, no point is in the bulk, and its Young's modulus is off the target along x +5"
         ),
         "{told}"
     );

@@ -153,14 +153,14 @@ fn ten_lines_make_all_results() {
         "version",
         "deck_hash",
         "particles",
-        "directed_bonds",
+        "bonds",
         "steps",
         "time_step",
         "seconds_stepping",
         "seconds",
         "ns_per_bond_step",
         "peak_memory_bytes",
-        "broken_directed_bonds",
+        "broken_bonds",
         "fragments",
         "state_hash",
         "ledger_hash",
@@ -180,10 +180,10 @@ fn ten_lines_make_all_results() {
         "kinetic",
         "strain",
         "contact",
-        "released",
-        "work_conditions",
-        "work_indenter",
-        "residual",
+        "dissipated_by_breakage",
+        "work_boundary_conditions",
+        "work_rigid_bodies",
+        "balance_error",
     ] {
         assert!(report["energy"][key].is_number(), "no energy.{key}");
     }
@@ -404,7 +404,7 @@ fn check_reads_well() {
         "20,000",
         "3.0000 spacings of 1 mm",
         "pre-cracks cut",
-        "asked           191.00",
+        "target          191.00",
         "% of the stability limit",
         "22200 J/m^2 (asked)",
         "steps/s",
@@ -456,7 +456,7 @@ fn check_takes_a_script_as_it_stands_at_its_first_run() {
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(found["particles"], 432);
     assert_eq!(found["steps"], 70);
-    assert_eq!(found["directed_bonds"], 30904);
+    assert_eq!(found["bonds"], 15452);
     assert_eq!(found["materials"][1]["name"], "3");
     assert_eq!(found["materials"][1]["critical_stretch"], 0.012);
     let notes = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -565,7 +565,7 @@ fn laws_are_complete() {
     for name in [
         "pmb",
         "lps",
-        "lps_as_typed",
+        "lps_3d",
         "eam_like",
         "springs",
         "micromoduli",
@@ -578,10 +578,10 @@ fn laws_are_complete() {
         "shifted_force",
         "smooth_from",
         "constant",
-        "conical",
+        "linear",
         "cubic_spline",
-        "series",
-        "parallel",
+        "harmonic",
+        "arithmetic",
         "minimum",
         "exact",
         "volume",
@@ -721,7 +721,7 @@ fn a_run_that_was_cut_off_goes_on_only_with_what_it_left() {
         (parts.iter().sum::<f64>() - all).abs() < 1e-9 * all,
         "{seconds}"
     );
-    refused("there is no state to go on from: the run has ended");
+    refused("there is no state to go on from: the run is done");
 }
 
 /// A state that cannot be written is told, and the run goes on without.

@@ -22,16 +22,16 @@ region = {{ block = {{ low = [16.5, 0], high = [18, 9] }} }}
 [material]
 density = 1.0
 law = {law}
-[[condition]]
+[[boundary_condition]]
 set = "left"
 displacement = {{ x = 0, y = 0 }}
-[[condition]]
+[[boundary_condition]]
 set = "right"
 body_force = {{ x = "1e-3 * (1 + y)", y = "2e-4 * x" }}
-[[condition]]
+[[boundary_condition]]
 set = "right"
 traction = {{ y = -1e-3 }}
-[[condition]]
+[[boundary_condition]]
 set = "all"
 body_force = {{ y = "-1e-5 * (1 + 0.1 * x)" }}
 {schedule}
@@ -205,14 +205,14 @@ fn rows_without_symmetry_run_in_time() {
 #[test]
 fn loads_that_were_not_condensed_are_refused() {
     let case = Case::new(&plate(PMB, "[statics]").replace(
-        "[[condition]]\nset = \"all\"\nbody_force = { y = \"-1e-5 * (1 + 0.1 * x)\" }\n",
+        "[[boundary_condition]]\nset = \"all\"\nbody_force = { y = \"-1e-5 * (1 + 0.1 * x)\" }\n",
         "",
     ));
     let (code, told) = case.coarsen(&["--every", "2"]);
     assert_eq!(code, Some(0), "{told}");
     let level = case.dir.path().join("out/level1.toml");
     let text = std::fs::read_to_string(&level).unwrap();
-    let more = "\n[[condition]]\nset = \"all\"\nbody_force = { x = 1e-3 }\n";
+    let more = "\n[[boundary_condition]]\nset = \"all\"\nbody_force = { x = 1e-3 }\n";
     std::fs::write(&level, text + more).unwrap();
     let done = peridyne("check", &level, &[]);
     let said = String::from_utf8_lossy(&done.stderr).into_owned();

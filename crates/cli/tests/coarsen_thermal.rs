@@ -118,7 +118,7 @@ fn a_cold_crystal_has_the_hessian() {
     let dir = tempfile::tempdir().unwrap();
     let frames = frames(
         &dir.path().join("run"),
-        &[&SMALL[..], &["thermal.temperature=1e-10"]].concat(),
+        &[&SMALL[..], &["initial_velocities.temperature=1e-10"]].concat(),
     );
     let deck = deck();
     let text = std::fs::read_to_string(&deck).unwrap();
@@ -173,7 +173,12 @@ fn frames_that_do_not_fit_are_refused() {
     );
     let melting = frames(
         &dir.path().join("hot"),
-        &[SMALL[0], SMALL[1], "run.steps=400", "thermal.temperature=8"],
+        &[
+            SMALL[0],
+            SMALL[1],
+            "run.steps=400",
+            "initial_velocities.temperature=8",
+        ],
     );
     let warm = deck();
     let good = |name: &str| warm.with_file_name(name);

@@ -364,10 +364,10 @@ fn a_long_increment_of_statics_ends_when_asked() {
                 r#"{body}
 [sets]
 left.where = "x < 0.002"
-[[condition]]
+[[boundary_condition]]
 set = "left"
 displacement = {{ x = 0, y = 0, z = 0 }}
-[[condition]]
+[[boundary_condition]]
 body_force = {{ x = "1e6*t" }}
 [statics]
 method = "relaxation"
@@ -438,7 +438,7 @@ every = 1
 const SLOW: &str = r#"units = "none"
 horizon = 3.1
 influence = "constant"
-volume_scaling = false
+partial_volume_correction = false
 calibration = "continuum"
 body = { lattice = "cubic", spacing = 1, cells = [14, 40, 9] }
 [sets]
@@ -447,10 +447,10 @@ high.where = "y > 36"
 [material]
 density = 8.0
 law = { hypoelastic = { bulk = 1.5e12, shear = 6.9e11, increment = "end" } }
-[[condition]]
+[[boundary_condition]]
 set = "low"
 displacement = { x = 0, y = 0, z = 0 }
-[[condition]]
+[[boundary_condition]]
 set = "high"
 displacement = { x = 0, y = "0.01*t", z = 0 }
 [statics]

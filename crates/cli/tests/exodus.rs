@@ -52,7 +52,7 @@ fn blocks_are_materials_and_results_are_a_body_again() {
     let text = "horizon = \"16 mm\"\nbody = { file = \"out/plate.e\" }\n\
         [material.glass]\ndensity = 2440\nlaw = { pmb = { young = \"72 GPa\" } }\n\
         [material.steel]\ndensity = 7850\nlaw = { pmb = { young = \"200 GPa\" } }\n\
-        [[condition]]\nset = \"left\"\ndisplacement = { x = 0 }\n[run]\nsteps = 1\n";
+        [[boundary_condition]]\nset = \"left\"\ndisplacement = { x = 0 }\n[run]\nsteps = 1\n";
     fs::write(&deck, text).unwrap();
     let (code, found, said) = peridyne(&["check", deck.to_str().unwrap(), "--json"]);
     assert_eq!(code, Some(0), "{said}");

@@ -76,7 +76,7 @@ fn fields_of_running_atoms_are_those_of_their_frames() {
         "units = \"lj\"\nperiodic = [\"x\", \"y\", \"z\"]\n\
          body = {{ lattice = \"fcc\", spacing = 1.6, cells = [4, 4, 4] }}\n\
          material = {{ mass = 1, law = {{ lennard_jones = {{ epsilon = 1, sigma = 1, cutoff = 2.5, end = \"smooth\" }} }} }}\n\
-         thermal = {{ temperature = 0.8, seed = 2 }}\n\
+         initial_velocities = {{ temperature = 0.8, seed = 2 }}\n\
          run = {{ steps = 20, time_step = 0.005 }}\n\
          output = {{ every = 10, vtu = false, trajectory = \"frames.extxyz\" }}\n\
          [[fields]]\nkernel = \"bspline\"\nwidth = 1.5\npoints = [{}]\nevery = 10\npartition = \"equal\"\n",
@@ -106,7 +106,7 @@ fn fields_of_running_atoms_are_those_of_their_frames() {
         "units = \"metal\"\nperiodic = [\"x\", \"y\", \"z\"]\n\
          body = {{ lattice = \"diamond\", spacing = 5.431, cells = [2, 2, 2] }}\n\
          material = {{ mass = 28.0855, law = {{ stillinger_weber = {{ file = \"Si.sw\" }} }} }}\n\
-         thermal = {{ temperature = 900, seed = 3 }}\n\
+         initial_velocities = {{ temperature = 900, seed = 3 }}\n\
          run = {{ steps = 10, time_step = 0.001 }}\n\
          output = {{ vtu = false, trajectory = \"silicon.extxyz\" }}\n\
          [[fields]]\nname = \"stress\"\nkernel = \"gaussian\"\nwidth = \"1.5 Å\"\npoints = [{}]\nparts = true\npair_force = \"differences\"\n",
@@ -169,6 +169,65 @@ fn fields_of_all_kinds_of_atoms_are_those_of_their_frames() {
             format!("{name}/points.csv"),
         ];
         same(&at.join(live), &at.join(files), 1e-11);
+    }
+}
+
+/// Planes and chains have the thickness and the section of their deck, whatever box frames have: as the running model says, and the density in closed form
+/// (the mass of an atom is that per thickness).
+#[test]
+fn fields_of_planes_and_chains_are_those_of_their_frames() {
+    let dir = TempDir::new().unwrap();
+    let at = dir.path();
+    let law = "law = { lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5, end = \"shifted_force\" } }";
+    for (name, body, points, density) in [
+        (
+            "plane",
+            "dimension = 2\nthickness = 1.5\nperiodic = [\"x\", \"y\"]\nbody = { lattice = \"triangular\", spacing = 1.11615, cells = [16, 10] }",
+            "[0, 0], [3.3, 4.1], [8.7, 2.2]",
+            2.0 / (3f64.sqrt() * 1.11615 * 1.11615),
+        ),
+        (
+            "chain",
+            "dimension = 1\narea = 0.7\nperiodic = [\"x\"]\nbody = { lattice = \"chain\", spacing = 1.12, cells = [40] }",
+            "[0], [3.3], [8.7]",
+            1.0 / 1.12,
+        ),
+    ] {
+        for file in ["frames.extxyz", "frames.lammpstrj"] {
+            let deck = format!(
+                "units = \"lj\"\n{body}\nmaterial = {{ mass = 1, {law} }}\ninitial_velocities = {{ temperature = 0.01, seed = 2 }}\n\
+                 run = {{ steps = 20, time_step = 0.002 }}\noutput = {{ every = 10, vtu = false, trajectory = \"{file}\" }}\n\
+                 [[fields]]\nname = \"{name}\"\nkernel = \"bspline\"\nwidth = 4\npoints = [{points}]\nevery = 10\n"
+            );
+            run(at, &deck);
+            let places = points.trim_matches(['[', ']']).split("], [");
+            let places = places.map(|p| {
+                let mut x: Vec<&str> = p.split(", ").collect();
+                x.resize(3, "0");
+                x.join(" ") + "\n"
+            });
+            std::fs::write(at.join("points.txt"), places.collect::<String>()).unwrap();
+            let out = format!("{name}-{}", &file[7..]);
+            let flags = format!(
+                "fields --frames out/{file} --model deck.toml --kernel bspline --width 4 --points points.txt --out {out}"
+            );
+            let words: Vec<&str> = flags.split_whitespace().collect();
+            let (code, _, error) = peridyne(at, &words);
+            assert_eq!(code, Some(0), "{name}: {error}");
+            let [live, files] = [
+                format!("out/{name}/points.csv"),
+                format!("{out}/points.csv"),
+            ];
+            same(&at.join(live), &at.join(&files), 1e-9);
+            let rho = table(&at.join(files));
+            let rho = &rho.iter().find(|c| c.0 == "rho").unwrap().1;
+            for found in rho {
+                assert!(
+                    (found / density - 1.0).abs() < 0.02,
+                    "{name}: {rho:?}, {density}"
+                );
+            }
+        }
     }
 }
 
@@ -272,7 +331,7 @@ fn fields_of_the_reference_are_those_of_its_frames() {
                 "units = \"metal\"\nperiodic = [\"x\", \"y\", \"z\"]\nfamily = \"reference\"\nhorizon = 5.2\n\
                  body = {{ lattice = \"diamond\", spacing = 5.43094978, cells = [2, 2, 2] }}\n\
                  material = {{ mass = 28.0855, law = {{ stillinger_weber = {{ file = \"Si.sw\" }} }} }}\n\
-                 thermal = {{ temperature = 300, seed = 3 }}\n\
+                 initial_velocities = {{ temperature = 300, seed = 3 }}\n\
                  run = {{ steps = 20, time_step = 0.001 }}\n\
                  output = {{ every = 20, vtu = false, trajectory = \"frames.extxyz\" }}\n\
                  [[fields]]\nkernel = \"polynomial\"\nsmoothness = 5\nwidth = 5\npoints = [{}]\nevery = 20\n\

@@ -162,7 +162,7 @@ fn nothing_that_files_say_steers_the_terminal() {
         // values
         &[(
             "d.toml",
-            &of("condition = [{ set = \"OWNED\", displacement = [0, 0] }]"),
+            &of("boundary_condition = [{ set = \"OWNED\", displacement = [0, 0] }]"),
         )],
         &[("d.toml", &of("dimension = \"OWNED\""))],
         &[("d.toml", &of("surface = \"OWNED\""))],
@@ -291,21 +291,21 @@ fn causes_are_the_true_ones() {
 fn overrides_of_lists_name_entries_that_are_there() {
     let two = deck(
         SQUARE,
-        "sets = { foot = { where = \"y < 1 mm\" }, head = { where = \"y > 6 mm\" } }\n[[condition]]\nset = \"foot\"\ndisplacement = [0, 0]\n[[condition]]\nset = \"head\"\nvelocity = [0, 1]",
+        "sets = { foot = { where = \"y < 1 mm\" }, head = { where = \"y > 6 mm\" } }\n[[boundary_condition]]\nset = \"foot\"\ndisplacement = [0, 0]\n[[boundary_condition]]\nset = \"head\"\nvelocity = [0, 1]",
     );
     let files = [("d.toml", &*two)];
-    let (code, said) = checked(&files, &["--set", "condition.1.velocity=[0, 2]"]);
+    let (code, said) = checked(&files, &["--set", "boundary_condition.1.velocity=[0, 2]"]);
     assert_eq!(code, Some(0), "{said}");
     for (set, says, help) in [
         (
-            "condition.5.traction.y=1",
-            "there is no entry 5 of `condition`: it has 2 entries",
+            "boundary_condition.5.traction.y=1",
+            "there is no entry 5 of `boundary_condition`: it has 2 entries",
             "numbered 0 to 1",
         ),
         (
-            "condition.traction.y=1",
-            "`condition` is a list, and traction is no entry of it",
-            "condition.0",
+            "boundary_condition.traction.y=1",
+            "`boundary_condition` is a list, and traction is no entry of it",
+            "boundary_condition.0",
         ),
         ("probe.0.name=a", "the deck has no `probe`", "add [[probe]]"),
     ] {
@@ -321,7 +321,7 @@ fn one_is_not_many() {
     let (code, said) = checked(&[("d.toml", &one)], &[]);
     assert_eq!(code, Some(0), "{said}");
     assert!(
-        said.contains("1 initial value, 0 conditions, 0 pre-cracks"),
+        said.contains("1 initial value, 0 boundary conditions, 0 pre-cracks"),
         "{said}"
     );
 }

@@ -192,7 +192,7 @@ fn loads_supports_cracks_free_balls_and_slices_are_in_reports() {
     assert_eq!(told["pictures"].as_array().unwrap().len(), 1);
     assert_eq!(told["pictures"][0]["name"], "smooth/stress.png");
     for name in [
-        "smooth/stress_film.png",
+        "smooth/stress_film.gif",
         "velocity.png",
         "velocity_film.png",
     ] {

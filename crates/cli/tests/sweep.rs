@@ -19,10 +19,10 @@ right.where = "x > 37 mm"
 [material]
 density = "1000 kg/m^3"
 law = { pmb = { young = "10 GPa" } }
-[[condition]]
+[[boundary_condition]]
 set = "left"
 displacement = { x = 0 }
-[[condition]]
+[[boundary_condition]]
 set = "right"
 displacement = { x = "10 um" }
 [[probe]]

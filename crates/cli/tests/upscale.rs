@@ -168,7 +168,7 @@ fn kernels_are_compared_by_their_sums() {
         "constant" => 1.0,
         // up to a factor
         "inverse" => 1.0 / q,
-        "conical" => 1.0 - q,
+        "linear" => 1.0 - q,
         "gaussian" => (-4.0 * q * q).exp(),
         _ if q <= 0.5 => 1.0 - 6.0 * q * q + 6.0 * q * q * q,
         _ => 2.0 * (1.0 - q).powi(3),
@@ -247,7 +247,7 @@ units = "none"
 periodic = ["x"]
 horizon = { m_ratio = 8 }
 influence = "constant"
-volume_scaling = false
+partial_volume_correction = false
 body = { lattice = "chain", spacing = 0.25, cells = [160], origin = 0 }
 material = { density = 1, law = { springs = { young = 1 } } }
 condition = [
@@ -317,7 +317,7 @@ fn coarse_decks_have_stable_steps_and_end_with_the_fine_one() {
 units = "none"
 horizon = { m_ratio = 20 }
 influence = "constant"
-volume_scaling = false
+partial_volume_correction = false
 body = { lattice = "chain", spacing = 0.25, region = { block = { low = 0, high = 100 } } }
 material = { density = 1, law = { springs = { young = 1 } } }
 [[initial]]

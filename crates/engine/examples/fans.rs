@@ -1,8 +1,8 @@
-//! Microseconds per atom and step of potentials of fans on 32,768 atoms of warm silicon: `cargo run --release --example fans [threads]`.
+//! Microseconds per atom and step of potentials of fans on 32,768 atoms of warm silicon: `cargo run --release --example many_body [threads]`.
 
 use peridyne::expression::Expression;
-use peridyne::law::fan::stillinger_weber::StillingerWeber;
-use peridyne::law::fan::tersoff::Tersoff;
+use peridyne::law::many_body::stillinger_weber::StillingerWeber;
+use peridyne::law::many_body::tersoff::Tersoff;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
@@ -46,7 +46,7 @@ fn main() {
         for (name, potential, edge) in [
             (
                 "stillinger_weber",
-                PotentialSpec::of_fan::<StillingerWeber>(&WEBER),
+                PotentialSpec::of_many_body::<StillingerWeber>(&WEBER),
                 5.431,
             ),
             ("tersoff 1988", tersoff(SECOND), 5.432),

@@ -35,7 +35,7 @@ fn main() {
             set: "all".into(),
             density: 2200.0,
             law: if lps {
-                LawSpec::LpsAsTyped {
+                LawSpec::Lps3d {
                     bulk: 14.9e9,
                     shear: 6e9,
                 }
@@ -51,7 +51,7 @@ fn main() {
         }],
         bonds: BondsSpec {
             horizon: Horizon::Length(0.0015001),
-            volume_scaling: true,
+            partial_volume_correction: true,
             calibration: Calibration::Continuum,
             influence: if lps {
                 Influence::Inverse
@@ -72,14 +72,14 @@ fn main() {
             ..InteractionsSpec::default()
         },
         damage: DamageSpec {
-            release: Release::AfterForce,
+            breakage: Breakage::AfterForce,
             ..DamageSpec::default()
         },
         loading: LoadingSpec {
-            indenters: vec![IndenterSpec::sphere(
+            rigid_bodies: vec![RigidBodySpec::sphere(
                 1e17,
                 0.005,
-                IndenterMotion::Kinematic([e("0"), e("0.0051-100*t"), e("0")]),
+                RigidBodyMotion::Kinematic([e("0"), e("0.0051-100*t"), e("0")]),
             )],
             ..LoadingSpec::default()
         },
@@ -109,7 +109,7 @@ fn main() {
             }
             if n % (steps / 10).max(1) == 0 {
                 let l = sim.ledger().unwrap();
-                println!("{n} broken {} kinetic {:.6e} strain {:.6e} released {:.6e} work {:.6e} residual {:.3e} {:.1} ms/step", sim.broken(), l.kinetic, l.strain, l.released, l.work_indenter, l.residual(), t.elapsed().as_secs_f64() * 1e3 / n as f64);
+                println!("{n} broken {} kinetic {:.6e} strain {:.6e} released {:.6e} work {:.6e} residual {:.3e} {:.1} ms/step", sim.broken(), l.kinetic, l.strain, l.released, l.work_rigid_bodies, l.residual(), t.elapsed().as_secs_f64() * 1e3 / n as f64);
             }
         }
     });

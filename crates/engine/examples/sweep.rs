@@ -11,7 +11,7 @@ use peridyne::interaction::*;
 use peridyne::law::Law;
 use peridyne::law::solid::{bond_based::BondBased, eam_like::*};
 use peridyne::space::lattice::*;
-use peridyne::spec::{Horizon, Influence, Release};
+use peridyne::spec::{Breakage, Horizon, Influence};
 use std::time::Instant;
 
 /// Spacing (m).
@@ -209,7 +209,7 @@ impl Case {
                 Sweep::Evolve {
                     v: view(&v),
                     steps: [0.0; 2],
-                    release: Release::AfterForce,
+                    breakage: Breakage::AfterForce,
                 },
                 None,
             );

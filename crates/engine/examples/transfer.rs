@@ -1,5 +1,5 @@
 //! Time per directed bond and step of heat through the bonds of a cube, on one thread or as many as asked for:
-//! `cargo run --release --example transfer [threads] [cells]`.
+//! `cargo run --release --example diffusion [threads] [cells]`.
 use peridyne::expression::Expression;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
@@ -29,13 +29,13 @@ fn main() {
     spec.bonds.horizon = Horizon::Ratio(3);
     spec.run.schedule.stepper = Stepper::Still;
     let wave = Expression::parse("sin(x) * cos(2*y + z)", &[]).expect("an expression");
-    spec.interactions.transfers = vec![TransferSpec {
+    spec.interactions.diffusions = vec![DiffusionSpec {
         quantity: Quantity::Heat,
-        method: TransferMethod::Explicit { safety: 0.9 },
+        method: DiffusionMethod::Explicit { safety: 0.9 },
         reference: 0.0,
         across_broken: false,
         deformation: false,
-        materials: vec![TransferMaterial {
+        materials: vec![DiffusionMaterial {
             conductivity: 1.0,
             capacity: 1.0,
             expansion: 0.0,

@@ -29,7 +29,7 @@ fn block(kind: LatticeKind, size: [f64; 3], law: LawSpec) -> Spec {
 }
 
 /// A chain of 100 springs between the ends 0 and 0.5.
-fn stretched(bonds: Vec<BondFactorSpec>, rule: InterfaceRule) -> Box<dyn Simulation> {
+fn stretched(bonds: Vec<BondFactorSpec>, rule: BondMixing) -> Box<dyn Simulation> {
     let mut spec = block(LatticeKind::Chain, [100.0; 3], LawSpec::Springs(ONE));
     spec.bonds.factors = bonds;
     spec.interactions.interface = rule;
@@ -69,13 +69,13 @@ fn in_series(sim: &mut dyn Simulation, factor: impl Fn(usize) -> f64) {
 fn a_field_is_averaged_over_the_ends_of_a_bond() {
     let at = |k: usize| 1.0 + k as f64 / 25.0;
     let field = || vec![BondFactorSpec::Field(text("1 + x/25"))];
-    in_series(&mut *stretched(field(), InterfaceRule::Parallel), |k| {
+    in_series(&mut *stretched(field(), BondMixing::Arithmetic), |k| {
         0.5 * (at(k) + at(k + 1))
     });
-    in_series(&mut *stretched(field(), InterfaceRule::Series), |k| {
+    in_series(&mut *stretched(field(), BondMixing::Harmonic), |k| {
         2.0 / (1.0 / at(k) + 1.0 / at(k + 1))
     });
-    in_series(&mut *stretched(field(), InterfaceRule::Minimum), at);
+    in_series(&mut *stretched(field(), BondMixing::Minimum), at);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn factors_multiply_and_a_weak_plane_opens() {
             factor: 0.25,
         },
     ];
-    let mut sim = stretched(bonds, InterfaceRule::Minimum);
+    let mut sim = stretched(bonds, BondMixing::Minimum);
     in_series(&mut *sim, |k| match k {
         20 => 0.5,
         50 => 0.1,
@@ -142,7 +142,7 @@ fn a_list_scales_its_bonds_as_a_stencil_does() {
     let law = LawSpec::Pmb(PmbStiffness::Young(1.0));
     let mut spec = block(LatticeKind::Square, [9.0; 3], law);
     spec.bonds.horizon = Horizon::Length(2.3);
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     spec.bonds.calibration = Calibration::Continuum;
     spec.space.periodic = [Some(10.0), None, None];
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.004)));
@@ -161,7 +161,7 @@ fn a_list_scales_its_bonds_as_a_stencil_does() {
     let mut list = spec.clone();
     list.bonds.family = FamilyChoice::List;
     let mut own = list.clone();
-    own.bonds.own_horizon = Some(text("2.3"));
+    own.bonds.variable_horizon = Some(text("2.3"));
     let (u, strain, kinetic) = moved(&spec);
     let largest = u.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     for spec in [list, own] {

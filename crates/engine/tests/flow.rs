@@ -1,7 +1,7 @@
 //! Laws that flow, one point of them: closed forms, and what must hold after every step whatever the constants.
 
 use peridyne::expression::Expression;
-use peridyne::law::descriptor::{Given, Shelved};
+use peridyne::law::descriptor::{Given, Registered};
 use peridyne::law::material::non_ordinary::hypoelastic_plastic::HypoelasticPlastic;
 use peridyne::law::material::non_ordinary::{Classical, Unseen};
 use peridyne::run::{Options, build};
@@ -550,7 +550,7 @@ fn held_bar(key: &str, value: Parameter) {
         sim.step().unwrap();
     }
     let ledger = sim.ledger().unwrap();
-    let ratio = ledger.work_conditions / ledger.dissipated;
+    let ratio = ledger.work_boundary_conditions / ledger.dissipated;
     println!(
         "{key}: work over dissipation {ratio}, residual {:e}",
         ledger.residual()

@@ -257,7 +257,10 @@ fn what_sticks_holds_a_force_without_creeping() {
     // free it would have gone 19 spacings more
     assert!((at[1] - at[0]).abs() < 1e-3, "{at:?}");
     let l = sim.ledger().unwrap();
-    assert!(l.residual().abs() < 2e-3 * l.work_conditions.abs(), "{l:?}");
+    assert!(
+        l.residual().abs() < 2e-3 * l.work_boundary_conditions.abs(),
+        "{l:?}"
+    );
 }
 
 /// Two free blocks that meet at an angle.

@@ -2,6 +2,8 @@
 
 #[path = "implicit/breaking.rs"]
 mod breaking;
+#[path = "implicit/given.rs"]
+mod given;
 #[path = "implicit/hht.rs"]
 mod hht;
 
@@ -192,11 +194,11 @@ fn work_damping_and_prescribed_motion_balance() {
     for _ in 0..100 {
         sim.step().unwrap();
         let l = sim.ledger().unwrap();
-        let moved = l.work_conditions.abs() + l.dissipated + l.kinetic + l.strain;
+        let moved = l.work_boundary_conditions.abs() + l.dissipated + l.kinetic + l.strain;
         assert!(l.residual().abs() < 1e-12 * moved.max(1e-6), "{l:?}");
     }
     let l = sim.ledger().unwrap();
-    assert!(l.dissipated > 0.0 && l.work_conditions > 0.0);
+    assert!(l.dissipated > 0.0 && l.work_boundary_conditions > 0.0);
     // where the moved end is: the integral of its velocity by the middles of steps
     let told: f64 = (0..100)
         .map(|n| 2.0 * 0.01 * (2.0 * f64::from(n) + 1.0).sin())
@@ -281,7 +283,7 @@ fn what_has_no_tangent_is_refused() {
         fatigue: None,
     });
     assert!(build(&late, Options::default()).is_ok());
-    late.damage.release = Release::AfterForce;
+    late.damage.breakage = Breakage::AfterForce;
     assert_eq!(said(&late).path, "materials[0].fracture");
     let mut touching = spec.clone();
     touching.interactions.contact = Some(ContactSpec {
@@ -294,16 +296,16 @@ fn what_has_no_tangent_is_refused() {
     });
     assert!(build(&touching, Options::default()).is_ok());
     let mut free = spec.clone();
-    let motion = IndenterMotion::Free(FreeSpec::new(1.0, [0.0, 9.0, 0.0], [0.0; 3]));
+    let motion = RigidBodyMotion::Free(FreeSpec::new(1.0, [0.0, 9.0, 0.0], [0.0; 3]));
     free.loading
-        .indenters
-        .push(IndenterSpec::sphere(1.0, 1.0, motion));
+        .rigid_bodies
+        .push(RigidBodySpec::sphere(1.0, 1.0, motion));
     assert!(build(&free, Options::default()).is_ok());
     free.loading.conditions.push(ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::Displacement([text("0"), text("0"), None]),
     });
-    assert_eq!(said(&free).path, "indenters");
+    assert_eq!(said(&free).path, "rigid_bodies");
     for alpha in [-0.4, 0.1, f64::NAN] {
         let mut wrong = spec.clone();
         wrong.run.schedule.stepper = Stepper::Newmark(Newmark::hht(alpha));

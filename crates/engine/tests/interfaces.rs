@@ -62,7 +62,7 @@ fn bars(d: usize, law: &LawSpec) -> [Spec; 2] {
     let common = |body: BodySpec| {
         let mut spec = Spec::new(d, body, 2.0, law.clone());
         spec.bonds.horizon = Horizon::Ratio(3);
-        spec.bonds.volume_scaling = true;
+        spec.bonds.partial_volume_correction = true;
         spec.run.schedule.time_step = TimeStep::Fraction(0.5);
         spec
     };
@@ -118,15 +118,15 @@ fn two_halves_glued_are_the_whole_bar() {
         let each = laws
             .iter()
             .flat_map(|law| [(law, vec![]), (law, factors(d))]);
-        // laws of the shelf, one of which softens from a stretch of 0.05 on
+        // laws of the registry, one of which softens from a stretch of 0.05 on
         let young = || Parameters::numbers(&[("young", 100.0)]);
         let softening = young().with("onset", Parameter::Number(0.1));
         let softening = LawSpec::named("softening", softening);
-        let shelved = [LawSpec::named("thermoelastic", young()), softening];
-        for (law, factors) in each.chain(shelved.iter().map(|law| (law, vec![]))) {
+        let registered = [LawSpec::named("thermoelastic", young()), softening];
+        for (law, factors) in each.chain(registered.iter().map(|law| (law, vec![]))) {
             let [mut whole, mut glued] = bars(d, law).map(|mut spec| {
                 spec.bonds.factors.clone_from(&factors);
-                if law == &shelved[1] {
+                if law == &registered[1] {
                     let ends = Some(FractureSpec::new(Criterion::Stretch(0.5)));
                     spec.materials[0].fracture = ends;
                     for interface in &mut spec.interactions.interfaces {
@@ -347,7 +347,7 @@ fn unlike() -> Spec {
     });
     spec.materials = vec![material("ball", 2.0, solid), material("plate", 1.0, PMB)];
     spec.bonds.horizon = Horizon::Ratio(3);
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     spec.interactions.contact = Some(ContactSpec {
         bonded: 0.9,
         free: 1.35,
@@ -515,14 +515,17 @@ fn glue_breaks_in_turn_at_its_own_stretch() {
         let at = |s: f64| FractureSpec::new(Criterion::Stretch(s));
         spec.materials[0].fracture = halves.map(at);
         spec.interactions.interfaces[0].fracture = glue.map(at);
-        spec.run.schedule.stepper = statics(Control::Breaking);
+        spec.run.schedule.stepper = statics(Control::SequentiallyLinear);
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);
         sim.step().unwrap();
         let t = sim.time();
         sim.step().unwrap();
         let l = sim.ledger().unwrap();
-        assert!(l.residual().abs() < 1e-9 * l.work_conditions.abs(), "{l:?}");
+        assert!(
+            l.residual().abs() < 1e-9 * l.work_boundary_conditions.abs(),
+            "{l:?}"
+        );
         assert!(sim.broken() > 0 && l.released > 0.0);
         t
     };
@@ -579,7 +582,7 @@ fn glue_breaks_in_turn_by_its_work() {
     spec.interactions.interfaces[0].fracture = Some(fracture);
     spec.run.schedule.steps = 1;
     spec.run.schedule.stepper = Stepper::Statics(Statics {
-        control: Control::Breaking,
+        control: Control::SequentiallyLinear,
         ..Statics::default()
     });
     let mut sim = build(&spec, Options::default()).unwrap();
@@ -602,7 +605,7 @@ fn halves_break_in_turn_beside_halves_that_do_not() {
     spec.sets.extend(["left", "right"].map(within));
     spec.run.schedule.steps = 1;
     spec.run.schedule.stepper = Stepper::Statics(Statics {
-        control: Control::Breaking,
+        control: Control::SequentiallyLinear,
         ..Statics::default()
     });
     let mut sim = build(&spec, Options::default()).unwrap();

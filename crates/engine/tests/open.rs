@@ -7,7 +7,7 @@ use peridyne::law::number::Number;
 use peridyne::law::potential::cut::{self, Cut, Ends};
 use peridyne::law::potential::{Described, Potential};
 use peridyne::observe::{Observable, Values};
-use peridyne::run::{Options, Shelf, Simulation, build, build_with};
+use peridyne::run::{Options, Registry, Simulation, build, build_with};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::*;
@@ -69,7 +69,7 @@ fn solid() -> Spec {
 
 #[test]
 fn a_potential_from_outside_runs_on_fixed_and_current_neighbours() {
-    let shelf = Shelf::standard().with_potential::<Gaussian>();
+    let registry = Registry::standard().with_potential::<Gaussian>();
     let (depth, width) = (1.3, 0.8);
     let ended = PotentialSpec::of(Gaussian { depth, width }).ended(2.2, End::Truncated);
     let numbers = [("depth", depth), ("width", width), ("cutoff", 2.2)];
@@ -82,7 +82,7 @@ fn a_potential_from_outside_runs_on_fixed_and_current_neighbours() {
                 build(&spec, Options::default()).is_err(),
                 "the engine knows it"
             );
-            let mut sim = build_with(&spec, Options::default(), &shelf).unwrap();
+            let mut sim = build_with(&spec, Options::default(), &registry).unwrap();
             sim.start(true);
             // all pairs of the 25 atoms up to 2.2
             let mut sum = 0.0;
@@ -127,32 +127,34 @@ fn a_potential_without_a_shelf_has_no_place() {
     let name = "gaussian".to_string();
     assert_eq!(error.kind, BuildErrorKind::Unknown { name });
     // and on it, it must have its constants
-    let shelf = Shelf::standard().with_potential::<Gaussian>();
-    let error = build_with(&spec, Options::default(), &shelf).err().unwrap();
+    let registry = Registry::standard().with_potential::<Gaussian>();
+    let error = build_with(&spec, Options::default(), &registry)
+        .err()
+        .unwrap();
     assert!(error.message.contains("needs `depth`"), "{error}");
 }
 
 /// A foundation of springs and a force in time, whose work is known.
-fn founded(shelf: &Shelf) -> Box<dyn Simulation> {
+fn founded(registry: &Registry) -> Box<dyn Simulation> {
     let mut spec = solid();
     spec.loading.conditions = vec![ConditionSpec {
         set: "all".into(),
         kind: ConditionKind::force("foundation", Parameters::default()),
     }];
-    build_with(&spec, Options::default(), shelf).unwrap()
+    build_with(&spec, Options::default(), registry).unwrap()
 }
 
 #[test]
 fn a_force_from_outside_acts_and_keeps_its_account() {
     let stiffness = 0.4;
-    let shelf = Shelf::standard().with_force_of("foundation", move |at| {
+    let registry = Registry::standard().with_force_of("foundation", move |at| {
         [
             -stiffness * at.displacement[0],
             -stiffness * at.displacement[1],
             0.0,
         ]
     });
-    let mut sim = founded(&shelf);
+    let mut sim = founded(&registry);
     // all points beside their places: the body swings on its foundation as a whole, ω² = stiffness / density
     let n = sim.vectors("reference").len();
     sim.set_displacements(&vec![[0.01, 0.0, 0.0]; n]);
@@ -172,7 +174,7 @@ fn a_force_from_outside_acts_and_keeps_its_account() {
     let work = 0.5 * stiffness * (0.01f64.powi(2) - expected.powi(2)) * n as f64;
     let energies = sim.ledger().unwrap();
     assert!(
-        (energies.work_conditions / work - 1.0).abs() < 1e-5,
+        (energies.work_boundary_conditions / work - 1.0).abs() < 1e-5,
         "{energies:?} {work}"
     );
     assert!(
@@ -183,12 +185,12 @@ fn a_force_from_outside_acts_and_keeps_its_account() {
 
 #[test]
 fn a_force_from_outside_sees_place_motion_and_time() {
-    let shelf = Shelf::standard().with_force_of("foundation", |at| {
+    let registry = Registry::standard().with_force_of("foundation", |at| {
         assert_eq!(at.density, 1.5);
         assert_eq!(at.reference[2], 0.0);
         [at.time, at.reference[1], -at.velocity[0]]
     });
-    let mut sim = founded(&shelf);
+    let mut sim = founded(&registry);
     sim.start(true);
     for _ in 0..3 {
         sim.step().unwrap();
@@ -216,7 +218,7 @@ fn forces_from_outside_are_refused_where_they_cannot_be() {
     let name = "wind".to_string();
     assert_eq!(error.kind, BuildErrorKind::Unknown { name });
     assert_eq!(error.path, "conditions[0]");
-    let shelf = Shelf::standard().with_force_of("wind", |_| [1.0, 0.0, 0.0]);
+    let registry = Registry::standard().with_force_of("wind", |_| [1.0, 0.0, 0.0]);
     let clamped = |a: usize| {
         let zero = peridyne::expression::Expression::constant(0.0);
         let mut value = [None, None, None];
@@ -240,7 +242,7 @@ fn forces_from_outside_are_refused_where_they_cannot_be() {
         Stepper::Newmark(Newmark::default()),
     ] {
         spec.run.schedule.stepper = stepper;
-        let built = build_with(&spec, Options::default(), &shelf);
+        let built = build_with(&spec, Options::default(), &registry);
         let error = match built {
             Err(error) => error.to_string(),
             Ok(mut sim) => {
@@ -262,7 +264,7 @@ static SQUARE: Observable = Observable::new(
 
 #[test]
 fn an_observable_from_outside_is_a_column_like_others() {
-    let shelf = Shelf::standard().with_observable(&SQUARE);
+    let registry = Registry::standard().with_observable(&SQUARE);
     let mut spec = solid();
     spec.run.fields = Some(vec!["square".into()]);
     spec.run.probes = vec![ProbeSpec {
@@ -278,7 +280,7 @@ fn an_observable_from_outside_is_a_column_like_others() {
         build(&spec, Options::default()).is_err(),
         "the engine has it"
     );
-    let mut sim = build_with(&spec, Options::default(), &shelf).unwrap();
+    let mut sim = build_with(&spec, Options::default(), &registry).unwrap();
     assert!(sim.columns().iter().any(|c| c.name == "square"));
     let n = sim.vectors("reference").len();
     sim.set_displacements(&vec![[3.0, 4.0, 0.0]; n]);

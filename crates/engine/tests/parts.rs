@@ -66,7 +66,7 @@ fn end(spec: &Spec, until: f64) -> (f64, u32, Box<dyn Simulation>) {
     }
     let l = sim.ledger().unwrap();
     let parts = sim.info().parts;
-    (l.residual().abs() / l.work_conditions, parts, sim)
+    (l.residual().abs() / l.work_boundary_conditions, parts, sim)
 }
 
 fn apart(a: &mut dyn Simulation, b: &mut dyn Simulation) -> f64 {

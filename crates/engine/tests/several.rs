@@ -69,7 +69,7 @@ fn collision(fraction: f64) -> Spec {
     spec.sets = vec![within("ball"), within("plate")];
     spec.materials = vec![material("ball", 2.0, 300.0), material("plate", 1.0, 100.0)];
     spec.bonds.horizon = Horizon::Length(2.5);
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     spec.interactions.contact = Some(CONTACT);
     spec.loading.initial = vec![InitialSpec {
         set: "ball".into(),
@@ -466,7 +466,7 @@ fn steel_on_epoxy() -> Spec {
         });
     }
     spec.bonds.horizon = Horizon::Ratio(3);
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     spec.interactions.contact = Some(CONTACT);
     spec.loading.initial = vec![InitialSpec {
         set: "steel".into(),
@@ -629,6 +629,6 @@ fn cycles_pass_for_all_bodies_until_the_first_bond_is_worn_out() {
         spec.interactions.contact = Some(CONTACT);
         let error = build(&spec, Options::default()).err().unwrap();
         assert_eq!(error.path, "statics.cycles");
-        assert!(error.message.contains("bodies that touch"), "{error}");
+        assert!(error.message.contains("contact forces"), "{error}");
     }
 }

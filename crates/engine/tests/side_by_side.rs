@@ -62,7 +62,7 @@ fn part(name: &str, body: BodySpec, law: LawSpec) -> Part {
 fn together(d: usize, parts: Vec<Part>) -> Spec {
     let pieces: Vec<PieceSpec> = parts.iter().map(|p| p.piece.clone()).collect();
     let mut spec = Spec::new(d, BodySpec::Several(pieces), 1.0, PMB);
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     spec.bonds.calibration = Calibration::Continuum;
     spec.materials.clear();
     for part in parts {
@@ -160,7 +160,7 @@ fn graded() -> Spec {
         part.piece.family = Some(FamilyChoice::List);
         part.piece.influence = Some(influence);
         let grows = format!("2.05 + 1.5*clamp((x - {x} - 2)/6, 0, 1)");
-        part.piece.own_horizon = Some(text(&grows));
+        part.piece.variable_horizon = Some(text(&grows));
         part
     };
     let mut plain = part("plain", block(&[9.0, 5.0], 60.0), LPS);
@@ -168,7 +168,7 @@ fn graded() -> Spec {
     together(
         2,
         vec![
-            own("bonds", 0.0, PMB, Influence::Conical),
+            own("bonds", 0.0, PMB, Influence::Linear),
             own(
                 "families",
                 30.0,
@@ -218,7 +218,7 @@ fn graded_bodies_collide() {
                 high: [24.2, 5.3, 0.0],
             },
         );
-        pieces[1].own_horizon = Some(text("2.05 + 0.1*(x - 13.2)"));
+        pieces[1].variable_horizon = Some(text("2.05 + 0.1*(x - 13.2)"));
         spec.interactions.contact = Some(ContactSpec {
             bonded: 0.9,
             free: 1.35,
@@ -296,9 +296,9 @@ fn bodies_of_pairs_are_those_alone() {
 
 /// A pair has the influence function of its own horizon: bonds of a pair of materials are those of a body of that horizon and stiffness.
 #[test]
-fn pairs_weigh_by_their_own_horizons() {
+fn pairs_weigh_by_their_variable_horizons() {
     for influence in [
-        Influence::Conical,
+        Influence::Linear,
         Influence::Gaussian,
         Influence::CubicSpline,
         written("exp(-r/delta)*(1 - 0.5*r/delta)"),
@@ -308,7 +308,7 @@ fn pairs_weigh_by_their_own_horizons() {
             let mut spec = Spec::new(2, block(&[9.0, 7.0], 0.0), 1.0, law);
             spec.bonds.horizon = Horizon::Length(horizon);
             spec.bonds.family = FamilyChoice::List;
-            spec.bonds.volume_scaling = true;
+            spec.bonds.partial_volume_correction = true;
             spec.bonds.influence = influence;
             spec.interactions.pairs = pairs;
             build(&spec, Options::default()).unwrap()
@@ -480,7 +480,10 @@ fn cycles_of_load_are_counted_once() {
         conductance: None,
     });
     let error = build(&spec, Options::default()).err().unwrap();
-    assert!(error.message.contains("half a load"), "{error}");
+    assert!(
+        error.message.contains("proportional to the load"),
+        "{error}"
+    );
 }
 
 /// A chain of the micromodulus `k` between nearest neighbours.
@@ -498,7 +501,7 @@ fn micromoduli(points: usize, x: f64, k: f64) -> LawSpec {
         start,
         block: vec![[[k]]; all.len()],
         partner: all.into_iter().map(|j| j as u32).collect(),
-        carriers: None,
+        load_map: None,
         mass: None,
     };
     LawSpec::Micromoduli(std::sync::Arc::new(AnyLinearBody::new(body).unwrap()))

@@ -11,7 +11,7 @@ use peridyne::interaction::list::{ListInteraction, ListParts};
 use peridyne::interaction::stencil::{StencilInteraction, StencilParts};
 use peridyne::interaction::weight::BondWeight;
 use peridyne::interaction::{
-    Interaction, PointConstants, PointEnergies, SeveralInteraction, Sweep, Toughness,
+    Interaction, MultiBodyInteraction, PointConstants, PointEnergies, Sweep, Toughness,
 };
 use peridyne::law::Law;
 use peridyne::law::solid::bond_based::BondBased;
@@ -141,7 +141,7 @@ fn sweeps(
     let moving = Sweep::Evolve {
         v: view(u),
         steps: [0.1; 2],
-        release: Release::AtOnce,
+        breakage: Breakage::BeforeForce,
     };
     vec![
         refused(|| it.forces(body, view(u), view_mut(&mut f), Sweep::Hold, None)),
@@ -207,7 +207,7 @@ proptest! {
             start,
             partner,
             block: vec![[[1.0]]; blocks],
-            carriers: None,
+            load_map: None,
             mass: None,
         };
         let cloud = Cloud {
@@ -387,7 +387,7 @@ fn a_body_among_several_keeps_its_slots() {
     assert_eq!(both.change_piece(2, |_| ()), None);
     let (law, constants) = lps();
     let bonds = stencil_of(&both.pieces()[0].body, 2, law, constants);
-    let mut it = SeveralInteraction::new(&both, vec![Some(Box::new(bonds)), None], vec![]);
+    let mut it = MultiBodyInteraction::new(&both, vec![Some(Box::new(bonds)), None], vec![]);
     it.energy(&both, view(&both.at_rest()));
     both.change_piece(0, |b| *b = lattice(9, 2));
     let said = refused(|| it.energy(&both, view(&both.at_rest())));

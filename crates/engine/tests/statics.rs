@@ -350,10 +350,10 @@ fn the_ledger_of_statics_closes_through_breaks() {
         }),
     ] {
         for (method, tolerance) in [(Method::Newton, 1e-9), (Method::Relaxation, 1e-7)] {
-            for release in [Release::AtOnce, Release::AfterForce] {
+            for breakage in [Breakage::BeforeForce, Breakage::AfterForce] {
                 let mut spec = block([12.0, 12.0, 0.0], 2, law.clone());
                 spec.bonds.horizon = Horizon::Ratio(2);
-                spec.damage.release = release;
+                spec.damage.breakage = breakage;
                 spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(2e-5)));
                 spec.damage.precracks.push(PrecrackSpec {
                     shape: CrackShape::Segment {
@@ -366,7 +366,7 @@ fn the_ledger_of_statics_closes_through_breaks() {
                 hold(&mut spec, "high", [text("1.6e-4*t"), number(0.0), None]);
                 spec.run.schedule.steps = 4;
                 spec.run.schedule.time_step = TimeStep::Fixed(0.25);
-                let case = format!("{law:?} {method:?} {release:?}");
+                let case = format!("{law:?} {method:?} {breakage:?}");
                 let spec = with(&spec, method, Solver::Auto, tolerance);
                 let mut sim = build(&spec, Options::default()).unwrap();
                 sim.start(true);
@@ -378,7 +378,7 @@ fn the_ledger_of_statics_closes_through_breaks() {
                 }
                 assert!(sim.broken() > cut, "{case}: nothing breaks");
                 assert!(last.dissipated > 0.05 * last.released, "{case}: {last:?}");
-                let off = last.residual().abs() / last.work_conditions;
+                let off = last.residual().abs() / last.work_boundary_conditions;
                 println!(
                     "{case}: {off:e}, lost {:e} of {:e}",
                     last.dissipated, last.released
@@ -421,7 +421,7 @@ fn the_ledger_of_statics_closes_through_breaks_by_stretch_and_by_work() {
         while sim.step_number() < increments && sim.step().is_ok() {
             last = sim.ledger().unwrap();
         }
-        let off = last.residual().abs() / last.work_conditions;
+        let off = last.residual().abs() / last.work_boundary_conditions;
         println!("{criterion:?} in {increments}: {off:e}, {last:?}");
         assert!(sim.broken() > 0, "{criterion:?}: nothing breaks");
         assert!(last.released > 0.0, "{criterion:?}: {last:?}");
@@ -481,7 +481,8 @@ fn a_start_out_of_equilibrium_is_accounted_for() {
                 "{case}"
             );
             // it bears the pull in the end, and nothing else
-            let lost = last.dissipated - (first.strain + last.work_conditions - last.strain);
+            let lost =
+                last.dissipated - (first.strain + last.work_boundary_conditions - last.strain);
             assert!(
                 lost.abs() < 1e-4 * first.strain && said == 1,
                 "{case} {said}"
@@ -502,7 +503,7 @@ fn linear_solutions_of_torn_bodies_agree_with_newtons() {
             Parameters::numbers(&[("young", 2.0), ("poisson", 0.1)]),
         ),
         LawSpec::named(
-            "position_aware",
+            "pals",
             Parameters::numbers(&[("young", 2.0), ("poisson", 0.2)]),
         ),
     ] {
@@ -522,7 +523,7 @@ fn linear_solutions_of_torn_bodies_agree_with_newtons() {
             let l = { solved(&with(&spec, method, solver, 1e-10)) }
                 .ledger()
                 .unwrap();
-            let off = (l.strain / l.work_conditions - 1.0).abs();
+            let off = (l.strain / l.work_boundary_conditions - 1.0).abs();
             assert!(off < 1e-5, "{law:?} {method:?} {solver:?}: {l:?}");
             l.strain
         };
@@ -564,7 +565,7 @@ fn the_energy_of_linear_statics_closes_near_incompressibility() {
         let (density, volume) = (sim.scalars("energy_density"), sim.scalars("volume"));
         let sum: f64 = density.iter().zip(&volume).map(|(w, v)| w * v).sum();
         assert!((sum / l.strain - 1.0).abs() < 1e-12, "{sum} is not {l:?}");
-        (l.strain, l.work_conditions)
+        (l.strain, l.work_boundary_conditions)
     };
     for (solver, bound) in [(Solver::Direct, 1e-8), (Solver::ConjugateGradients, 1e-6)] {
         for steps in [1, 3] {
@@ -615,7 +616,7 @@ fn statics_has_the_same_bits_on_any_number_of_threads() {
                     bits.extend(field.iter().flatten().map(|x| x.to_bits()));
                 }
                 let l = sim.ledger().unwrap();
-                bits.extend([l.strain, l.work_conditions].map(f64::to_bits));
+                bits.extend([l.strain, l.work_boundary_conditions].map(f64::to_bits));
                 if n == 0 {
                     for mode in sim.modes(3).unwrap() {
                         bits.push(mode.frequency.to_bits());
@@ -633,7 +634,7 @@ fn statics_has_the_same_bits_on_any_number_of_threads() {
 }
 
 #[test]
-fn a_driven_indenter_pushes_from_where_it_is_told() {
+fn a_driven_rigid_body_pushes_from_where_it_is_told() {
     let mut spec = block([10.0, 0.0, 0.0], 1, SPRINGS);
     hold(&mut spec, "low", [number(0.0), None, None]);
     let end = |sim: &mut dyn Simulation| sim.displacements().last().unwrap()[0];
@@ -646,10 +647,10 @@ fn a_driven_indenter_pushes_from_where_it_is_told() {
     let stiffness = -1e-3 / end(&mut *solved(&pushed));
     let mut spec = with(&spec, Method::Relaxation, Solver::Auto, 1e-9);
     spec.run.schedule.steps = 4;
-    spec.loading.indenters.push(IndenterSpec::sphere(
+    spec.loading.rigid_bodies.push(RigidBodySpec::sphere(
         0.5,
         5.0,
-        IndenterMotion::Kinematic([
+        RigidBodyMotion::Kinematic([
             text("15 - 0.1*t").unwrap(),
             number(0.0).unwrap(),
             number(0.0).unwrap(),
@@ -662,9 +663,9 @@ fn a_driven_indenter_pushes_from_where_it_is_told() {
     assert!(deep > 0.0 && u < -0.01, "{u}");
     let force = 0.5 * deep * deep;
     assert!((force / (-u * stiffness) - 1.0).abs() < 1e-6, "{force} {u}");
-    // the work of the indenter is what the chain holds
+    // the work of the rigid_body is what the chain holds
     let ledger = sim.ledger().unwrap();
-    assert!((ledger.work_indenter / ledger.strain - 1.0).abs() < 1e-6);
+    assert!((ledger.work_rigid_bodies / ledger.strain - 1.0).abs() < 1e-6);
     assert!(ledger.residual().abs() < 1e-6 * ledger.strain);
 }
 
@@ -730,16 +731,16 @@ fn pairs_of_materials_are_springs_in_series() {
 #[test]
 fn alike_pairs_weigh_their_bonds_as_one_material() {
     let law = LawSpec::Pmb(PmbStiffness::Micromodulus(2.0));
-    let solid = LawSpec::LpsAsTyped {
+    let solid = LawSpec::Lps3d {
         bulk: 1.0,
         shear: 0.4,
     };
     let written = |text: &str| Influence::Formula(Formula::parse(text, &[]).unwrap());
     let directed = written("1 + 0.5*xi_x/r");
     for (law, influence, horizon) in [
-        (&law, Influence::Conical, 2.3),
+        (&law, Influence::Linear, 2.3),
         (&law, Influence::Gaussian, 2.3),
-        (&law, Influence::Conical, 1.6),
+        (&law, Influence::Linear, 1.6),
         (&solid, written("exp(-(r/delta)^2)"), 2.3),
         (&solid, written("exp(-(r/delta)^2)"), 1.6),
         (&solid, written("exp(-r)"), 1.6),

@@ -124,7 +124,7 @@ impl Kernel {
         let length = length.sqrt();
         let unit = std::f64::consts::SQRT_2 * width;
         let [low, high] = [low, high].map(|l| length * (l - foot) / unit);
-        let across = (-0.5 * square / (width * width)).exp();
+        let across = libm::exp(-0.5 * square / (width * width));
         let part = 0.5 * std::f64::consts::PI.sqrt() * erf_between(low, high);
         across * part * unit / length
     }

@@ -8,10 +8,10 @@ use crate::bonds::{Block, Bonds};
 use crate::method::STOPPED;
 use crate::molecules::Molecules;
 use crate::neighbours::Partner;
-use crate::room::{Collector, Here, NONE, Room};
+use crate::workspace::{Collector, Here, NONE, Workspace};
 use peridyne::law::terms::Near;
 
-/// Room that one block after the other uses.
+/// Workspace that one block after the other uses.
 #[derive(Default)]
 pub struct Spare {
     rows: Rows,
@@ -41,29 +41,32 @@ impl Collector<'_> {
     /// # Errors
     /// A term that is not finite, or weights that do not add up.
     pub fn collect(&self, centres: &[u32], spare: &mut Spare) -> Result<Block, FieldsError> {
-        let mut room = Room::new(self, std::mem::take(&mut spare.bonds));
+        let mut workspace = Workspace::new(self, std::mem::take(&mut spare.bonds));
         for i in centres {
-            room.out.bonds.centre(self.neighbours.wrapped[*i as usize]);
+            workspace
+                .out
+                .bonds
+                .centre(self.neighbours.wrapped[*i as usize]);
         }
         let rows = &mut spare.rows;
-        self.rows(centres, &mut room, rows);
+        self.rows(centres, &mut workspace, rows);
         let mut near: Vec<Near> = vec![];
         for (row, &i) in centres.iter().enumerate() {
             if (self.stop)() {
                 return Err(FieldsError(STOPPED.into()));
             }
             let end = rows.first.get(row + 1).copied().unwrap_or(rows.here.len());
-            room.here.clear();
-            room.here.push(Here {
+            workspace.here.clear();
+            workspace.here.push(Here {
                 atom: i,
                 image: [0; 3],
                 y: [0.0; 3],
                 share: row as u32,
                 bond: NONE,
             });
-            room.here.extend(&rows.here[rows.first[row]..end]);
+            workspace.here.extend(&rows.here[rows.first[row]..end]);
             near.clear();
-            near.extend(room.here[1..].iter().map(|h| Near {
+            near.extend(workspace.here[1..].iter().map(|h| Near {
                 kind: self.frame.kind[h.atom as usize],
                 y: h.y,
             }));
@@ -72,29 +75,29 @@ impl Collector<'_> {
             self.sites
                 .terms(self.frame.kind[i as usize], &near, &mut |term| {
                     if wrong.is_none() {
-                        wrong = room.term(x, term).err();
+                        wrong = workspace.term(x, term).err();
                     }
                 });
             if let Some(molecules) = self.molecules
                 && wrong.is_none()
             {
-                wrong = self.bonded(i, molecules, &mut room).err();
+                wrong = self.bonded(i, molecules, &mut workspace).err();
             }
             if let Some(message) = wrong {
                 let FieldsError(message) = message;
                 return Err(FieldsError(format!("particle {}: {message}", i + 1)));
             }
         }
-        let mut out = room.out;
+        let mut out = workspace.out;
         out.bonds.compact(self.parts);
         (out.virial, out.churns) = out.bonds.virial(self.parts);
         Ok(out)
     }
 
     /// Neighbours of all centres, with a bond for each pair; the centres are the first of the shares.
-    fn rows(&self, centres: &[u32], room: &mut Room, rows: &mut Rows) {
+    fn rows(&self, centres: &[u32], workspace: &mut Workspace, rows: &mut Rows) {
         for &i in centres {
-            room.share(i);
+            workspace.share(i);
         }
         rows.first.clear();
         rows.here.clear();
@@ -105,11 +108,11 @@ impl Collector<'_> {
             if row == 0 {
                 let most = centres.len() * (partners.len() + 4);
                 rows.here.reserve(most);
-                room.out.bonds.reserve(3 * most / 4, self.parts);
+                workspace.out.bonds.reserve(3 * most / 4, self.parts);
             }
             let x = self.neighbours.wrapped[i as usize];
             for p in &partners {
-                let share = room.share(p.atom);
+                let share = workspace.share(p.atom);
                 let earlier = match (share as usize) <= row {
                     true => rows.find(share as usize, i, p.image.map(|c| -c)),
                     false => None,
@@ -118,7 +121,7 @@ impl Collector<'_> {
                     Some(bond) => (bond, true),
                     None => {
                         let end = std::array::from_fn(|c| x[c] + p.y[c]);
-                        let bonds = &mut room.out.bonds;
+                        let bonds = &mut workspace.out.bonds;
                         let own = bonds.add(row as u32, end, p.y.map(|c| -c), self.parts);
                         (own, false)
                     }
@@ -135,7 +138,12 @@ impl Collector<'_> {
     }
 
     /// What a centre is bonded to, the nearest images of it.
-    fn bonded(&self, i: u32, molecules: &Molecules, room: &mut Room) -> Result<(), FieldsError> {
+    fn bonded(
+        &self,
+        i: u32,
+        molecules: &Molecules,
+        workspace: &mut Workspace,
+    ) -> Result<(), FieldsError> {
         let x = self.neighbours.wrapped[i as usize];
         let mut all = vec![];
         molecules.partners(i, &mut all);
@@ -145,9 +153,9 @@ impl Collector<'_> {
                 .frame
                 .cell
                 .nearest(x, self.neighbours.wrapped[atom as usize]);
-            let share = room.share(atom);
-            places.push((atom, room.here.len() as u32, y));
-            room.here.push(Here {
+            let share = workspace.share(atom);
+            places.push((atom, workspace.here.len() as u32, y));
+            workspace.here.push(Here {
                 atom,
                 image,
                 y,
@@ -165,7 +173,7 @@ impl Collector<'_> {
         let of = (self.sites, first);
         molecules.terms((i, kind), &self.frame.kind, &at, of, &mut |term| {
             if outcome.is_ok() {
-                outcome = room.term(x, term);
+                outcome = workspace.term(x, term);
             }
         });
         outcome

@@ -207,7 +207,7 @@ impl Kernel {
                 Shape::Polynomial(n) => (1.0 - q / radius).powi(n as i32),
                 Shape::CubicSpline => self.spline(q.sqrt(), 3),
                 Shape::QuarticSpline => self.spline(q.sqrt(), 4),
-                Shape::Gaussian => (-0.5 * q / (self.width * self.width)).exp(),
+                Shape::Gaussian => libm::exp(-0.5 * q / (self.width * self.width)),
                 Shape::Cell => 0.0,
             }
     }
@@ -230,7 +230,7 @@ impl Kernel {
             Shape::QuarticSpline => self.spline_slope(q.sqrt(), 4),
             Shape::Gaussian => {
                 let w = self.width * self.width;
-                -(-0.5 * q / w).exp() / w
+                -libm::exp(-0.5 * q / w) / w
             }
         };
         d.map(|c| c * slope * self.norm)
@@ -276,10 +276,10 @@ fn constant(shape: Shape, dimension: usize) -> f64 {
             [1.0 / 24.0, 96.0 / (1199.0 * PI), 1.0 / (20.0 * PI)][dimension - 1]
         }
         Shape::Gaussian => {
-            let end = (-0.5 * GAUSSIAN_END * GAUSSIAN_END).exp();
+            let end = libm::exp(-0.5 * GAUSSIAN_END * GAUSSIAN_END);
             // what lies beyond the end; of one dimension 1e-15
             let beyond = [0.0, end, (2.0 / PI).sqrt() * GAUSSIAN_END * end][dimension - 1];
-            (2.0 * PI).powf(-0.5 * dimension as f64) / (1.0 - beyond)
+            libm::pow(2.0 * PI, -0.5 * dimension as f64) / (1.0 - beyond)
         }
         Shape::Cell => 1.0,
     }

@@ -21,6 +21,9 @@
 //!
 //! [`sums::evaluate`] does the work, [`pairs::evaluate`] for peridynamic bodies; [`residuals`] measures how well the balance laws hold.
 
+// the same bits on every machine: libm, not that of C (clippy.toml)
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 mod accumulate;
 pub mod average;
 pub mod bond;
@@ -41,7 +44,6 @@ mod patch;
 mod polynomial;
 mod quantity;
 pub mod residuals;
-mod room;
 mod scalars;
 mod segment;
 mod segments;
@@ -50,6 +52,7 @@ mod spline;
 pub mod sums;
 pub mod targets;
 mod wide;
+mod workspace;
 
 pub use error::FieldsError;
 pub use fields::{Fields, Quantity};

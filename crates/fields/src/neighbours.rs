@@ -102,7 +102,7 @@ impl<'a> Neighbours<'a> {
         let extent: [f64; 3] = std::array::from_fn(|a| (high[a] - low[a]).max(1e-9));
         let thickness: [f64; 3] = std::array::from_fn(|a| extent[a] * cell.height(a));
         // no more bins than particles
-        let most = MOST.min((8.0 * frame.len() as f64).cbrt() + 64.0);
+        let most = MOST.min(libm::cbrt(8.0 * frame.len() as f64) + 64.0);
         let bins: [i32; 3] = std::array::from_fn(|a| {
             (FINENESS * thickness[a] / reach).floor().clamp(1.0, most) as i32
         });

@@ -76,10 +76,11 @@ impl Sites for Cluster {
         let mut term = Term::default();
         term.begin(0);
         term.particles.extend(1..all.len() as u32);
-        let fall = 3.0 * (-decay).exp();
-        term.energy = 2.0 * phase.sin() + fall;
+        let fall = 3.0 * libm::exp(-decay);
+        term.energy = 2.0 * libm::sin(phase) + fall;
         for (a, b, c, e) in pairs {
-            term.pulls.push((a, b, 2.0 * c * phase.cos() - e * fall));
+            term.pulls
+                .push((a, b, 2.0 * c * libm::cos(phase) - e * fall));
         }
         visit(&term);
     }
@@ -133,7 +134,7 @@ pub fn cluster(count: usize, seed: u64) -> Frame {
     let mut random = Random(seed);
     let around = |k: usize| {
         let t = 2.4 * k as f64;
-        [t.cos(), t.sin(), 0.35 * k as f64 - 0.5]
+        [libm::cos(t), libm::sin(t), 0.35 * k as f64 - 0.5]
     };
     let position = (0..count)
         .map(|k| {

@@ -16,8 +16,8 @@ use crate::method::{Method, Progress};
 use crate::neighbours::Neighbours;
 use crate::partition::PairForce;
 use crate::patch::Patch;
-use crate::room::Collector;
 use crate::targets::{Bins, Targets};
+use crate::workspace::Collector;
 use peridyne::law::terms::Sites;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -96,14 +96,14 @@ pub fn evaluate(
                     return Ok((Block::default(), None, centres.is_empty()));
                 }
                 let spare = spares.lock().ok().and_then(|mut all| all.pop());
-                let mut room = spare.unwrap_or_default();
-                let mut block = collector.collect(&centres, &mut room)?;
+                let mut workspace = spare.unwrap_or_default();
+                let mut block = collector.collect(&centres, &mut workspace)?;
                 let form = form(&block, &layout, method);
-                room.bonds = std::mem::take(&mut block.bonds);
-                let of = &room.bonds;
+                workspace.bonds = std::mem::take(&mut block.bonds);
+                let of = &workspace.bonds;
                 let sums = accumulate::bonds(&method.kernel, &patch, of, parts, form);
                 if let Ok(mut all) = spares.lock() {
-                    all.push(room);
+                    all.push(workspace);
                 }
                 Ok((block, Some((patch.index, sums)), true))
             })
@@ -369,7 +369,7 @@ impl Blocks {
         let bins = neighbours.bins;
         let total: f64 = bins.iter().map(|b| f64::from(*b)).product();
         let wanted = (atoms / BLOCKS).clamp(32, BLOCK) as f64;
-        let edge = (wanted * total / atoms as f64).cbrt().round().max(1.0) as i32;
+        let edge = libm::cbrt(wanted * total / atoms as f64).round().max(1.0) as i32;
         let size = bins.map(|b| edge.min(b));
         let along: [i32; 3] = std::array::from_fn(|a| (bins[a] + size[a] - 1) / size[a]);
         Blocks {

@@ -148,7 +148,7 @@ impl<'a> Bins<'a> {
                     low[a] = all.clone().fold(f64::INFINITY, f64::min);
                     high[a] = all.fold(f64::NEG_INFINITY, f64::max).max(low[a] + 1e-9);
                 }
-                let most = (positions.len() as f64).cbrt() * 2.0 + 8.0;
+                let most = libm::cbrt(positions.len() as f64) * 2.0 + 8.0;
                 std::array::from_fn(|a| match counts[a] {
                     true => (2.0 * (high[a] - low[a]) * height[a] / radius).clamp(1.0, most) as i32,
                     false => 1,

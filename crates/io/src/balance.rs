@@ -20,6 +20,8 @@ const LOST: f64 = 0.5;
 
 /// Energy that breaking made, as a part of the energy, that is said.
 const MADE: f64 = 0.01;
+/// Residual of equilibria, as a part of the work, that is said: forces are off by more than that.
+const OFF: f64 = 0.02;
 
 /// What the last row of the history had.
 #[derive(Debug, Default)]
@@ -29,6 +31,8 @@ pub struct BalanceWatch {
     last: Option<(u64, f64, f64)>,
     /// Energy that the body was given.
     given: f64,
+    /// Is it much more than in the row before?
+    begins: bool,
     /// The most of it so far.
     most: f64,
     /// The most energy so far.
@@ -36,7 +40,7 @@ pub struct BalanceWatch {
     /// Is there too much out of nothing in the last row, and in that before?
     lost: bool,
     gone: bool,
-    /// Was it said that breaking makes energy?
+    /// Was it said that breaking makes energy, or that equilibria are off?
     told: bool,
 }
 
@@ -86,13 +90,33 @@ impl BalanceWatch {
         })
     }
 
+    /// Of the row of an equilibrium that was just [taken](BalanceWatch::row): what to warn of, once.
+    pub fn equilibrium(&mut self, step: u64, ledger: &Ledger) -> Option<Message> {
+        // of bodies that are loaded: where an equilibrium is sought from a start far from any, no work says how far it is off
+        let work = ledger.work_boundary_conditions.abs() + ledger.work_rigid_bodies.abs();
+        let off = ledger.residual().abs() / self.scale;
+        let loaded = !self.begins && 2.0 * work > self.scale;
+        if !(loaded && off > OFF) || std::mem::replace(&mut self.told, true) {
+            return None;
+        }
+        Some(message![
+            format!("step {step}: the energy balance error is "),
+            Dimension::ENERGY.of(ledger.residual()),
+            format!(
+                " ({} % of the energy): these are no close equilibria, and reactions are off by more; take a smaller tolerance, or more increments of load",
+                rounded(100.0 * off, 3)
+            ),
+        ])
+    }
+
     /// A row: what to warn of, if its residual is 16 times that of the row before.
     /// `statics`: steps are increments of load.
     pub fn row(&mut self, step: u64, ledger: &Ledger, statics: bool) -> Option<Message> {
         let residual = ledger.residual();
-        let work = ledger.work_conditions.abs() + ledger.work_indenter.abs();
+        let work = ledger.work_boundary_conditions.abs() + ledger.work_rigid_bodies.abs();
         let given = work + ledger.initial.abs();
         let begins = given > BEGINS * std::mem::replace(&mut self.given, given);
+        self.begins = begins;
         self.most = self.most.max(given);
         let lost = !begins && residual + ledger.made > LOST * self.most;
         self.gone = std::mem::replace(&mut self.lost, lost) && lost;
@@ -139,10 +163,10 @@ impl BalanceWatch {
             ": the step may be too long".into()
         };
         Some(message![
-            format!("step {step}: the energy balance misses "),
+            format!("step {step}: the energy balance error is "),
             energy(residual),
             format!(
-                " ({} % of the energy), at step {then} it missed ",
+                " ({} % of the energy), at step {then} it was ",
                 rounded(percent, 3)
             ),
             energy(was),
@@ -182,7 +206,7 @@ mod tests {
         }
         let told = watch.row(50, &ledger(0.9, 0.3), false).unwrap();
         assert!(
-            told.starts_with("step 50: the energy balance misses 0.2 (16.7 %"),
+            told.starts_with("step 50: the energy balance error is 0.2 (16.7 %"),
             "{told}"
         );
         assert!(
@@ -196,7 +220,7 @@ mod tests {
     fn the_beginning_of_a_load_is_no_jump_and_a_step_too_long_under_load_is() {
         let under = |work: f64, off: f64| Ledger {
             kinetic: work + off,
-            work_conditions: work,
+            work_boundary_conditions: work,
             ..Ledger::default()
         };
         let mut watch = BalanceWatch::default();
@@ -220,6 +244,32 @@ mod tests {
         assert!(!told.contains("the step may"), "{told}");
     }
 
+    #[test]
+    fn equilibria_that_are_not_close_are_told_once() {
+        let at = |step: u64, off: f64| Ledger {
+            strain: 1.0 + 0.1 * step as f64 + off,
+            work_boundary_conditions: 1.0 + 0.1 * step as f64,
+            ..Ledger::default()
+        };
+        let rows = [0.0, 0.005, -0.01, -0.03, -0.05, -0.05];
+        for statics in [true, false] {
+            let mut watch = BalanceWatch::default();
+            let each = (0u64..).zip(rows);
+            let told = each.filter_map(|(step, off)| {
+                let row = watch.row(step, &at(step, off), statics);
+                row.or_else(|| statics.then(|| watch.equilibrium(step, &at(step, off)))?)
+            });
+            let told: Vec<String> = told.map(|m| m.to_string()).collect();
+            match statics {
+                true => assert!(
+                    told.len() == 1 && told[0].contains("no close equilibria"),
+                    "{told:?}"
+                ),
+                false => assert!(told.is_empty(), "{told:?}"),
+            }
+        }
+    }
+
     /// Energy that grows out of nothing ends a run in the second row, that which a load brings or friction takes does not.
     #[test]
     fn energy_out_of_nothing_ends_a_run() {
@@ -228,7 +278,7 @@ mod tests {
             let rows = rows.iter().enumerate();
             rows.map(|(n, (kinetic, work))| {
                 let mut ledger = ledger(*kinetic, 0.0);
-                ledger.work_conditions = *work;
+                ledger.work_boundary_conditions = *work;
                 watch.row(n as u64, &ledger, false);
                 watch.gone
             })

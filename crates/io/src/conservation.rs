@@ -181,7 +181,7 @@ fn advance(
 
 /// What makes the same run again, and what was understood: for the report.
 #[derive(Debug, Clone, Default)]
-pub struct Told {
+pub struct RunInputs {
     pub command: String,
     pub understood: String,
     /// What a state to go on from says of how the run was asked for.
@@ -220,7 +220,7 @@ fn save(
     states: &mut Checkpoints,
     deck: &mut LawDeck,
     written: &mut Written,
-    told: &Told,
+    told: &RunInputs,
     listener: &mut dyn Listener,
 ) {
     let mut asked = Asked {
@@ -235,7 +235,7 @@ fn save(
     }
 }
 
-fn setting(deck: &LawDeck, told: Told) -> Setting {
+fn setting(deck: &LawDeck, told: RunInputs) -> Setting {
     let (grid, units) = (deck.grid(), deck.units);
     let mut files = vec!["history.csv", "frames.npz"];
     if deck.pictures {
@@ -270,7 +270,7 @@ fn setting(deck: &LawDeck, told: Told) -> Setting {
 /// What `run.json` says.
 fn record(
     deck: &LawDeck,
-    told: Told,
+    told: RunInputs,
     compared: Option<Compared>,
     (ended, stopped): (Option<String>, Option<&RunError>),
     stepping: Duration,
@@ -327,7 +327,7 @@ fn record(
 pub fn run(
     deck: &mut LawDeck,
     dir: &Path,
-    told: Told,
+    told: RunInputs,
     listener: &mut dyn Listener,
     from: Option<Checkpoint>,
 ) -> Result<Report, LawError> {

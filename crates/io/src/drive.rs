@@ -9,6 +9,7 @@ mod row;
 mod setting;
 mod writers;
 
+use crate::deck::each_once;
 use crate::write::checkpoint::{Asked, Checkpoint, Checkpoints, ResumeError};
 use crate::write::earlier::sweep_pictures;
 use crate::write::folder::Folder;
@@ -189,18 +190,19 @@ impl Run {
                 self.save(sim, plan, progress);
             }
             let begin = Instant::now();
-            let result = sim.step();
+            let result = progress.advance(sim);
             stepping += begin.elapsed();
             self.known.stepping = stepping.as_secs_f64();
             match result {
-                Ok(()) => {
+                Ok(true) => {
                     self.step += 1;
                     progress.step(self.step, plan.steps, stepping);
                     progress.look(sim, self.step);
                     self.look(sim, plan, progress, self.due(plan))?;
                 }
                 // within an increment or an implicit step, which is undone
-                Err(
+                Ok(false)
+                | Err(
                     RunError::Equilibrium {
                         error: SolveError::Stopped,
                         ..
@@ -306,7 +308,7 @@ impl Run {
             status,
             ended_by: self.ended,
             particles: info.points,
-            directed_bonds: info.directed_bonds,
+            bonds: each_once(info.directed_bonds),
             steps: sim.step_number(),
             time_step: info.time_step,
             parts_of_a_step: info.parts,
@@ -318,7 +320,7 @@ impl Run {
                 sim.step_number(),
             ),
             peak_memory_bytes: run_json::peak_memory_bytes(),
-            broken_directed_bonds: sim.broken(),
+            broken_bonds: each_once(sim.broken()),
             fragments: plan.atoms.is_none().then(|| sim.fragments()),
             hash,
             ranks: plan.ranks,

@@ -145,7 +145,7 @@ fn odd_number(text: &str, units: UnitSystem) -> Option<String> {
 fn fused_kernels_or_general_sweeps_are_said_with_the_reason() {
     let pmb = "{ pmb = { young = 1 } }";
     let lps = "{ lps = { young = 1, poisson = 0.2 } }";
-    let typed = "{ lps_as_typed = { bulk = 2, shear = 1 } }";
+    let typed = "{ lps_3d = { bulk = 2, shear = 1 } }";
     let eam = "{ eam_like = { pair = 2, volume = 0.1 } }";
     let plastic = "{ elastic_plastic = { young = 1, poisson = 0.2, yield_stress = 0.1 } }";
     let springs = "{ springs = { young = 1 } }";
@@ -157,12 +157,13 @@ fn fused_kernels_or_general_sweeps_are_said_with_the_reason() {
     let run = "[run]\nsteps = 1";
     let cycles = "[statics]\nmethod = \"newton\"\nincrements = 1\ncycles = { load_ratio = 0.1 }";
     let warm = "heat = { conductivity = 1, capacity = 1, expansion = 0.1 }\n[heat]\nreference = 1";
-    let horizons = "own_horizon = \"2.5 + 0.1*x\"\nfamily = \"list\"\ncalibration = \"continuum\"";
+    let horizons =
+        "variable_horizon = \"2.5 + 0.1*x\"\nfamily = \"list\"\ncalibration = \"continuum\"";
     let directed = "influence = \"1 + 0.1*xi_x/r\"";
     for (law, top, of_material, end, says) in [
         (pmb, "", "", run, "fused kernels of pmb"),
         (lps, "", "", run, "fused kernels of lps"),
-        (typed, "", "", run, "fused kernels of lps_as_typed"),
+        (typed, "", "", run, "fused kernels of lps_3d"),
         (eam, "", "", run, "fused kernels of eam_like"),
         (pmb, horizons, "", run, "fused kernels of pmb"),
         (pmb, directed, "", run, "fused kernels of pmb"),
@@ -180,7 +181,7 @@ fn fused_kernels_or_general_sweeps_are_said_with_the_reason() {
             "",
             work,
             run,
-            "general sweeps of lps_as_typed (breaks by work of bonds)",
+            "general sweeps of lps_3d (breaks by work of bonds)",
         ),
         (
             lps,
@@ -201,7 +202,7 @@ fn fused_kernels_or_general_sweeps_are_said_with_the_reason() {
             "",
             fatigue,
             cycles,
-            "general sweeps of pmb (wears in cycles of load)",
+            "general sweeps of pmb (has fatigue)",
         ),
         (eam, "", warm, run, "general sweeps of eam_like (expands)"),
         (
@@ -209,7 +210,7 @@ fn fused_kernels_or_general_sweeps_are_said_with_the_reason() {
             horizons,
             "",
             run,
-            "general sweeps of lps (has horizons of points)",
+            "general sweeps of lps (has a variable horizon)",
         ),
         (
             lps,
@@ -224,7 +225,7 @@ fn fused_kernels_or_general_sweeps_are_said_with_the_reason() {
             "units = \"none\"\nplane = \"strain\"\nhorizon = 3.3\ncontact = false\n{top}\n\
              [body]\nlattice = \"square\"\nspacing = 1\ncells = [8, 8]\n\
              [material]\ndensity = 1\nlaw = {law}\n{of_material}\n\
-             [[condition]]\nregion = {{ block = {{ low = [0, 0], high = [8, 1] }} }}\ndisplacement = [0, 0]\n{end}\n"
+             [[boundary_condition]]\nregion = {{ block = {{ low = [0, 0], high = [8, 1] }} }}\ndisplacement = [0, 0]\n{end}\n"
         );
         let deck = Deck::parse(&text, "deck.toml", &[]).unwrap_or_else(|e| panic!("{e}\n{text}"));
         let sim = build(&deck.spec, Options::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -266,9 +267,9 @@ fn numbers_of_warnings_and_errors_have_units() {
             match build(&deck.spec, Options::default()) {
                 Ok(sim) => {
                     said.extend(sim.info().warnings.iter().map(|w| deck.units.tell(w)));
-                    let doubts = deck.doubts(sim.info());
-                    assert!(folder != "good" || doubts.is_empty(), "{name}: {doubts:?}");
-                    said.extend(doubts);
+                    let lints = deck.lints(sim.info());
+                    assert!(folder != "good" || lints.is_empty(), "{name}: {lints:?}");
+                    said.extend(lints);
                 }
                 Err(e) => {
                     let e = deck.explain(&e);
@@ -293,13 +294,13 @@ fn numbers_of_warnings_and_errors_have_units() {
 /// A unit or prefix that was likely meant otherwise is told with its line; rubber, foam and lead are believed.
 #[test]
 fn numbers_that_no_solid_has_are_doubted() {
-    let doubts = |density: &str, law: &str, fracture: &str, run: &str| {
+    let lints = |density: &str, law: &str, fracture: &str, run: &str| {
         let text = format!(
             "horizon = {{ m_ratio = 3 }}\nrun = {run}\nbody = {{ lattice = \"cubic\", spacing = \"1 mm\", cells = [6, 6, 6] }}\n[material]\ndensity = \"{density}\"\nlaw = {{ {law} }}\n{fracture}\n"
         );
         let deck = Deck::parse(&text, "deck.toml", &[]).unwrap_or_else(|e| panic!("{e}: {text}"));
         let sim = build(&deck.spec, Options::default()).unwrap();
-        deck.doubts(sim.info())
+        deck.lints(sim.info())
     };
     let steps = "{ steps = 10 }";
     let pmb = |young: &str| format!("pmb = {{ young = \"{young}\" }}");
@@ -331,7 +332,7 @@ fn numbers_that_no_solid_has_are_doubted() {
             "faster than in any solid, with a Young's modulus of 14900 GPa and a density of 2200 kg/m^3: is 14.9 GPa meant?",
         ),
     ] {
-        let told = doubts(density, &pmb(young), "", steps);
+        let told = lints(density, &pmb(young), "", steps);
         assert_eq!(told.len(), 1, "{told:?}");
         assert!(told[0].contains(expected), "{told:?}");
     }
@@ -343,12 +344,12 @@ fn numbers_that_no_solid_has_are_doubted() {
         ("11340 kg/m^3", "16 GPa"),
         ("3515 kg/m^3", "1100 GPa"),
     ] {
-        let told = doubts(density, &pmb(young), "", steps);
+        let told = lints(density, &pmb(young), "", steps);
         assert!(told.is_empty(), "{told:?}");
     }
     let energy = |young: &str, energy: &str| {
         let fracture = format!("fracture = {{ energy = \"{energy}\" }}");
-        doubts("1200 kg/m^3", &pmb(young), &fracture, steps)
+        lints("1200 kg/m^3", &pmb(young), &fracture, steps)
     };
     for (young, of, expected) in [
         ("70 GPa", "10 GJ/m^2", Some("above 100 %")),
@@ -374,7 +375,7 @@ fn numbers_that_no_solid_has_are_doubted() {
         let law = format!(
             "elastic_plastic = {{ young = \"210 GPa\", poisson = 0.3, yield_stress = \"{stress}\" }}"
         );
-        let told = doubts("7800 kg/m^3", &law, "", steps);
+        let told = lints("7800 kg/m^3", &law, "", steps);
         match meant {
             Some(meant) => assert!(
                 told[0].starts_with("deck.toml:6: the yield stress of `material`, ")
@@ -496,7 +497,7 @@ fn decks_of_conservation_laws() {
 #[test]
 fn frames_of_a_law_have_its_reference_and_its_flux() {
     use ndarray::ArrayD;
-    use peridyne_io::conservation::{Listener, Told, run};
+    use peridyne_io::conservation::{Listener, RunInputs, run};
     use peridyne_io::deck::conservation::LawDeck;
 
     struct Silent;
@@ -518,7 +519,14 @@ fn frames_of_a_law_have_its_reference_and_its_flux() {
         .find(|(path, _)| path.ends_with("compare.toml"))
         .unwrap();
     let mut deck = LawDeck::parse(text, path.to_str().unwrap(), &[]).unwrap();
-    let report = run(&mut deck, dir.path(), Told::default(), &mut Silent, None).unwrap();
+    let report = run(
+        &mut deck,
+        dir.path(),
+        RunInputs::default(),
+        &mut Silent,
+        None,
+    )
+    .unwrap();
     let file = std::fs::File::open(dir.path().join("frames.npz")).unwrap();
     let mut archive = ndarray_npy::NpzReader::new(file).unwrap();
     let mut read = |name: &str| -> ArrayD<f64> { archive.by_name(name).unwrap() };

@@ -196,7 +196,7 @@ fn compared(head: &str, form: &str, volume: f64, d: usize, size: f64) {
 fn the_chain_of_atoms_is_a_solid() {
     for h in [1.0, 4.0] {
         let head = format!(
-            "units = \"none\"\nfamily = \"stencil\"\nhorizon = {{ m_ratio = 5 }}\ncontact = false\nvolume_scaling = false\n\
+            "units = \"none\"\nfamily = \"stencil\"\nhorizon = {{ m_ratio = 5 }}\ncontact = false\npartial_volume_correction = false\n\
              periodic = [\"x\"]\nbody = {{ lattice = \"chain\", spacing = {h}, origin = 0, cells = [40] }}"
         );
         let form = format!(
@@ -215,7 +215,7 @@ fn the_chain_of_atoms_is_a_solid() {
 fn a_crystal_of_copper_is_a_solid() {
     let a = 3.6147;
     let head = format!(
-        "units = \"none\"\nfamily = \"stencil\"\nhorizon = {{ m_ratio = 2 }}\ncontact = false\nvolume_scaling = false\n\
+        "units = \"none\"\nfamily = \"stencil\"\nhorizon = {{ m_ratio = 2 }}\ncontact = false\npartial_volume_correction = false\n\
          periodic = [\"x\", \"y\", \"z\"]\nbody = {{ lattice = \"fcc\", spacing = {a}, cells = [5, 5, 5] }}"
     );
     let form = "cohesive = 3.54\npair = 0.1217\nalpha = 5.082\nbeta = 5.85\ngamma = 6.82054\nlambda = 12.06\n\

@@ -83,7 +83,8 @@ fn missed(text: &str, n: &[usize], section: f64, sigma: &[[f64; 3]; 3]) -> [f64;
                 .collect();
             if !t.is_empty() {
                 let t = t.join(", ");
-                text += &format!("[[condition]]\nset = \"{end}{a}\"\ntraction = {{ {t} }}\n");
+                text +=
+                    &format!("[[boundary_condition]]\nset = \"{end}{a}\"\ntraction = {{ {t} }}\n");
             }
         }
     }
@@ -105,7 +106,7 @@ fn missed(text: &str, n: &[usize], section: f64, sigma: &[[f64; 3]; 3]) -> [f64;
         let held: Vec<String> = held.iter().map(|axis| format!("{axis} = 0")).collect();
         let name = edge.map_or("first".to_string(), |a| format!("end{a}"));
         text += &format!(
-            "[sets.{name}]\nwhere = \"{}\"\n[[condition]]\nset = \"{name}\"\ndisplacement = {{ {} }}\n",
+            "[sets.{name}]\nwhere = \"{}\"\n[[boundary_condition]]\nset = \"{name}\"\ndisplacement = {{ {} }}\n",
             at.join(" && "),
             held.join(", ")
         );
@@ -220,8 +221,8 @@ fn plain_fluxes_make_constant_gradients() {
                 &format!("{head}\nheat = {{ method = \"steady\", tolerance = 1e-14 }}"),
                 &law,
             ) + &format!(
-                "[[condition]]\nset = \"low{along}\"\ntemperature = 0\n[[condition]]\nset = \"high{along}\"\nheat_flux = 1\n\
-                     [run]\nintegrator = \"still\"\nsteps = 1\ntime_step = 1\n"
+                "[[boundary_condition]]\nset = \"low{along}\"\ntemperature = 0\n[[boundary_condition]]\nset = \"high{along}\"\nheat_flux = 1\n\
+                     [run]\nintegrator = \"none\"\nsteps = 1\ntime_step = 1\n"
             );
             let mut sim = model(&text);
             sim.step().unwrap();
@@ -264,11 +265,11 @@ fn each_of_several_bodies_is_exact_at_its_surface() {
                 text += &format!("[sets.{name}_{end}]\nwhere = \"abs(x - {at}) < {near}\"\n");
             }
             text += &format!(
-                "[[condition]]\nset = \"{name}_low\"\ntemperature = 0\n[[condition]]\nset = \"{name}_high\"\nheat_flux = 1\n"
+                "[[boundary_condition]]\nset = \"{name}_low\"\ntemperature = 0\n[[boundary_condition]]\nset = \"{name}_high\"\nheat_flux = 1\n"
             );
         }
-        text += "[[condition]]\nset = \"plain\"\ntemperature = 0\n\
-                 [run]\nintegrator = \"still\"\nsteps = 1\ntime_step = 1\n";
+        text += "[[boundary_condition]]\nset = \"plain\"\ntemperature = 0\n\
+                 [run]\nintegrator = \"none\"\nsteps = 1\ntime_step = 1\n";
         let mut sim = model(&text);
         sim.step().unwrap();
         // the first two end at their outermost points, the third half a spacing outside

@@ -1,8 +1,8 @@
-//! Silicon, silicon carbide, hexane and isobutane of `verify/lammps/fans`, from LAMMPS's data files, against the numbers that LAMMPS computed for them.
+//! Silicon, silicon carbide, hexane and isobutane of `verify/lammps/many_body`, from LAMMPS's data files, against the numbers that LAMMPS computed for them.
 
 mod golden;
 
-use peridyne::law::fan::tersoff::{COLUMNS, Tersoff};
+use peridyne::law::many_body::tersoff::{COLUMNS, Tersoff};
 use peridyne::run::{Options, build};
 use peridyne::spec::{BodySpec, LawSpec, Members, PotentialSpec, SetSpec};
 use peridyne_io::deck::{Deck, Dim};

@@ -92,7 +92,7 @@ impl Lattice {
 
 fn deck(law: &str, influence: &str, family: &str) -> String {
     format!(
-        "units = \"none\"\nhorizon = {{ m_ratio = {M} }}\ninfluence = \"{influence}\"\nvolume_scaling = false\n\
+        "units = \"none\"\nhorizon = {{ m_ratio = {M} }}\ninfluence = \"{influence}\"\npartial_volume_correction = false\n\
          periodic = [\"x\", \"y\"]\nfamily = \"{family}\"\n\
          [body]\nlattice = \"square\"\nspacing = {H}\norigin = [0, 0]\n\
          cells = [{N}, {N}]\n\

@@ -20,7 +20,7 @@ fn rod(period: Option<f64>, density: impl Fn(usize) -> f64) -> LinearBody<1> {
         block: vec![[[0.7]]; start[10]],
         partner: (0..10).flat_map(partners).map(|j| j as u32).collect(),
         start,
-        carriers: None,
+        load_map: None,
         mass: None,
     }
 }

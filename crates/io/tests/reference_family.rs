@@ -517,8 +517,8 @@ fn linear_statics_of_atoms_that_pull_in_their_reference_is_the_law_to_first_orde
          body = {{ lattice = \"chain\", spacing = 1, cells = [4] }}\n\
          material = {{ mass = 1, law = {{ morse = {{ depth = 1, alpha = {alpha}, distance = 1, cutoff = 2.5 }} }} }}\n\
          [sets]\nleft.where = \"x < 0.5\"\nright.where = \"x > 2.5\"\n\
-         [[condition]]\nset = \"left\"\ndisplacement = {{ x = 0 }}\n\
-         [[condition]]\nset = \"right\"\ndisplacement = {{ x = \"{far}*t\" }}\n\
+         [[boundary_condition]]\nset = \"left\"\ndisplacement = {{ x = 0 }}\n\
+         [[boundary_condition]]\nset = \"right\"\ndisplacement = {{ x = \"{far}*t\" }}\n\
          [[probe]]\nname = \"left\"\nset = \"left\"\nmeasure = \"reaction\"\n\
          [[probe]]\nname = \"right\"\nset = \"right\"\nmeasure = \"reaction\"\n\
          [statics]\nmethod = \"linear\"\nincrements = 2\n"

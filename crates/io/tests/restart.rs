@@ -45,8 +45,8 @@ fn seen(sim: &mut dyn Simulation) -> Vec<u64> {
             l.dissipated,
             l.made,
             l.numerical,
-            l.work_conditions,
-            l.work_indenter,
+            l.work_boundary_conditions,
+            l.work_rigid_bodies,
             l.initial,
         ];
         all.extend(account.map(f64::to_bits));

@@ -14,8 +14,8 @@ pub use super::pair::{
 };
 pub use super::quantity::{BLOCK, HostError, Particles, Quantity};
 use super::units::Units;
-pub use peridyne::condition::carried::{Carry, Motion};
-pub use peridyne::condition::indenter::{Form, Push};
+pub use peridyne::boundary_condition::kinematic::{Kinematics, Motion};
+pub use peridyne::boundary_condition::rigid_body::{Form, Push};
 pub use peridyne::run::Wall;
 use peridyne::state::Archive;
 
@@ -93,7 +93,7 @@ pub struct RunStart {
     /// Atoms that forces move; `None`: none.
     pub moving: Option<Arc<Members>>,
     /// Atoms (from 0) that are carried.
-    pub carried: Vec<u32>,
+    pub kinematic: Vec<u32>,
     /// The box as it is now.
     pub domain: SimBox,
 }
@@ -108,9 +108,9 @@ pub struct Energies {
 /// What a [`Condition`] had at the last force evaluation.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Reaction {
-    /// Σ K g³ / 3 of an indenter.
+    /// Σ K g³ / 3 of an rigid_body.
     pub energy: f64,
-    /// Of an indenter minus the sum of the force densities on the atoms; of other conditions the sum of the force
+    /// Of an rigid_body minus the sum of the force densities on the atoms; of other conditions the sum of the force
     /// densities on their atoms before they acted.
     pub force: [f64; 3],
 }
@@ -124,13 +124,13 @@ pub trait Engine: Particles {
     /// The model cannot be run like this.
     fn setup(&mut self, run: &RunStart, conditions: &[Condition]) -> Result<(), HostError>;
 
-    /// The first half of a velocity-Verlet step: positions of its end. `carried` says where the atoms of
-    /// [`RunStart::carried`] are then, in displacements from their reference. Answers a bound on the path of any atom
+    /// The first half of a velocity-Verlet step: positions of its end. `kinematic` says where the atoms of
+    /// [`RunStart::kinematic`] are then, in displacements from their reference. Answers a bound on the path of any atom
     /// (length).
     ///
     /// # Errors
     /// The state went bad.
-    fn depart(&mut self, carried: &[Motion]) -> Result<f64, HostError>;
+    fn depart(&mut self, kinematic: &[Motion]) -> Result<f64, HostError>;
 
     /// Mirrors atoms behind a wall, with their velocity across it.
     fn reflect(&mut self, wall: &Wall, members: &Members);

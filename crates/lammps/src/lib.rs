@@ -8,6 +8,9 @@
 //! is current at every output, and with it the volume in `press` (LAMMPS moves it when it rebuilds neighbour lists); positions on periodic axes are
 //! always wrapped; anything unsupported is an error.
 
+// the same bits on every machine: libm, not that of C (clippy.toml)
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 mod atoms;
 mod boolean;
 mod command;

@@ -51,7 +51,7 @@ pub enum Quantity {
     Dilatation,
     /// s0, LAMMPS's `property/atom s0`.
     CriticalStretch,
-    /// Strain and contact energy density W as LAMMPS counts it, without the indenter (energy / volume).
+    /// Strain and contact energy density W as LAMMPS counts it, without the rigid_body (energy / volume).
     Energy,
     /// Half the virial of the pairs of an atom, one of xx yy zz xy xz yz (energy): weighted with volumes.
     Virial(usize),

@@ -24,7 +24,7 @@ pub fn polar(mut uniform: impl FnMut() -> f64) -> [f64; 2] {
         let b = 2.0 * uniform() - 1.0;
         let r = a * a + b * b;
         if r < 1.0 && r != 0.0 {
-            let f = (-2.0 * r.ln() / r).sqrt();
+            let f = (-2.0 * libm::log(r) / r).sqrt();
             return [b * f, a * f];
         }
     }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use peridyne::condition::indenter;
+use peridyne::boundary_condition::rigid_body;
 use peridyne::space::rigid::RigidShape;
 use peridyne_io::write::picture::rigid::{Form, Placed};
 use peridyne_io::write::run_json::RigidNote;
@@ -89,7 +89,7 @@ impl Record {
     }
 }
 
-/// An indenter as a rigid body; of one that atoms lie in nothing is seen.
+/// An rigid_body as a rigid body; of one that atoms lie in nothing is seen.
 fn pushes(condition: &Condition) -> Option<Placed> {
     let Condition::Indent {
         form,
@@ -105,8 +105,8 @@ fn pushes(condition: &Condition) -> Option<Placed> {
         std::array::from_fn(|a| if a == axis { way } else { 0.0 })
     };
     let seen = match (form, push) {
-        (indenter::Form::Sphere, Push::Out) => Form::Ball(*radius),
-        (indenter::Form::Cylinder(axis), Push::Out) => {
+        (rigid_body::Form::Sphere, Push::Out) => Form::Ball(*radius),
+        (rigid_body::Form::Cylinder(axis), Push::Out) => {
             let shape = RigidShape::Cylinder {
                 radius: *radius,
                 half: LONG * radius,
@@ -114,11 +114,11 @@ fn pushes(condition: &Condition) -> Option<Placed> {
             };
             Form::of(&shape, 3)
         }
-        (indenter::Form::Plane(axis), push) => {
+        (rigid_body::Form::Plane(axis), push) => {
             let way = if *push == Push::Out { 1.0 } else { -1.0 };
             Form::Plane(unit(*axis, way))
         }
-        (indenter::Form::Sphere | indenter::Form::Cylinder(_), Push::In) => return None,
+        (rigid_body::Form::Sphere | rigid_body::Form::Cylinder(_), Push::In) => return None,
     };
     Some(Placed::new(seen, *center))
 }
@@ -163,9 +163,9 @@ mod tests {
         };
         let acting = |x: f64| {
             [
-                of(indenter::Form::Sphere, Push::In, x),
-                of(indenter::Form::Sphere, Push::Out, x),
-                of(indenter::Form::Plane(1), Push::In, x),
+                of(rigid_body::Form::Sphere, Push::In, x),
+                of(rigid_body::Form::Sphere, Push::Out, x),
+                of(rigid_body::Form::Plane(1), Push::In, x),
             ]
         };
         for (time, x) in [(0.0, 1.0), (0.0, 1.0), (1.0, 4.0)] {

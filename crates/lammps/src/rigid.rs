@@ -46,8 +46,8 @@ fn principal(mut m: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
                 continue;
             }
             let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let c = t.hypot(1.0).recip();
+            let t = theta.signum() / (theta.abs() + libm::hypot(theta, 1.0));
+            let c = libm::hypot(t, 1.0).recip();
             let s = t * c;
             for row in &mut m {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);

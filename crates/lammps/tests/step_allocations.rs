@@ -89,7 +89,7 @@ fn steps_with_moving_fixes_allocate_nothing() {
     });
     assert_eq!(counts.len(), 200);
     let each: Vec<u64> = counts.windows(2).map(|w| w[1] - w[0]).collect();
-    // the last step prints; contact and indenter look around now and then, into lists that grow for a while
+    // the last step prints; contact and rigid_body look around now and then, into lists that grow for a while
     let loud = each[1..each.len() - 1].iter().filter(|n| **n > 0).count();
     assert!(loud <= 15, "{each:?}");
 }

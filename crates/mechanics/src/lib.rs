@@ -1,13 +1,16 @@
 //! What peridyne's models are made of: points and the families that they talk to, laws, interactions, conditions, and the
-//! shelf that a [`spec::Spec`] names them from.
+//! registry that a [`spec::Spec`] names them from.
 //!
 //! Nothing here runs: [`peridyne`](https://docs.rs/peridyne) builds models of these parts, steps them, and has all of these modules under
 //! its own name. Lengths, masses and times are in whatever consistent unit system the spec uses.
 
+// the same bits on every machine: libm, not that of C (clippy.toml)
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod array;
 pub mod body;
+pub mod boundary_condition;
 pub mod columns;
-pub mod condition;
 pub mod constitutive;
 pub mod error;
 pub mod execute;

@@ -1,7 +1,8 @@
 //! Decks.
 
-use crate::error::{DeckError, failed, mistake};
+use crate::error::{DeckError, caught, failed, mistake};
 use crate::listener::{Listener, outcome};
+use crate::observers::observers;
 use crate::simulation::{Simulation, pool};
 use crate::tables::{of_json, toml};
 use peridyne_cli::runs;
@@ -132,27 +133,35 @@ impl Deck {
     /// Runs the deck to its end and writes what it asks for into a folder, as `peridyne run` does: a Run, which knows its results. Left out, the folder is that of the
     /// deck, else out/NAME.
     ///
-    /// `progress(done, steps, seconds)` is called some ten times a second. `observe(simulation)` is called after each `every` steps, with the model as it is then:
-    /// it may ask it anything, and ends the run where it answers True. Ctrl-C and what a call raises end the run as a signal does: its state is written, and
-    /// `peridyne.resume(folder)` goes on.
+    /// `progress(done, steps, seconds)` is called some ten times a second.
+    ///
+    /// `observe(simulation)` is called after each `every` steps, with the model as it is then: it may ask it anything, and ends the run where it answers True. Several, each at an
+    /// interval of its own, are a list of `peridyne.Every(interval, call)`; an interval is a number of steps or a time ("2 us").
+    ///
+    /// `prepare(simulation)` is called once before the first step, and may change the model: `set_column`, `add_force`, `add_motion`. What it gave is no part of the deck, and
+    /// the run says so (`record["warnings"]`).
+    ///
+    /// Ctrl-C and what a call raises end the run as a signal does: its state is written, and `peridyne.resume(folder)` goes on.
     ///
     /// Raises DeckError where the deck is wrong, RunError with the step and the folder of the last good state where the run goes bad.
-    #[pyo3(signature = (out=None, *, threads=None, progress=None, observe=None, every=1, allow_outside=false))]
+    #[pyo3(signature = (out=None, *, threads=None, progress=None, observe=None, every=None, prepare=None, allow_outside=false))]
     #[allow(clippy::too_many_arguments)]
-    fn run(
+    fn run<'py>(
         &self,
-        py: Python<'_>,
+        py: Python<'py>,
         out: Option<PathBuf>,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
-        observe: Option<Py<PyAny>>,
-        every: u64,
+        observe: Option<Bound<'py, PyAny>>,
+        every: Option<Bound<'py, PyAny>>,
+        prepare: Option<Py<PyAny>>,
         allow_outside: bool,
     ) -> PyResult<Py<PyAny>> {
         let own = out.is_some();
         let dir = out.or(self.read.output.dir.clone());
         let dir = dir.unwrap_or_else(|| default_dir(self.read.file().as_ref()));
-        let listener = Listener::new(progress, (observe, every), self.read.units)?;
+        let observers = observers(observe, every, self.read.units)?;
+        let listener = Listener::new(py, [progress, prepare], observers, self.read.units)?;
         let files = Files {
             dir,
             own,
@@ -163,25 +172,29 @@ impl Deck {
 }
 
 /// Goes on with a run that was ended before its last step, bit for bit, in its folder: its Run. The deck is that which it began with, as its state has it; the other arguments
-/// are those of `Deck.run`.
+/// are those of `Deck.run`. Functions are in no state: a run that was given forces or motions by `prepare` is given them again, by the same `prepare`; columns that it sets are
+/// left as the state has them.
 ///
-/// Raises DeckError where there is no state to go on from, or files that the deck names are others now.
+/// Raises DeckError where there is no state to go on from, files that the deck names are others now, or `prepare` gives other things than at the beginning.
 #[pyfunction]
-#[pyo3(signature = (folder, *, threads=None, progress=None, observe=None, every=1, allow_outside=false))]
-pub fn resume(
-    py: Python<'_>,
+#[pyo3(signature = (folder, *, threads=None, progress=None, observe=None, every=None, prepare=None, allow_outside=false))]
+#[allow(clippy::too_many_arguments)]
+pub fn resume<'py>(
+    py: Python<'py>,
     folder: PathBuf,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
-    observe: Option<Py<PyAny>>,
-    every: u64,
+    observe: Option<Bound<'py, PyAny>>,
+    every: Option<Bound<'py, PyAny>>,
+    prepare: Option<Py<PyAny>>,
     allow_outside: bool,
 ) -> PyResult<Py<PyAny>> {
     let newest = Checkpoint::newest(&folder);
     let from = newest.map_err(|e| DeckError::new_err(e.to_string()))?;
     let asked = from.asked.clone();
     let deck = parsed(py, &asked.text, &asked.deck, asked.set)?;
-    let listener = Listener::new(progress, (observe, every), deck.read.units)?;
+    let observers = observers(observe, every, deck.read.units)?;
+    let listener = Listener::new(py, [progress, prepare], observers, deck.read.units)?;
     let files = Files {
         dir: folder,
         own: true,
@@ -211,7 +224,8 @@ impl Deck {
         if !allow_outside {
             deck.stays_inside(files.own).map_err(|e| mistake(&e))?;
         }
-        py.detach(|| {
+        let folder = dir.clone();
+        let work = || {
             pool(threads.or(deck.threads))?.install(|| {
                 let run = runs::Run {
                     deck,
@@ -223,7 +237,8 @@ impl Deck {
                 let done = run.done(from, &mut listener);
                 outcome(done, listener)
             })
-        })?;
+        };
+        py.detach(|| caught(Some(&folder), work))??;
         let results = py.import("peridyne.results")?;
         Ok(results.call_method1("Run", (dir,))?.unbind())
     }

@@ -4,9 +4,11 @@ use peridyne_cli::Failure;
 use peridyne_io::deck::DeckError as Mistake;
 use peridyne_io::drive::DriveError;
 use pyo3::create_exception;
-use pyo3::exceptions::{PyException, PyTypeError};
+use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::fmt::Display;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 
 create_exception!(
     peridyne,
@@ -115,4 +117,27 @@ pub fn driven(error: &DriveError) -> PyErr {
 /// What was given is of another kind.
 pub fn expected(what: impl Display) -> PyErr {
     PyTypeError::new_err(what.to_string())
+}
+
+/// An answer of a function is not what it should be.
+pub fn wrong_call(what: &str) -> PyErr {
+    PyValueError::new_err(what.to_string())
+}
+
+/// What was done, or the defect on which the engine gave up: an exception, not the end of the program. `folder`: where the run writes.
+pub fn caught<T>(folder: Option<&Path>, work: impl FnOnce() -> T) -> PyResult<T> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
+        let text = payload.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| payload.downcast_ref::<&str>().copied());
+        let state = match folder {
+            Some(_) => "; the last state that the run wrote is as it was (peridyne.resume)",
+            None => "",
+        };
+        let message = format!(
+            "the engine gave up: {}; this is a defect of peridyne, not of what you wrote: please report it with the deck{state}",
+            text.unwrap_or("it does not say why")
+        );
+        let folder = folder.map(|f| f.to_string_lossy().into_owned());
+        stopped(&message, None, folder.as_deref())
+    })
 }

@@ -1,10 +1,13 @@
 //! peridyne in Python: decks, runs and running models ([`deck`], [`simulation`]), numbers as NumPy's arrays ([`arrays`]), mistakes as exceptions
 //! ([`error`]), and the program itself. What is Python's own (results, ASE) is in `python/peridyne`.
 
+mod acting;
 mod arrays;
+mod asked;
 mod deck;
 mod error;
 mod listener;
+mod observers;
 mod simulation;
 mod tables;
 
@@ -26,5 +29,6 @@ fn _peridyne(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(deck::resume, module)?)?;
     module.add_class::<deck::Deck>()?;
     module.add_class::<simulation::Simulation>()?;
+    module.add_class::<observers::Every>()?;
     error::add(module)
 }

@@ -1,11 +1,12 @@
 //! Models that Python leads step by step.
 
-use crate::arrays::{kind, numbers, of_values, vectors};
-use crate::error::{mistake, stopped};
-use peridyne::condition::driven::Drive;
+use crate::acting::{Acting, Force, NotMade, axes_of, is_function};
+use crate::arrays::{numbers, of_values, vectors};
+use crate::error::{caught, mistake, stopped};
+use peridyne::boundary_condition::constraint::Kind;
 use peridyne::error::RunError as Stopped;
 use peridyne::run::{Options, Simulation as Model, build};
-use peridyne_io::deck::{Deck as Read, UnitSystem};
+use peridyne_io::deck::{Deck as Read, UnitSystem, each_once};
 use peridyne_io::drive::refused_threads;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -19,22 +20,25 @@ const BALANCED: u64 = 250;
 /// Between two looks whether somebody pressed Ctrl-C.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// A force that Python gives.
-struct Force {
-    call: Py<PyAny>,
-    /// `None`: all points.
-    ids: Option<Vec<u32>>,
-    every: u64,
-    /// What it gave last.
-    last: Option<Drive>,
-}
-
 enum Held {
     Own(Box<dyn Model>),
     /// Of a run, while it calls Python.
-    Lent(*mut (dyn Model + 'static)),
+    Lent(*mut (dyn Model + 'static), Loan),
     /// The call is over.
     Gone,
+    /// The engine gave up in the middle of something.
+    Broken,
+}
+
+/// What a run lends its model for.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Loan {
+    /// Between two steps.
+    Observe,
+    /// Before the first.
+    Prepare,
+    /// Before its state is read from a file.
+    GoOn,
 }
 
 // SAFETY: models are sent; what is lent is reached through the lock of its holder, and taken back before the lender goes on
@@ -43,24 +47,44 @@ unsafe impl Send for Held {}
 struct Inner {
     held: Held,
     started: bool,
-    forces: Vec<Force>,
+    acting: Acting,
 }
 
 impl Inner {
     fn model(&mut self) -> PyResult<&mut dyn Model> {
-        match &mut self.held {
-            Held::Own(model) => Ok(model.as_mut()),
+        self.parts().map(|(model, _)| model)
+    }
+
+    /// The model, and what Python gave it.
+    fn parts(&mut self) -> PyResult<(&mut dyn Model, &mut Acting)> {
+        let model = match &mut self.held {
+            Held::Own(model) => model.as_mut(),
             // SAFETY: the lender waits until it has taken it back
-            Held::Lent(model) => Ok(unsafe { &mut **model }),
-            Held::Gone => Err(PyRuntimeError::new_err(
-                "this simulation is there during the call of `observe` alone: take what you need as arrays",
-            )),
+            Held::Lent(model, _) => unsafe { &mut **model },
+            Held::Gone => {
+                return Err(PyRuntimeError::new_err(
+                    "this simulation is there during the call of `observe` or `prepare` alone: take what you need as arrays",
+                ));
+            }
+            Held::Broken => {
+                return Err(PyRuntimeError::new_err(
+                    "this simulation broke within an earlier call: make a new one",
+                ));
+            }
+        };
+        Ok((model, &mut self.acting))
+    }
+
+    fn loan(&self) -> Option<Loan> {
+        match self.held {
+            Held::Lent(_, loan) => Some(loan),
+            Held::Own(_) | Held::Gone | Held::Broken => None,
         }
     }
 
     /// To be changed.
-    fn own(&mut self) -> PyResult<&mut dyn Model> {
-        if matches!(self.held, Held::Lent(_)) {
+    fn changed(&mut self) -> PyResult<&mut dyn Model> {
+        if self.loan() == Some(Loan::Observe) {
             return Err(PyRuntimeError::new_err(
                 "the run that called `observe` leads this simulation: it may be asked, not changed",
             ));
@@ -68,12 +92,44 @@ impl Inner {
         self.model()
     }
 
+    /// To be led.
+    fn led(&mut self) -> PyResult<&mut dyn Model> {
+        if self.loan().is_some_and(|loan| loan != Loan::Observe) {
+            return Err(PyRuntimeError::new_err(
+                "the run that called `prepare` leads this simulation: it may be changed, not stepped",
+            ));
+        }
+        self.changed()
+    }
+
+    /// Something was changed.
+    fn start_anew(&mut self) -> PyResult<()> {
+        // a run starts its model itself
+        if self.loan().is_none() {
+            let (model, acting) = self.parts()?;
+            acting.anew();
+            model.start(true);
+            self.started = true;
+        }
+        self.heard()
+    }
+
     /// The forces of the state, if nobody asked for them yet.
     fn start(&mut self) -> PyResult<()> {
-        if !std::mem::replace(&mut self.started, true) {
-            self.model()?.start(true);
+        if std::mem::replace(&mut self.started, true) {
+            return Ok(());
         }
-        Ok(())
+        self.model()?.start(true);
+        self.heard()
+    }
+
+    /// What a function raised that the first forces asked for; they are none then.
+    fn heard(&mut self) -> PyResult<()> {
+        let raised = self.acting.raised().map_or(Ok(()), Err);
+        if self.loan().is_none() {
+            self.started &= raised.is_ok();
+        }
+        raised
     }
 }
 
@@ -112,7 +168,7 @@ impl Simulation {
             inner: Mutex::new(Inner {
                 held: Held::Own(model),
                 started: false,
-                forces: vec![],
+                acting: Acting::default(),
             }),
             units: deck.units,
             pool: Some(pool),
@@ -131,6 +187,12 @@ impl Simulation {
         }
     }
 
+    /// What is known without any work: neither threads nor the interpreter wait for it.
+    fn known<T>(&self, of: impl FnOnce(&dyn Model) -> T) -> PyResult<T> {
+        let mut inner = self.lock()?;
+        inner.model().map(|model| of(model))
+    }
+
     /// Asks the model on its threads, and leaves the interpreter to others meanwhile.
     fn ask<T: Send>(
         &self,
@@ -139,9 +201,15 @@ impl Simulation {
     ) -> PyResult<T> {
         let mut inner = self.lock()?;
         let inner = &mut *inner;
-        py.detach(|| match &self.pool {
-            Some(pool) => pool.install(|| ask(inner)),
-            None => ask(inner),
+        let asked = py.detach(|| {
+            caught(None, || match &self.pool {
+                Some(pool) => pool.install(|| ask(&mut *inner)),
+                None => ask(&mut *inner),
+            })
+        });
+        asked.unwrap_or_else(|broken| {
+            inner.held = Held::Broken;
+            Err(broken)
         })
     }
 }
@@ -157,93 +225,24 @@ fn names(model: &mut dyn Model) -> Vec<String> {
     model.columns().iter().map(|c| c.name.to_string()).collect()
 }
 
-impl Force {
-    /// What it is now, of a state that the caller holds.
-    fn now(&mut self, inner: &mut Inner, (t, step, d): (f64, u64, usize)) -> PyResult<Drive> {
-        if let Some(last) = self
-            .last
-            .as_ref()
-            .filter(|_| !step.is_multiple_of(self.every))
-        {
-            return Ok(last.clone());
-        }
-        let (x, v) = {
-            let model = inner.model()?;
-            let (reference, u) = (model.vectors("reference"), model.displacements());
-            let place = |x: &[f64; 3], u: &[f64; 3]| std::array::from_fn(|a| x[a] + u[a]);
-            let x: Vec<[f64; 3]> = reference.iter().zip(&u).map(|(x, u)| place(x, u)).collect();
-            let v = model.velocities();
-            match &self.ids {
-                None => (x, v),
-                Some(ids) => {
-                    let of = |all: &[[f64; 3]]| ids.iter().map(|i| all[*i as usize]).collect();
-                    (of(&x), of(&v))
-                }
-            }
-        };
-        let count = x.len();
-        let given = Python::attach(|py| {
-            let [x, v] = [x, v].map(|of| of_values(py, peridyne::observe::Values::Vectors(of)));
-            let answer = self.call.call1(py, (t, x?, v?))?;
-            vectors(answer.bind(py), count, d)
-        })?;
-        if given.as_flattened().iter().any(|f| !f.is_finite()) {
-            return Err(PyValueError::new_err(format!(
-                "a force of step {step} is not a finite number"
-            )));
-        }
-        let drive = Drive::AddEach(given.iter().map(|f| f.map(Some)).collect());
-        self.last = Some(drive.clone());
-        Ok(drive)
-    }
-}
-
-/// Tells the model what the forces of Python are now.
-fn drive(inner: &mut Inner) -> PyResult<()> {
-    let mut forces = std::mem::take(&mut inner.forces);
-    let now = inner.model().map(|model| {
-        let now = model.now();
-        (now.time, now.step, model.info().dimension)
-    });
-    let told = now.and_then(|now| {
-        for (n, force) in forces.iter_mut().enumerate() {
-            let value = force.now(inner, now)?;
-            inner.model()?.drive(n, &value);
-        }
-        Ok(())
-    });
-    inner.forces = forces;
-    told
-}
-
-/// The same where there are others than before.
-fn tell_anew(inner: &mut Inner) -> PyResult<()> {
-    let nothing = |f: &Force| {
-        let count = f.ids.as_ref().map_or(0, Vec::len);
-        (Drive::AddEach(vec![[None; 3]; count]), f.ids.clone())
-    };
-    let driven: Vec<_> = inner.forces.iter().map(nothing).collect();
-    inner.model()?.set_driven(&driven);
-    drive(inner)?;
-    if inner.started {
-        inner.model()?.start(true);
-    }
-    Ok(())
+/// Sets of points by their names.
+fn set_of(model: &mut dyn Model, set: &str) -> PyResult<Vec<u32>> {
+    let none = || PyKeyError::new_err(format!("there is no set {set:?}"));
+    model.members(set).ok_or_else(none)
 }
 
 fn one_step(inner: &mut Inner) -> PyResult<()> {
-    let wrong = |e: Stopped, step: u64| stopped(&e.message(), Some(step), None);
-    let step = inner.model()?.now().step;
+    let (model, acting) = inner.parts()?;
+    let step = model.now().step;
+    let wrong = |e: Stopped| stopped(&e.message(), Some(step), None);
     if step > 0 && step.is_multiple_of(BALANCED) {
-        inner.model()?.ledger().map_err(|e| wrong(e, step))?;
+        model.ledger().map_err(wrong)?;
     }
-    if inner.forces.is_empty() {
-        return inner.model()?.step().map_err(|e| wrong(e, step));
-    }
-    inner.model()?.depart(&[]).map_err(|e| wrong(e, step))?;
-    let told = drive(inner);
-    let arrived = inner.model()?.arrive().map_err(|e| wrong(e, step));
-    told.and(arrived)
+    acting.step(model).map_err(|why| match why {
+        NotMade::Raised(error) => error,
+        NotMade::Run(error) => wrong(error),
+    })?;
+    acting.raised().map_or(Ok(()), Err)
 }
 
 #[pymethods]
@@ -254,9 +253,10 @@ impl Simulation {
     #[pyo3(signature = (n=1))]
     fn step(&self, py: Python<'_>, n: u64) -> PyResult<()> {
         self.ask(py, |inner| {
-            inner.own()?;
-            if !inner.forces.is_empty() && !inner.started {
-                drive(inner)?;
+            inner.led()?;
+            if !inner.started {
+                let (model, acting) = inner.parts()?;
+                acting.begin(model)?;
             }
             inner.start()?;
             let mut looked = Instant::now();
@@ -287,76 +287,128 @@ impl Simulation {
     /// Sets a column: displacement, velocity, or one that bonds or points remember, `[N, d]` or as `column` gives it. Forces are found anew.
     fn set_column(&self, py: Python<'_>, name: &str, values: &Bound<'_, PyAny>) -> PyResult<()> {
         let (count, d) = self.ask(py, |inner| {
-            let info = inner.own()?.info();
+            let info = inner.changed()?.info();
             Ok((info.points as usize, info.dimension))
         })?;
         if ["displacement", "velocity"].contains(&name) {
             let given = vectors(values, count, d)?;
+            if given.as_flattened().iter().any(|x| !x.is_finite()) {
+                return Err(PyValueError::new_err(format!(
+                    "{name}: expected finite numbers"
+                )));
+            }
             return self.ask(py, |inner| {
+                inner.acting.tell(format!("a column {name}"));
+                // the state to come has its own
+                if inner.loan() == Some(Loan::GoOn) {
+                    return Ok(());
+                }
                 let model = inner.model()?;
                 match name {
                     "displacement" => model.set_displacements(&given),
                     _ => model.set_velocities(&given),
                 }
-                model.start(true);
-                inner.started = true;
-                Ok(())
+                inner.start_anew()
             });
         }
         let (given, shape) = numbers(values)?;
         self.ask(py, |inner| {
             inner.start()?;
+            inner.acting.tell(format!("a column {name}"));
+            let goes_on = inner.loan() == Some(Loan::GoOn);
             let model = inner.model()?;
             if !names(model).iter().any(|n| n == name) {
                 return Err(none_such(name, &names(model)));
             }
-            if !model.set_column(name, &given) {
+            if !goes_on && !model.set_column(name, &given) {
                 return Err(PyValueError::new_err(format!(
                     "{name}: it follows from others, or has another number of values than {shape:?}"
                 )));
             }
-            model.start(true);
-            Ok(())
+            inner.start_anew()
         })
     }
 
     /// Adds a force density (force / volume) that `call(t, x, v)` answers, as `[N, d]` or one for all: t of the end of a step, x places and v velocities there
-    /// (`[N, 3]`, of the step's middle) of the points of `set`. It is asked every so many steps and stays in between. Explicit steps alone.
+    /// (`[N, 3]`, of the step's middle) of the points of `set`. It is asked every so many steps and stays in between.
+    ///
+    /// Implicit steps and increments of statics (t: the factor of the load) end in balance with it: it is asked at every trial, of which v are the velocities there (0 in
+    /// statics), and once more for each axis, near it, for how it changes with x and v of each point. So it is a function of these alone.
+    ///
+    /// Where it raises something, the step is not made: the state is that before it.
     #[pyo3(signature = (call, *, set="all", every=1))]
     fn add_force(&self, py: Python<'_>, call: Py<PyAny>, set: &str, every: u64) -> PyResult<()> {
         if every == 0 {
             return Err(PyValueError::new_err("every=0: expected 1 or more steps"));
         }
-        if !call.bind(py).is_callable() {
-            let got = kind(call.bind(py));
-            return Err(crate::error::expected(format!(
-                "expected a function of (t, x, v), got {got}"
-            )));
-        }
+        is_function(call.bind(py), "(t, x, v)")?;
         self.ask(py, |inner| {
-            let model = inner.own()?;
+            let model = inner.changed()?;
             let stepper = model.info().stepper;
-            if stepper.solves() || stepper.statics().is_some() || stepper.rests() {
+            if stepper.rests() {
                 return Err(PyValueError::new_err(
-                    "a force of Python acts in explicit steps; implicit ones ask for its tangent: write it as [[condition]] force with an expression",
+                    "points stand still in these steps: no force moves them",
                 ));
             }
-            let Some(ids) = model.members(set) else {
-                return Err(PyKeyError::new_err(format!("there is no set {set:?}")));
-            };
-            let all = ids.len() as u64 == model.info().points;
-            inner.forces.push(Force {
-                call,
-                ids: (!all).then_some(ids),
-                every,
-                last: None,
-            });
-            let told = tell_anew(inner);
-            if told.is_err() {
-                inner.forces.pop();
-                tell_anew(inner)?;
+            let ids = set_of(model, set)?;
+            if stepper.solves() {
+                let (model, acting) = inner.parts()?;
+                acting.ask_for_force(model, (call, every), &ids)?;
+                acting.tell(format!("a force on `{set}`"));
+                return match inner.started {
+                    true => inner.start_anew(),
+                    false => Ok(()),
+                };
             }
-            told
+            let all = ids.len() as u64 == model.info().points;
+            let force = Force::new(call, (!all).then_some(ids), every);
+            let now = inner.started && inner.loan().is_none();
+            let (model, acting) = inner.parts()?;
+            acting.add_force(model, force, now)?;
+            acting.tell(format!("a force on `{set}`"));
+            Ok(())
+        })
+    }
+
+    /// Prescribes the motion of the points of `set` along `axes` (a word of x, y and z; all if it is left out): `call(t, x)` answers their displacement (length) or, with
+    /// `of="velocity"`, their velocity (length / time), as `[N, k]` or `[k]` for all alike, k the number of axes; of one axis `[N]` or a number, too. x are their places in the
+    /// reference (`[N, 3]`). Other axes are free.
+    ///
+    /// It is a condition like one of a deck: probes of reactions see it, and its work is among `work_boundary_conditions`. So it is a function of time and place alone: it is asked for
+    /// times up to two steps ahead and one before now, and each time once; in statics for the factor t of the load. Of a deck with statics before its motion it is of the motion.
+    ///
+    /// Raises ValueError where a component is held already. Where the call raises something, the step is not made.
+    #[pyo3(signature = (call, *, set="all", axes=None, of="displacement"))]
+    fn add_motion(
+        &self,
+        py: Python<'_>,
+        call: Py<PyAny>,
+        set: &str,
+        axes: Option<&str>,
+        of: &str,
+    ) -> PyResult<()> {
+        is_function(call.bind(py), "(t, x)")?;
+        let kind = match of {
+            "displacement" => Kind::Displacement,
+            "velocity" => Kind::Velocity,
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "of={of:?}: expected \"displacement\" or \"velocity\""
+                )));
+            }
+        };
+        self.ask(py, |inner| {
+            let model = inner.changed()?;
+            let axes = axes_of(axes, model.info().dimension)?;
+            let ids = set_of(model, set)?;
+            let (model, acting) = inner.parts()?;
+            acting.add_motion(model, (kind, call), &ids, &axes)?;
+            let along: String = axes.iter().map(|a| ["x", "y", "z"][*a]).collect();
+            acting.tell(format!("the {of} of `{set}` along {along}"));
+            if inner.started {
+                inner.start_anew()?;
+            }
+            Ok(())
         })
     }
 
@@ -380,11 +432,8 @@ impl Simulation {
 
     /// Ids of the points of a set of the deck; "all" is always there.
     fn members<'py>(&self, py: Python<'py>, set: &str) -> PyResult<Bound<'py, PyAny>> {
-        let ids = self.ask(py, |inner| Ok(inner.model()?.members(set)))?;
-        match ids {
-            Some(ids) => of_values(py, peridyne::observe::Values::Counts(ids)),
-            None => Err(PyKeyError::new_err(format!("there is no set {set:?}"))),
-        }
+        let ids = self.ask(py, |inner| set_of(inner.model()?, set))?;
+        of_values(py, peridyne::observe::Values::Counts(ids))
     }
 
     /// What the probes of the deck measure now, by name.
@@ -401,8 +450,8 @@ impl Simulation {
         Ok(all)
     }
 
-    /// Energies now: kinetic, strain, contact, released, made, dissipated, numerical, work_conditions, work_indenter, initial, and the residual of
-    /// their balance.
+    /// Energies now: kinetic, strain, contact, dissipated_by_breakage, created_by_breakage, dissipated, numerical, work_boundary_conditions,
+    /// work_rigid_bodies, initial, balance_error: as in `run.json`.
     fn energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let l = self.ask(py, |inner| {
             inner.start()?;
@@ -416,14 +465,14 @@ impl Simulation {
             ("kinetic", l.kinetic),
             ("strain", l.strain),
             ("contact", l.contact),
-            ("released", l.released),
-            ("made", l.made),
+            ("dissipated_by_breakage", l.released),
+            ("created_by_breakage", l.made),
             ("dissipated", l.dissipated),
             ("numerical", l.numerical),
-            ("work_conditions", l.work_conditions),
-            ("work_indenter", l.work_indenter),
+            ("work_boundary_conditions", l.work_boundary_conditions),
+            ("work_rigid_bodies", l.work_rigid_bodies),
             ("initial", l.initial),
-            ("residual", l.residual()),
+            ("balance_error", l.residual()),
         ] {
             all.set_item(name, value)?;
         }
@@ -440,38 +489,38 @@ impl Simulation {
 
     /// Steps done.
     #[getter]
-    fn step_number(&self, py: Python<'_>) -> PyResult<u64> {
-        self.ask(py, |inner| Ok(inner.model()?.now().step))
+    fn step_number(&self) -> PyResult<u64> {
+        self.known(|model| model.now().step)
     }
 
     /// Time; in statics the part of the load.
     #[getter]
-    fn time(&self, py: Python<'_>) -> PyResult<f64> {
-        self.ask(py, |inner| Ok(inner.model()?.now().time))
+    fn time(&self) -> PyResult<f64> {
+        self.known(|model| model.now().time)
     }
 
     /// Length of a step.
     #[getter]
-    fn time_step(&self, py: Python<'_>) -> PyResult<f64> {
-        self.ask(py, |inner| Ok(inner.model()?.info().time_step))
+    fn time_step(&self) -> PyResult<f64> {
+        self.known(|model| model.info().time_step)
     }
 
     /// Number of points.
     #[getter]
-    fn points(&self, py: Python<'_>) -> PyResult<u64> {
-        self.ask(py, |inner| Ok(inner.model()?.info().points))
+    fn points(&self) -> PyResult<u64> {
+        self.known(|model| model.info().points)
     }
 
     /// 1, 2 or 3.
     #[getter]
-    fn dimension(&self, py: Python<'_>) -> PyResult<usize> {
-        self.ask(py, |inner| Ok(inner.model()?.info().dimension))
+    fn dimension(&self) -> PyResult<usize> {
+        self.known(|model| model.info().dimension)
     }
 
-    /// Directed bonds that broke since the start.
+    /// Bonds that broke since the start.
     #[getter]
-    fn broken(&self, py: Python<'_>) -> PyResult<u64> {
-        self.ask(py, |inner| Ok(inner.model()?.broken()))
+    fn broken_bonds(&self, py: Python<'_>) -> PyResult<u64> {
+        self.ask(py, |inner| Ok(each_once(inner.model()?.broken())))
     }
 
     /// Number of fragments: pieces that hang together by whole bonds.
@@ -499,6 +548,11 @@ impl Simulation {
         })
     }
 
+    /// Gives up as the engine would on a defect of its own: for tests of what Python sees then.
+    fn _give_up(&self, py: Python<'_>) -> PyResult<()> {
+        self.ask(py, |_| panic!("asked to"))
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         self.ask(py, |inner| {
             let model = inner.model()?;
@@ -516,15 +570,20 @@ impl Simulation {
 pub struct Lent(Py<Simulation>);
 
 impl Lent {
-    pub fn new(py: Python<'_>, sim: &mut dyn Model, units: UnitSystem) -> PyResult<Lent> {
+    pub fn new(
+        py: Python<'_>,
+        sim: &mut dyn Model,
+        units: UnitSystem,
+        loan: Loan,
+    ) -> PyResult<Lent> {
         // SAFETY: the lifetime is that of this value, which takes the model back when it goes
         let model: *mut (dyn Model + 'static) =
             unsafe { std::mem::transmute::<*mut (dyn Model + '_), _>(sim) };
         let simulation = Simulation {
             inner: Mutex::new(Inner {
-                held: Held::Lent(model),
+                held: Held::Lent(model, loan),
                 started: true,
-                forces: vec![],
+                acting: Acting::default(),
             }),
             units,
             pool: None,
@@ -534,6 +593,11 @@ impl Lent {
 
     pub fn given(&self, py: Python<'_>) -> Py<Simulation> {
         self.0.clone_ref(py)
+    }
+
+    /// What it was given meanwhile.
+    pub fn acting(&self) -> PyResult<Acting> {
+        Ok(std::mem::take(&mut self.0.get().lock()?.acting))
     }
 }
 

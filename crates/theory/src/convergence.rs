@@ -83,7 +83,10 @@ pub fn order(series: &[(f64, f64)]) -> Option<Order> {
         return None;
     }
     let n = points.len() as f64;
-    let logs: Vec<[f64; 2]> = points.iter().map(|(h, e)| [h.ln(), e.ln()]).collect();
+    let logs: Vec<[f64; 2]> = points
+        .iter()
+        .map(|(h, e)| [libm::log(*h), libm::log(*e)])
+        .collect();
     let mean = |a: usize| logs.iter().map(|l| l[a]).sum::<f64>() / n;
     let (x, y) = (mean(0), mean(1));
     let cross: f64 = logs.iter().map(|l| (l[0] - x) * (l[1] - y)).sum();
@@ -95,7 +98,7 @@ pub fn order(series: &[(f64, f64)]) -> Option<Order> {
         .collect();
     Some(Order {
         fitted,
-        constant: (y - fitted * x).exp(),
+        constant: libm::exp(y - fitted * x),
         verdict: verdict(&pairwise, fitted),
         pairwise,
     })

@@ -37,7 +37,7 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
             let of_unit_stretch = fracture_energy::state_based(d, plane, m, horizon, influence);
             Some(of_unit_stretch)
         }
-        LawSpec::LpsAsTyped { .. }
+        LawSpec::Lps3d { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_)
         | LawSpec::Atoms(_)

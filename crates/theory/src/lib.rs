@@ -15,6 +15,9 @@
 //! | with which parameters does a model come nearest to data? | [`fit`] |
 //! | with which order do errors fall? | [`convergence`] of the levels of [`refine`] |
 
+// the same bits on every machine: libm, not that of C (clippy.toml)
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod coarsen;
 pub mod convergence;
 pub mod crystal;

@@ -52,14 +52,14 @@ pub fn nominal_moduli(
         }
         (LawSpec::Lps(m), 1, _) => Some(bar(m.young)),
         (LawSpec::Lps(m), ..) => Some(*m),
-        (LawSpec::LpsAsTyped { bulk, shear }, 3, _) => Some(Moduli::from_bulk_shear(*bulk, *shear)),
+        (LawSpec::Lps3d { bulk, shear }, 3, _) => Some(Moduli::from_bulk_shear(*bulk, *shear)),
         (LawSpec::EamLike { pair, volume }, 3, _) => {
             let shear = pair / 30.0;
             let bulk = volume / 3.0 + 5.0 / 3.0 * shear;
             Some(Moduli::from_bulk_shear(bulk, shear))
         }
         (
-            LawSpec::LpsAsTyped { .. }
+            LawSpec::Lps3d { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Springs(_)
             | LawSpec::Atoms(_)

@@ -1,7 +1,10 @@
 //! Patch test: the stiffness that a given set of points really has, in the bulk and where families are cut.
 //!
 //! Under homogeneous strains the strain energy density of every point is a quadratic form, whose coefficients the
-//! D(D+1)/2 unit strains and their pair sums give. Points are sorted by how much of a full family they have.
+//! D(D+1)/2 unit strains and their pair sums give. Points are sorted by how much of a full family they have. Where a rotation costs
+//! energy, too, that of strains is no measure, and long waves are ([`long_waves`]).
+
+mod long_waves;
 
 use crate::crystal::Bond;
 use crate::voigt::{Stiffness, axes, components};
@@ -69,8 +72,10 @@ pub struct Class {
     pub family: f64,
     /// Mean part of a full family.
     pub part: f64,
-    /// Mean stiffness, weighted by volume.
-    pub stiffness: Stiffness,
+    /// Mean stiffness, weighted by volume. `None`: by long waves, of which points near a surface have none of their own.
+    pub stiffness: Option<Stiffness>,
+    /// Is it by long waves, as the bonds of this material cost energy when the body rotates?
+    pub long_waves: bool,
 }
 
 /// What a patch test finds.
@@ -83,24 +88,26 @@ pub struct PatchTest {
 }
 
 impl PatchTest {
-    /// The class nearest to the bulk of a material.
-    pub fn best(&self, material: usize) -> Option<&Class> {
-        self.classes.iter().find(|c| c.material == material)
+    /// The class nearest to the bulk of a material, with its stiffness; `None`: no point is of it, or none has a stiffness of its own.
+    pub fn best(&self, material: usize) -> Option<(&Class, &Stiffness)> {
+        let mut of = self.classes.iter().filter(|c| c.material == material);
+        of.find_map(|c| Some((c, c.stiffness.as_ref()?)))
     }
 
     /// Mean stiffness of all points of a material, weighted by volume: that of the body where they share their strains, as the
-    /// layers of a plate in its plane do. `None`: no point is of it.
+    /// layers of a plate in its plane do. `None`: no point is of it, or some have no stiffness of their own.
     pub fn whole(&self, material: usize) -> Option<Stiffness> {
         let of = || self.classes.iter().filter(|c| c.material == material);
         let volume: f64 = of().map(|c| c.volume).sum();
         let mut mean = Stiffness {
-            dimension: of().next()?.stiffness.dimension,
+            dimension: of().next()?.stiffness.as_ref()?.dimension,
             c: [[0.0; 6]; 6],
         };
         for class in of() {
+            let stiffness = class.stiffness.as_ref()?;
             for i in 0..6 {
                 for j in 0..6 {
-                    mean.c[i][j] += class.volume / volume * class.stiffness.c[i][j];
+                    mean.c[i][j] += class.volume / volume * stiffness.c[i][j];
                 }
             }
         }
@@ -127,13 +134,16 @@ pub fn patch_test(sim: &mut dyn Simulation, lattice: Option<(LatticeKind, f64)>)
     match atoms {
         Some(stiffness) => {
             for (class, stiffness) in found.classes.iter_mut().zip(stiffness) {
-                class.stiffness = stiffness;
+                class.stiffness = Some(stiffness);
             }
         }
         None => {
             let rest = sim.energy_under_strain([[0.0; 3]; 3]);
-            match rest.iter().all(|e| *e == 0.0) {
-                true => by_strains(sim, &mut found),
+            match rest.iter().all(|e| *e == 0.0) && !is_stressed(sim, &found) {
+                true => {
+                    by_strains(sim, &mut found);
+                    long_waves::where_rotations_cost(sim, &mut found);
+                }
                 false => by_differences(sim, &mut found),
             }
         }
@@ -155,6 +165,20 @@ struct Sorted {
     volume: Vec<f64>,
     /// `[classes]` volumes.
     weight: Vec<f64>,
+    /// Have all points families of one size, as in a crystal that is periodic along all axes?
+    even: bool,
+}
+
+impl Sorted {
+    /// `[classes]` mean energy density under a homogeneous displacement gradient.
+    fn energies(&self, sim: &dyn Simulation, gradient: [[f64; 3]; 3]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.weight.len()];
+        let of = sim.energy_under_strain(gradient);
+        for ((w, &k), v) in of.iter().zip(&self.of_point).zip(&self.volume) {
+            sum[k] += w * v / self.weight[k];
+        }
+        sum
+    }
 }
 
 fn classes(sim: &mut dyn Simulation, info: &Info, lattice: Option<(LatticeKind, f64)>) -> Sorted {
@@ -163,7 +187,7 @@ fn classes(sim: &mut dyn Simulation, info: &Info, lattice: Option<(LatticeKind, 
     let volume = sim.scalars("volume");
     let full = full_family(info, &families.volume, lattice);
     let cell = info.volume / info.points.max(1) as f64 / info.section;
-    let m = info.horizon / cell.powf(1.0 / d as f64);
+    let m = info.horizon / libm::pow(cell, 1.0 / d as f64);
     let part: Vec<f64> = families.volume.iter().map(|v| v / full).collect();
     let mut of_point = Vec::with_capacity(part.len());
     let mut keys: Vec<(usize, Place)> = vec![];
@@ -189,10 +213,8 @@ fn classes(sim: &mut dyn Simulation, info: &Info, lattice: Option<(LatticeKind, 
             volume: 0.0,
             family: 0.0,
             part: 0.0,
-            stiffness: Stiffness {
-                dimension: d,
-                c: [[0.0; 6]; 6],
-            },
+            stiffness: None,
+            long_waves: false,
         })
         .collect();
     let mut weight = vec![0.0; classes.len()];
@@ -207,31 +229,32 @@ fn classes(sim: &mut dyn Simulation, info: &Info, lattice: Option<(LatticeKind, 
         class.family /= class.points as f64;
         class.part /= class.points as f64;
     }
+    let size = &families.volume;
     Sorted {
         full,
         classes,
         of_point,
         volume,
         weight,
+        even: size.iter().all(|v| (v - size[0]).abs() <= 1e-9 * size[0]),
     }
+}
+
+/// Does a small stretch cost work against a stress at rest, as of a gas under pressure, far more than against stiffness? Laws that resist tension and
+/// compression unlike have energies of one sign.
+fn is_stressed(sim: &dyn Simulation, found: &Sorted) -> bool {
+    let [plus, minus] = [STRAIN, -STRAIN].map(|s| {
+        let stretch =
+            std::array::from_fn(|a| std::array::from_fn(|b| if a == b { s } else { 0.0 }));
+        found.energies(sim, stretch)
+    });
+    (plus.iter().zip(&minus)).any(|(p, m)| (p - m).abs() > 10.0 * (p + m).abs())
 }
 
 /// From the energies of homogeneous strains.
 fn by_strains(sim: &dyn Simulation, found: &mut Sorted) {
-    let Sorted {
-        classes,
-        of_point,
-        volume,
-        weight,
-        ..
-    } = found;
     let d = sim.info().dimension;
-    let mut add = |strain: [f64; 6], i: usize, j: usize| {
-        let energies = sim.energy_under_strain(tensor(d, strain));
-        for ((w, &k), v) in energies.iter().zip(&*of_point).zip(&*volume) {
-            classes[k].stiffness.c[i][j] += w * v / weight[k] / (STRAIN * STRAIN);
-        }
-    };
+    let mut energy = vec![[[0.0; 6]; 6]; found.classes.len()];
     for i in 0..components(d) {
         for j in 0..=i {
             let mut strain = [0.0; 6];
@@ -239,46 +262,41 @@ fn by_strains(sim: &dyn Simulation, found: &mut Sorted) {
             if j < i {
                 strain[j] += STRAIN;
             }
-            add(strain, i, j);
+            let energies = found.energies(sim, tensor(d, strain));
+            for (of, energy) in energy.iter_mut().zip(energies) {
+                of[i][j] = energy / (STRAIN * STRAIN);
+            }
         }
     }
-    for class in classes {
-        let energy = class.stiffness.c;
+    for (class, energy) in found.classes.iter_mut().zip(energy) {
+        let mut c = [[0.0; 6]; 6];
         for i in 0..components(d) {
             for j in 0..i {
-                let c = energy[i][j] - energy[i][i] - energy[j][j];
-                class.stiffness.c[i][j] = c;
-                class.stiffness.c[j][i] = c;
+                c[i][j] = energy[i][j] - energy[i][i] - energy[j][j];
+                c[j][i] = c[i][j];
             }
-            class.stiffness.c[i][i] = 2.0 * energy[i][i];
+            c[i][i] = 2.0 * energy[i][i];
         }
+        class.stiffness = Some(Stiffness { dimension: d, c });
     }
 }
 
 /// From the energies of homogeneous strains of both signs, for points that have energy and stress at rest.
 fn by_differences(sim: &dyn Simulation, found: &mut Sorted) {
-    let n = components(sim.info().dimension);
-    // energies of all classes, weighted by volume
-    let energies = |strain: [f64; 6]| {
-        let mut sum = vec![0.0; found.weight.len()];
-        let of = sim.energy_under_strain(tensor(sim.info().dimension, strain));
-        for ((w, &k), v) in of.iter().zip(&found.of_point).zip(&found.volume) {
-            sum[k] += w * v / found.weight[k];
-        }
-        sum
-    };
+    let dimension = sim.info().dimension;
+    let n = components(dimension);
     let at = |i: usize, a: f64, j: usize, b: f64| {
         let mut strain = [0.0; 6];
         strain[i] += a * STEP;
         strain[j] += b * STEP;
-        energies(strain)
+        found.energies(sim, tensor(dimension, strain))
     };
     let mut stress = vec![[[0.0; 3]; 3]; found.weight.len()];
     let mut second = vec![[[0.0; 6]; 6]; found.weight.len()];
     for i in 0..n {
         let (plus, minus) = (at(i, 0.5, i, 0.5), at(i, -0.5, i, -0.5));
         for (k, stress) in stress.iter_mut().enumerate() {
-            let (a, b) = axes(sim.info().dimension, i);
+            let (a, b) = axes(dimension, i);
             stress[a][b] = (plus[k] - minus[k]) / (2.0 * STEP);
             stress[b][a] = stress[a][b];
         }
@@ -291,13 +309,13 @@ fn by_differences(sim: &dyn Simulation, found: &mut Sorted) {
             }
         }
     }
-    for ((class, second), s) in found.classes.iter_mut().zip(second).zip(&stress) {
-        class.stiffness.c = second;
-        class.stiffness = match class.stiffness.dimension {
-            1 => of_stretches(class.stiffness.clone(), &corner::<1>(s)),
-            2 => of_stretches(class.stiffness.clone(), &corner::<2>(s)),
-            _ => of_stretches(class.stiffness.clone(), s),
-        };
+    for ((class, c), s) in found.classes.iter_mut().zip(second).zip(&stress) {
+        let second = Stiffness { dimension, c };
+        class.stiffness = Some(match dimension {
+            1 => of_stretches(second, &corner::<1>(s)),
+            2 => of_stretches(second, &corner::<2>(s)),
+            _ => of_stretches(second, s),
+        });
     }
 }
 
@@ -327,7 +345,11 @@ fn of_stretches<const D: usize>(second: Stiffness, s: &[[f64; D]; D]) -> Stiffne
 
 /// From the bonds of atoms; `None` if the points are no atoms.
 fn of_atoms<const D: usize>(sim: &mut dyn Simulation, found: &Sorted) -> Option<Vec<Stiffness>> {
-    let mut stiffness: Vec<Stiffness> = found.classes.iter().map(|c| c.stiffness.clone()).collect();
+    let none = Stiffness {
+        dimension: D,
+        c: [[0.0; 6]; 6],
+    };
+    let mut stiffness = vec![none; found.classes.len()];
     let mut stress = vec![[[0.0; D]; D]; stiffness.len()];
     let mut shares = vec![[0.0; 6]; found.of_point.len()];
     let curvature = sim.bonds_of_atoms(&mut |bond| {
@@ -408,9 +430,9 @@ fn place(d: usize, m: f64, part: f64) -> Place {
     let face = 0.5 * (1.0 + layer.min(1.0));
     if part >= FULL {
         Place::Bulk
-    } else if d == 1 || part >= face.powf(1.5) {
+    } else if d == 1 || part >= libm::pow(face, 1.5) {
         Place::Face
-    } else if d == 2 || part >= face.powf(2.5) {
+    } else if d == 2 || part >= libm::pow(face, 2.5) {
         Place::Edge
     } else {
         Place::Corner
@@ -532,7 +554,8 @@ mod tests {
             assert!(exact.c[0][0] > 100.0);
             for i in 0..6 {
                 for j in 0..6 {
-                    let off = (class.stiffness.c[i][j] - exact.c[i][j]).abs();
+                    let found = class.stiffness.as_ref().unwrap();
+                    let off = (found.c[i][j] - exact.c[i][j]).abs();
                     assert!(off < 1e-5 * exact.c[0][0], "{i} {j}: {off}");
                 }
             }

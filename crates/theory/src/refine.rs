@@ -91,7 +91,7 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
         return Err(RefineError::TooFine(level));
     }
     let factor = 1u32 << level;
-    let root = 2f64.powf(0.5 * f64::from(level));
+    let root = libm::pow(2f64, 0.5 * f64::from(level));
     let times = |m: u32, by: u32| m.checked_mul(by).ok_or(RefineError::TooFine(level));
     let horizon = match (kind, spec.bonds.horizon) {
         (Kind::Delta, Horizon::Ratio(m)) => Horizon::Ratio(m),
@@ -382,7 +382,7 @@ mod tests {
         let mut cracked = spec.clone();
         cracked.damage.precracks.push(peridyne::spec::PrecrackSpec {
             shape: peridyne::spec::CrackShape::Point { x: 1.0 },
-            kind: peridyne::spec::CrackKind::Absent,
+            kind: peridyne::spec::CrackKind::Excluded,
         });
         told(&cracked, Kind::Delta, 1, "displacements that jump");
         let mut cloud = spec.clone();

@@ -35,7 +35,7 @@ pub fn springs_bound(k1: f64, density: f64, horizon: f64, neighbours: usize) -> 
 
 /// The same with `H_N ≈ ln N + γ` for many neighbours.
 pub fn springs_bound_asymptotic(k1: f64, density: f64, horizon: f64, neighbours: usize) -> f64 {
-    let harmonic = (neighbours as f64).ln() + 0.577_215_664_901_532_9;
+    let harmonic = libm::log(neighbours as f64) + 0.577_215_664_901_532_9;
     horizon * (density / (2.0 * k1)).sqrt() / harmonic.sqrt()
 }
 

@@ -1,7 +1,7 @@
 //! Coarse bodies of fans: the linear body of silicon, with atoms taken out, moves as the atoms do.
 
-use peridyne::law::fan::stillinger_weber::StillingerWeber;
-use peridyne::law::fan::tersoff::Tersoff;
+use peridyne::law::many_body::stillinger_weber::StillingerWeber;
+use peridyne::law::many_body::tersoff::Tersoff;
 use peridyne::run::{Options, build};
 use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;

@@ -1,9 +1,9 @@
-//! Crystals of fans and of decks with a basis, against LAMMPS (`verify/phonons/fans.py`) and against themselves by other ways.
+//! Crystals of fans and of decks with a basis, against LAMMPS (`verify/phonons/many_body.py`) and against themselves by other ways.
 
 use num_complex::Complex64;
 use peridyne::expression::Expression;
-use peridyne::law::fan::stillinger_weber::StillingerWeber;
-use peridyne::law::fan::tersoff::Tersoff;
+use peridyne::law::many_body::stillinger_weber::StillingerWeber;
+use peridyne::law::many_body::tersoff::Tersoff;
 use peridyne::law::potential::cut::{Cut, Ends};
 use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::law::potential::mixture::Mixture;

@@ -95,7 +95,7 @@ fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
         if r == 0.0 || r > horizon * (1.0 + 1e-12) {
             continue;
         }
-        let nu = if spec.bonds.volume_scaling {
+        let nu = if spec.bonds.partial_volume_correction {
             volume_fraction(r, horizon, H)
         } else {
             1.0
@@ -193,7 +193,7 @@ fn uniform_strains_are_exact_on_plates_and_blocks() {
     ] {
         for scaling in [false, true] {
             let mut plain = body(d, &points(n), m);
-            plain.bonds.volume_scaling = scaling;
+            plain.bonds.partial_volume_correction = scaling;
             let exact = misfit(&with(plain.clone(), SurfaceMethod::Exact), m, n);
             let without = misfit(&plain, m, n);
             println!("{d}-D, horizon {m}, scaling {scaling}: {exact:.1e}, without {without:.2}");
@@ -207,7 +207,7 @@ fn uniform_strains_are_exact_on_plates_and_blocks() {
 fn springs_and_influence_functions_are_exact_too() {
     let n = [16, 12, 1];
     let mut spec = body(2, &points(n), 3);
-    spec.bonds.influence = Influence::Conical;
+    spec.bonds.influence = Influence::Linear;
     assert!(misfit(&with(spec.clone(), SurfaceMethod::Exact), 3, n) < 1e-12);
     spec.materials[0].law = LawSpec::Springs(PmbStiffness::Young(3.0));
     assert!(misfit(&with(spec, SurfaceMethod::Exact), 3, n) < 1e-12);
@@ -230,7 +230,7 @@ fn state_based_solids_are_exact_in_every_strain() {
         for kind in [Influence::Constant, Influence::Inverse] {
             let mut plain = body(d, &points(n), m);
             plain.materials[0].law = LPS;
-            (plain.bonds.influence, plain.bonds.volume_scaling) = (kind, true);
+            (plain.bonds.influence, plain.bonds.partial_volume_correction) = (kind, true);
             let exact = misfit(&with(plain.clone(), SurfaceMethod::Exact), m, n);
             let without = misfit(&plain, m, n);
             println!("{d}-D, horizon {m}, {kind:?}: {exact:.1e}, without {without:.2}");

@@ -29,7 +29,7 @@ fn block(size: [usize; 3], poisson: f64) -> Box<dyn Simulation> {
     });
     let mut spec = Spec::new(3, body, 1.0, law);
     spec.bonds.horizon = Horizon::Ratio(3);
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     let options = Options {
         trust_time_step: true,
         ..Options::default()

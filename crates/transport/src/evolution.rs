@@ -308,7 +308,7 @@ impl Evolution {
             };
         }
         let order = f64::from(self.stepper.method.order());
-        let factor = (0.9 * (most / local).powf(1.0 / order)).clamp(0.1, 5.0);
+        let factor = (0.9 * libm::pow(most / local, 1.0 / order)).clamp(0.1, 5.0);
         let fits = local <= most;
         // of what neither adds nor may add anything
         let next = if local > 0.0 { factor * dt } else { 5.0 * dt };

@@ -6,6 +6,9 @@
 //!
 //! The chapter has scalar laws on a line only; there are no systems in it. In a plane a scalar law carries along a direction field.
 
+// the same bits on every machine: libm, not that of C (clippy.toml)
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod evolution;
 pub mod exact;
 pub mod flux;

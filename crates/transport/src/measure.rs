@@ -162,7 +162,7 @@ pub fn relative_distances(a: &[f64], b: &[f64]) -> [f64; 3] {
 pub fn orders(sizes: &[f64], errors: &[f64]) -> Vec<f64> {
     let pairs = sizes.windows(2).zip(errors.windows(2));
     pairs
-        .map(|(s, e)| (e[1] / e[0]).ln() / (s[1] / s[0]).ln())
+        .map(|(s, e)| libm::log(e[1] / e[0]) / libm::log(s[1] / s[0]))
         .collect()
 }
 

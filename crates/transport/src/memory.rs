@@ -51,7 +51,7 @@ pub fn bytes(grid: &Grid, horizons: [Option<f64>; 2], fourier: bool) -> f64 {
     };
     // their largest values, on a grid of their own
     let fine = |r: f64| {
-        let n = (8.0 * r + 8.0).log2().ceil().exp2();
+        let n = libm::exp2(libm::log2(8.0 * r + 8.0).ceil());
         let rows = if plane { n } else { 1.0 };
         transforms(n, rows, grid.dimension as f64 + 1.0, EVEN_LINE)
     };

@@ -7,7 +7,7 @@ const ORDER: usize = 16;
 fn nodes() -> [(f64, f64); ORDER] {
     let n = ORDER as f64;
     std::array::from_fn(|i| {
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
+        let mut x = libm::cos(std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5));
         let mut slope = 1.0;
         for _ in 0..100 {
             let (mut before, mut here) = (1.0, x);

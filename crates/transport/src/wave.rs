@@ -28,7 +28,7 @@ pub fn monotone_threshold(
     let own = flux.speed(left);
     let delta = odd.horizon().max(even.horizon());
     let ratio = |k: f64| (own * odd.growth(k / delta) - s * k / delta) / even.growth(k / delta);
-    let place = |n: f64| 0.05 * (LONGEST / 0.05f64).powf(n / 400.0);
+    let place = |n: f64| 0.05 * libm::pow(LONGEST / 0.05f64, n / 400.0);
     let best = (0..=400)
         .map(f64::from)
         .min_by(|a, b| ratio(place(*a)).total_cmp(&ratio(place(*b))));

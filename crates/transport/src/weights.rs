@@ -143,8 +143,8 @@ impl Stencil {
         for (m, w) in self.steps.iter().zip(&self.weights) {
             let angle = phase[0] * m[0] as f64 + phase[1] * m[1] as f64;
             let value = match self.parity {
-                Parity::Odd => angle.sin(),
-                Parity::Even => -4.0 * (0.5 * angle).sin().powi(2),
+                Parity::Odd => libm::sin(angle),
+                Parity::Even => -4.0 * libm::sin(0.5 * angle).powi(2),
             };
             sum[0] += w[0] * value;
             sum[1] += w[1] * value;

@@ -2,11 +2,13 @@
 //! increments of statics.
 #![forbid(unsafe_code)]
 
+use peridyne::boundary_condition::point_force::{
+    Described, LocalForce, Placed, PointForce, Seen, Stiffness,
+};
 use peridyne::columns::Dimension;
-use peridyne::condition::point_force::{Answer, Described, Placed, PointForce, Seen, Stiffness};
 use peridyne::expression::Expression;
 use peridyne::law::descriptor::{Bounds, Descriptor, Wrong};
-use peridyne::run::{Options, Shelf, Simulation, build_with};
+use peridyne::run::{Options, Registry, Simulation, build_with};
 use peridyne::space::{lattice::LatticeKind, region::Region};
 use peridyne::spec::*;
 
@@ -23,22 +25,22 @@ impl PointForce for Foundation {
     fn memory(&self) -> usize {
         1
     }
-    fn answer(&self, _: usize, at: &Seen, slipped: &mut [f64]) -> Answer {
+    fn force(&self, _: usize, at: &Seen, slipped: &mut [f64]) -> LocalForce {
         let (k, u) = (self.stiffness, at.displacement[0]);
         let trial = k * (u - slipped[0]);
         let held = trial.clamp(-self.strength, self.strength);
         slipped[0] = u - held / k;
-        let mut answer = Answer {
+        let mut force = LocalForce {
             force: [-held, 0.0, 0.0],
             stiffness: [[0.0; 3]; 3],
         };
         if held == trial {
-            answer.stiffness[0][0] = k;
+            force.stiffness[0][0] = k;
         }
-        answer
+        force
     }
     fn stiffness(&self) -> Stiffness {
-        Stiffness::Answered
+        Stiffness::Known
     }
     fn viscosity(&self, _: usize) -> f64 {
         0.0
@@ -108,8 +110,8 @@ pub fn bar(stepper: Stepper, steps: u64, end: f64) -> Box<dyn Simulation> {
     spec.run.schedule.stepper = stepper;
     spec.run.schedule.time_step = TimeStep::Fixed(end / steps as f64);
     spec.run.schedule.steps = steps;
-    let shelf = Shelf::standard().with_force::<Foundation>();
-    build_with(&spec, Options::default(), &shelf).expect("a bar")
+    let registry = Registry::standard().with_force::<Foundation>();
+    build_with(&spec, Options::default(), &registry).expect("a bar")
 }
 
 /// The same at the end.

@@ -6,7 +6,7 @@ use peridyne::law::descriptor::{Bounds, Descriptor, Key, number};
 use peridyne::law::material::bonds::{BondLaw, Bonds};
 use peridyne::law::number::Number;
 use peridyne::observe::{Observable, State, Values};
-use peridyne::run::{Options, Shelf, build_with};
+use peridyne::run::{Options, Registry, build_with};
 use peridyne::space::{lattice::LatticeKind, region::Region};
 use peridyne::spec::*;
 
@@ -63,11 +63,11 @@ pub fn main() {
         set: "all".into(),
         kind: ConditionKind::force("foundation", Parameters::default()),
     }];
-    let shelf = Shelf::standard()
+    let registry = Registry::standard()
         .with::<Bonds<Stiffening, 1>>()
         .with_observable(&DISTANCE)
         .with_force_of("foundation", |at| at.displacement.map(|u| -1e-3 * u));
-    let mut sim = build_with(&spec, Options::default(), &shelf).expect("a body of this law");
+    let mut sim = build_with(&spec, Options::default(), &registry).expect("a body of this law");
     let stretched = sim.vectors("reference").into_iter();
     sim.set_displacements(
         &stretched
@@ -82,5 +82,5 @@ pub fn main() {
     let missing = energies.residual() / energies.initial;
     let farthest = sim.scalars("distance").into_iter().fold(0.0, f64::max);
     println!("{missing:.1e} of the energy is missing, farthest {farthest:.3}");
-    assert!(missing.abs() < 1e-3 && energies.work_conditions != 0.0 && farthest > 0.0);
+    assert!(missing.abs() < 1e-3 && energies.work_boundary_conditions != 0.0 && farthest > 0.0);
 }

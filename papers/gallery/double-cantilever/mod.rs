@@ -36,7 +36,7 @@ fn stiffness(a: f64) -> f64 {
 }
 
 /// Energy release over the square of the load: 12(a + χH)²/E B² H³.
-fn release(a: f64) -> f64 {
+fn breakage(a: f64) -> f64 {
     12.0 * (a + ROOT * H).powi(2) / (E * B * B * H.powi(3))
 }
 
@@ -58,7 +58,7 @@ fn opened(a: f64, h: &str, drawn: Option<(&Context, &mut Findings)>) -> Result<[
     let (load, j) = (bench.probe("load_y")?, bench.probe("tip_J")?);
     Ok([
         load / (stiffness(a) * OPENING),
-        j / (release(a) * load * load),
+        j / (breakage(a) * load * load),
     ])
 }
 

@@ -110,7 +110,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         }
         let d = |name: &str| format!("{name}-{dimension}d");
         let inverse = |r: f64| 1.0 / r;
-        let as_typed = LawSpec::LpsAsTyped {
+        let as_typed = LawSpec::Lps3d {
             bulk: BULK,
             shear: SHEAR,
         };

@@ -129,7 +129,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let begin = first.begin();
     let load = first.load(1.0);
     let mut linear = Linear::of(&mut first, &begin);
-    let once = plan(balls, 0, Removed::Carried);
+    let once = plan(balls, 0, Removed::KinematicPoints);
     let mut way = Increments::new(&mut linear, once, begin);
     let done = way.step(&mut linear, &load).map_err(failed)?;
     let plain = Off::of(&truth, way.displacements(), &kept, pull(&first, &done));
@@ -144,8 +144,13 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         false => &[5, 10, 20, 40],
     };
     let ways = [
-        ("balls, carried", balls, 0, Removed::Carried),
-        ("exact, carried, corrected", exact, 20, Removed::Carried),
+        ("balls, carried", balls, 0, Removed::KinematicPoints),
+        (
+            "exact, carried, corrected",
+            exact,
+            20,
+            Removed::KinematicPoints,
+        ),
         ("exact, relaxed", exact, 0, Removed::Relaxed),
     ];
     let mut table = Table::new().column("increments", "", counts.iter().map(|n| *n as f64));
@@ -192,7 +197,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         format!("{:.2}, {:.2}", relaxed[0], relaxed[1]),
         relaxed.iter().all(|o| (o - 2.0).abs() < 0.35),
     );
-    let corrected = go(plan(balls, 20, Removed::Carried), 10)?;
+    let corrected = go(plan(balls, 20, Removed::KinematicPoints), 10)?;
     found.holds("corrected", corrected.told(), corrected.below(1.0));
     let newton = go(plan(balls, 60, Removed::Relaxed), 2)?;
     found.holds("newton", newton.told(), newton.below(1e-5));

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use peridyne_io::deck::rounded;
 use peridyne_io::read::measured;
-use peridyne_io::write::history::Column;
+use peridyne_io::write::history::{Column, today};
 use peridyne_io::write::report::history;
 use std::path::{Path, PathBuf};
 
@@ -45,7 +45,7 @@ impl Curve {
         let step = Column::new("step", "");
         let [x, y] = [("--x", &arguments.x), ("--y", &arguments.y)].map(|(flag, name)| {
             let mut all = columns.iter().chain([&step]);
-            all.find(|c| c.name == *name).ok_or_else(|| {
+            all.find(|c| c.name == today(name)).ok_or_else(|| {
                 let all: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
                 Failure::input(format!(
                     "{flag} {name}: history.csv of this deck has no such column; it has {}",

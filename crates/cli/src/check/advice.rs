@@ -2,7 +2,7 @@
 
 use super::{Findings, atoms, directions, mean};
 use peridyne::spec::{Calibration, Horizon, LawSpec};
-use peridyne_io::deck::doubts;
+use peridyne_io::deck::lints;
 use peridyne_theory::patch_test::Place;
 
 /// A warning with its fix.
@@ -25,8 +25,8 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     }
     // those of a deck are said with their lines
     if found.script {
-        let doubts = doubts(spec, info, found.units).into_iter();
-        doubts.for_each(|doubt| say(found.units.tell(&doubt.text), ""));
+        let lints = lints(spec, info, found.units).into_iter();
+        lints.for_each(|lint| say(found.units.tell(&lint.text), ""));
     }
     if spec.potential().is_some() {
         atoms::advice(found, &mut say);
@@ -35,15 +35,15 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     }
     geometry(found, &mut say);
     for (n, ties) in found.ties.iter().enumerate().filter(|(_, ties)| **ties > 0) {
-        let name = match &*spec.loading.indenters[n].name {
-            "" => format!("indenter {}", n + 1),
+        let name = match &*spec.loading.rigid_bodies[n].name {
+            "" => format!("rigid body {}", n + 1),
             name => format!("`{name}`"),
         };
         say(
             format!(
                 "two sides of {name} push {ties} points alike: round-off decides which of them does, and a symmetric body may be pushed aside"
             ),
-            "move the points or the indenter by a part of the spacing",
+            "move the points or the rigid body by a part of the spacing",
         );
     }
     let fraction = info.time_step / info.stable_step;
@@ -71,10 +71,8 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     }
     stiffness(found, &mut say);
     for (m, spec) in found.materials.iter().zip(&spec.materials) {
-        if matches!(
-            spec.law,
-            LawSpec::EamLike { .. } | LawSpec::LpsAsTyped { .. }
-        ) && m.nominal.is_none()
+        if matches!(spec.law, LawSpec::EamLike { .. } | LawSpec::Lps3d { .. })
+            && m.nominal.is_none()
         {
             say(
                 format!(
@@ -99,7 +97,7 @@ fn trial(found: &Findings, say: &mut dyn FnMut(String, &str)) {
     if let Some(why) = &found.trial.failed {
         say(
             format!("trial steps failed: {why}"),
-            "a smaller time step; slower initial velocities; softer contact or indenter",
+            "a smaller time step; slower initial velocities; softer contact or rigid body",
         );
     }
 }
@@ -152,12 +150,23 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
     let spec = found.spec;
     let Some(patch) = &found.patch else { return };
     for (n, m) in found.materials.iter().enumerate() {
-        let Some(class) = patch.best(n) else { continue };
+        let Some((class, stiffness)) = patch.best(n) else {
+            if patch.classes.iter().any(|c| c.material == n) {
+                say(
+                    format!(
+                        "no point of `{}` has a full family: it has no elastic constants by long waves",
+                        m.name
+                    ),
+                    "a larger body, or one that is periodic along all axes",
+                );
+            }
+            continue;
+        };
         if class.place != Place::Bulk {
             let young = patch.whole(n).and_then(|w| w.young_along());
             let told = match (young, directions::nominal_along(found, m)) {
                 (Some(young), Some(nominal)) => format!(
-                    ", and its Young's modulus is off what was asked for along {}",
+                    ", and its Young's modulus is off the target along {}",
                     directions::against(&young, nominal)
                 ),
                 (None, _) => ", and it is not stable".into(),
@@ -165,19 +174,19 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
             };
             say(
                 format!(
-                    "no point of `{}` has a full family: all of it is surface{told}",
+                    "no point of `{}` has a full family: it is thinner than two horizons, no point is in the bulk{told}",
                     m.name
                 ),
                 "a smaller spacing with the same m_ratio",
             );
             continue;
         }
-        let real = mean(found, &class.stiffness);
+        let real = mean(found, stiffness);
         if let Some(nominal) = m.nominal {
             let off = match real.young.is_finite() {
                 true => real.young / nominal.young - 1.0,
                 // unlike along its axes: the worst of them
-                false => (class.stiffness.young_along().into_iter().flatten())
+                false => (stiffness.young_along().into_iter().flatten())
                     .zip(directions::nominal_along(found, m).into_iter().cycle())
                     .map(|(e, nominal)| e / nominal - 1.0)
                     .fold(0.0, |worst: f64, off| match off.abs() > worst.abs() {
@@ -197,7 +206,7 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
                 };
                 say(
                     format!(
-                        "Young's modulus of `{}` in the bulk is {:+.1} % off what was asked for",
+                        "Young's modulus of `{}` in the bulk is {:+.1} % off the target",
                         m.name,
                         100.0 * off
                     ),
@@ -206,8 +215,11 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
             }
         }
         // plies and crystals are meant to be
-        let meant = matches!(&spec.materials[n].law, LawSpec::Named(law) if !law.isotropic);
-        if let Some(a) = class.stiffness.anisotropy()
+        let meant = match &spec.materials[n].law {
+            LawSpec::Named(law) => !law.isotropic,
+            law => law.micromoduli().is_some(),
+        };
+        if let Some(a) = stiffness.anisotropy()
             && (a.zener - 1.0).abs() > 0.2
             && !meant
         {

@@ -3,7 +3,7 @@
 use super::Findings;
 use peridyne::spec::BodySpec;
 use peridyne_io::deck::Dim;
-use peridyne_theory::voigt::components;
+use peridyne_theory::voigt::{Stiffness, components};
 
 /// Above this part of the stability limit steps are coarse: 15 in the shortest period.
 const COARSE: f64 = 0.2;
@@ -53,12 +53,14 @@ pub fn advice(found: &Findings, say: &mut dyn FnMut(String, &str)) {
     if resting && spec.loading.thermal.is_none() && spec.loading.initial.is_empty() {
         say(
             "the atoms start at rest, at 0 K".into(),
-            "write thermal = { temperature = \"300 K\", seed = 1 }; a crystal shares it out: half of it stays as kinetic energy",
+            "write initial_velocities = { temperature = \"300 K\", seed = 1 }; a crystal shares it out: half of it stays as kinetic energy",
         );
     }
     let Some(patch) = &found.patch else { return };
     for class in &patch.classes {
-        let c = &class.stiffness.c;
+        let Some(Stiffness { c, .. }) = &class.stiffness else {
+            continue;
+        };
         if let Some(v) = (0..components(d)).find(|v| c[*v][*v] < 0.0) {
             say(
                 format!(

@@ -33,12 +33,15 @@ pub fn lines(
     let nominal = nominal_along(found, m);
     let places = patch.classes.iter().filter(|c| c.material == n);
     let mut all: Vec<(&str, Stiffness)> = places
-        .map(|c| (c.place.name(d), c.stiffness.clone()))
+        .filter_map(|c| Some((c.place.name(d), c.stiffness.clone()?)))
         .collect();
     if all.len() > 1
         && let Some(whole) = patch.whole(n)
     {
         all.push(("all points", whole));
+    }
+    if all.is_empty() {
+        return vec![];
     }
     let mut lines = vec!["  along the axes, sides free".to_string()];
     for (name, stiffness) in all {

@@ -4,6 +4,7 @@ use super::advice::advice;
 use super::continuum::{Found, Seen};
 use super::{Findings, directions, mean};
 use crate::failure::json_text;
+use peridyne_io::deck::each_once;
 use peridyne_theory::patch_test::Class;
 use peridyne_theory::voigt::{Stiffness, components};
 use serde_json::{Value, json};
@@ -50,7 +51,7 @@ pub fn of(found: &Findings) -> Value {
         "not_tried": found.untried,
         "mass": info.mass,
         "volume": info.volume,
-        "directed_bonds": info.directed_bonds,
+        "bonds": each_once(info.directed_bonds),
         "family": {
             "kind": info.family_kind, "min": info.family.0, "mean": info.family.1, "max": info.family.2,
             "full_volume": found.patch.as_ref().map(|p| p.full),
@@ -67,7 +68,7 @@ pub fn of(found: &Findings) -> Value {
         "time_step": found.spec.run.schedule.statics().is_none().then_some(info.time_step),
         "integrator": info.stepper.name(),
         "stable_step": info.stable_step,
-        "spreads": info.transfers.iter().map(|t| json!({
+        "spreads": info.diffusions.iter().map(|t| json!({
             "quantity": t.quantity.name(), "diffusivity": t.diffusivity, "stable_step": t.stable_step, "over_the_body": t.spread,
         })).collect::<Vec<_>>(),
         "contact_step": info.contact_step.is_finite().then_some(info.contact_step),
@@ -114,23 +115,27 @@ fn fields(one: &Found) -> Value {
 }
 
 fn class(found: &Findings, c: &Class) -> Value {
-    let d = c.stiffness.dimension;
-    let solid = mean(found, &c.stiffness);
+    let d = found.info.dimension;
+    // all null where long waves say nothing
+    let stiffness = c.stiffness.as_ref();
+    let solid = stiffness.map(|s| mean(found, s));
+    let anisotropy = stiffness.and_then(Stiffness::anisotropy);
     let n = components(d);
     json!({
         "place": c.place.name(d),
         "points": c.points,
         "family": c.family,
         "part_of_full": c.part,
-        "young": solid.young,
-        "poisson": solid.poisson,
-        "bulk": solid.bulk(),
-        "shear": solid.shear(),
-        "zener": c.stiffness.anisotropy().map(|a| a.zener),
-        "universal_anisotropy": c.stiffness.anisotropy().and_then(|a| a.universal),
-        "young_along": c.stiffness.young_along(),
-        "along_axes": along(&c.stiffness),
-        "stiffness": c.stiffness.c[..n].iter().map(|r| &r[..n]).collect::<Vec<_>>(),
+        "long_waves": c.long_waves,
+        "young": solid.map(|s| s.young),
+        "poisson": solid.map(|s| s.poisson),
+        "bulk": solid.map(|s| s.bulk()),
+        "shear": solid.map(|s| s.shear()),
+        "zener": anisotropy.map(|a| a.zener),
+        "universal_anisotropy": anisotropy.and_then(|a| a.universal),
+        "young_along": stiffness.and_then(Stiffness::young_along),
+        "along_axes": stiffness.map(along),
+        "stiffness": stiffness.map(|s| s.c[..n].iter().map(|r| &r[..n]).collect::<Vec<_>>()),
     })
 }
 

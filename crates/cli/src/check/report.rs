@@ -98,7 +98,7 @@ fn cost(found: &Findings) -> String {
         }
     }
     let of_one = |why: &String| format!("one process: {why}");
-    let shared = "share the run, one for each 256 points at most, with the same bits (mpiexec -n)";
+    let shared = "share the run, one for each 256 points at most, with bitwise the same results (mpiexec -n)";
     row(
         &mut out,
         "ranks",

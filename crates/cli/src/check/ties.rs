@@ -1,8 +1,8 @@
-//! Points that two sides of an indenter push alike: which of them does is decided by round-off, and a symmetric body is pushed
+//! Points that two sides of an rigid_body push alike: which of them does is decided by round-off, and a symmetric body is pushed
 //! aside.
 
 use peridyne::space::Point;
-use peridyne::spec::{IndenterMotion, IndenterSpec, Spec};
+use peridyne::spec::{RigidBodyMotion, RigidBodySpec, Spec};
 
 /// Parts of the path at which is looked.
 const PARTS: u32 = 8;
@@ -10,14 +10,14 @@ const PARTS: u32 = 8;
 const AROUND: f64 = 1e-7;
 const ALIKE: f64 = 0.9;
 
-/// Number of such points of each driven indenter that does not turn, on its way until `until`.
+/// Number of such points of each driven rigid_body that does not turn, on its way until `until`.
 pub(super) fn ties(spec: &Spec, points: &[Point], spacing: f64, until: f64) -> Vec<usize> {
-    let each = spec.loading.indenters.iter();
+    let each = spec.loading.rigid_bodies.iter();
     each.map(|i| of_one(i, points, spacing, until)).collect()
 }
 
-fn of_one(indenter: &IndenterSpec, points: &[Point], spacing: f64, until: f64) -> usize {
-    let (IndenterMotion::Kinematic(center), None) = (&indenter.motion, &indenter.turn) else {
+fn of_one(rigid_body: &RigidBodySpec, points: &[Point], spacing: f64, until: f64) -> usize {
+    let (RigidBodyMotion::Kinematic(center), None) = (&rigid_body.motion, &rigid_body.turn) else {
         return 0;
     };
     let tied = |n: u32| {
@@ -25,9 +25,9 @@ fn of_one(indenter: &IndenterSpec, points: &[Point], spacing: f64, until: f64) -
         let place: Point = std::array::from_fn(|a| center[a].eval(&[0.0; 3], t));
         let inside = points.iter().filter(|x| {
             let y: Point = std::array::from_fn(|a| x[a] - place[a]);
-            let (distance, way) = indenter.shape.distance(&y);
+            let (distance, way) = rigid_body.shape.distance(&y);
             // what is deep inside is no contact; a sphere has its centre
-            distance < 0.0 && distance > -spacing && kinks(indenter, y, way, spacing)
+            distance < 0.0 && distance > -spacing && kinks(rigid_body, y, way, spacing)
         });
         inside.count()
     };
@@ -35,12 +35,12 @@ fn of_one(indenter: &IndenterSpec, points: &[Point], spacing: f64, until: f64) -
 }
 
 /// Does the direction jump at a point?
-fn kinks(indenter: &IndenterSpec, y: Point, way: Point, spacing: f64) -> bool {
+fn kinks(rigid_body: &RigidBodySpec, y: Point, way: Point, spacing: f64) -> bool {
     (0..3).any(|a| {
         [-1.0, 1.0].into_iter().any(|sign| {
             let mut beside = y;
             beside[a] += sign * AROUND * spacing;
-            let (_, other) = indenter.shape.distance(&beside);
+            let (_, other) = rigid_body.shape.distance(&beside);
             (0..3).map(|k| way[k] * other[k]).sum::<f64>() < ALIKE
         })
     })
@@ -53,7 +53,7 @@ mod tests {
 
     /// A box of 4 is pressed into the top layer, z = 0, of points on whole numbers or between them.
     fn tied(origin: f64) -> usize {
-        let text = "horizon = { m_ratio = 2 }\nunits = \"none\"\nbody = { lattice = \"cubic\", spacing = 1, cells = [4, 4, 4] }\nmaterial = { density = 1, law = { pmb = { bulk = 1 } } }\nrun = { steps = 1 }\n[[indenter]]\nstiffness = 1\nshape = { box = { size = [4, 4, 4] } }\ncenter = [0, 0, \"2 - 0.05*t\"]\n";
+        let text = "horizon = { m_ratio = 2 }\nunits = \"none\"\nbody = { lattice = \"cubic\", spacing = 1, cells = [4, 4, 4] }\nmaterial = { density = 1, law = { pmb = { bulk = 1 } } }\nrun = { steps = 1 }\n[[rigid_body]]\nstiffness = 1\nshape = { box = { size = [4, 4, 4] } }\ncenter = [0, 0, \"2 - 0.05*t\"]\n";
         let deck = Deck::parse(text, "d.toml", &[]).unwrap();
         let points: Vec<Point> = (-3..=3)
             .flat_map(|i| (-3..=3).map(move |j| [origin + f64::from(i), f64::from(j), 0.0]))
@@ -68,7 +68,7 @@ mod tests {
         // deeper than the sides are far: on the diagonals of the corners
         let text = |half: f64| {
             let text = format!(
-                "horizon = {{ m_ratio = 2 }}\nunits = \"none\"\nbody = {{ lattice = \"cubic\", spacing = 1, cells = [4, 4, 4] }}\nmaterial = {{ density = 1, law = {{ pmb = {{ bulk = 1 }} }} }}\nrun = {{ steps = 1 }}\n[[indenter]]\nstiffness = 1\nshape = {{ box = {{ size = [{0}, {0}, 4] }} }}\ncenter = [0, 0, \"2 - 0.5*t\"]\n",
+                "horizon = {{ m_ratio = 2 }}\nunits = \"none\"\nbody = {{ lattice = \"cubic\", spacing = 1, cells = [4, 4, 4] }}\nmaterial = {{ density = 1, law = {{ pmb = {{ bulk = 1 }} }} }}\nrun = {{ steps = 1 }}\n[[rigid_body]]\nstiffness = 1\nshape = {{ box = {{ size = [{0}, {0}, 4] }} }}\ncenter = [0, 0, \"2 - 0.5*t\"]\n",
                 2.0 * half
             );
             Deck::parse(&text, "d.toml", &[]).unwrap().spec

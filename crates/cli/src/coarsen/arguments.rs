@@ -48,9 +48,8 @@ pub struct CoarsenArguments {
     /// thinned: only those of them that are retained anyway.
     #[arg(long, default_value = "kept", value_name = "KEPT|THINNED")]
     pub supports: String,
-    /// Nonlinear bodies, in so many equal increments of the load of a deck of [statics]: the linear body is taken about the state of each, is
-    /// coarsened, and bears what is missing there at the load of the increment's end. Law, supports and loads are those of the deck; bonds may
-    /// break, and laws may remember. Writes increments.csv, the displacements of all points after every increment (points.pvd), and the
+    /// Nonlinear bodies, in so many equal increments of the load of a deck of [statics]: the linear body is taken about the state of each, is coarsened, and takes what is missing there at the load of the increment's end. Law, supports and loads are those of the deck; bonds may
+    /// break, and laws may be history-dependent. Writes increments.csv, the displacements of all points after every increment (points.pvd), and the
     /// levels about the last state. Into `out/<name of the deck>-increments` if --out is not given.
     #[arg(long, value_name = "N")]
     pub increments: Option<usize>,
@@ -59,7 +58,7 @@ pub struct CoarsenArguments {
     #[arg(long, default_value_t = 0, value_name = "M", requires = "increments")]
     pub corrections: usize,
     /// With --increments, what removed points do. carried: they move with the shapes of each increment, of first order in it. relaxed: after
-    /// every solution they come to rest between retained ones; with corrections the answer is that of Newton's method on all points.
+    /// every solution they come to rest between retained ones; with corrections the solution is that of Newton's method on all points.
     #[arg(
         long,
         default_value = "carried",
@@ -75,11 +74,11 @@ pub struct CoarsenArguments {
     /// are alike. Prints temperature, unexplained forces, and of perfect crystals the isothermal elastic constants with their errors; `thermal.json` has them.
     #[arg(long, value_name = "FRAMES")]
     pub average: Option<PathBuf>,
-    /// So many frames at the beginning are left out: a run that is not yet in equilibrium.
+    /// Frames at the beginning that are skipped: a run that is not yet in equilibrium.
     #[arg(long, value_name = "N", default_value_t = 0, requires = "average")]
     pub average_skip: usize,
     /// Longest bonds of the fit (in units of the deck), less than half of every period. If not given a quarter longer than those of the Hessian, as motion
-    /// couples atoms that the potential does not, where the box holds them and the frames are enough. Elastic constants are told of bonds that are longer by another quarter, too.
+    /// couples atoms that the potential does not, where the box holds them and the frames are enough. Elastic constants are found with bonds that are longer by another quarter, too.
     #[arg(long, value_name = "LENGTH", requires = "average")]
     pub average_radius: Option<f64>,
     /// lattice: where all atoms are alike, bonds are alike that a symmetry of the lattice maps on each other. none: they are not taken to be.

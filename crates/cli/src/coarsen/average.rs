@@ -447,7 +447,7 @@ fn told<const D: usize>(
                 lines.push(format!("  mean pressure {pressure}"));
             }
         }
-        Err(why) => lines.push(format!("  no elastic constants told: {why}")),
+        Err(why) => lines.push(format!("  no elastic constants: {why}")),
     }
     lines.join("\n")
 }

@@ -76,7 +76,7 @@ impl Asked {
         };
         let way = Way::of(arguments)?;
         let removed = match arguments.removed.as_str() {
-            "carried" => Removed::Carried,
+            "carried" => Removed::KinematicPoints,
             "relaxed" => Removed::Relaxed,
             other => {
                 return Err(Failure::input(format!(
@@ -103,30 +103,32 @@ impl Asked {
         }
         match statics.control {
             Control::Load => {}
-            Control::Breaking | Control::Opening(_) | Control::ArcLength(_) => {
+            Control::SequentiallyLinear
+            | Control::IndirectDisplacement(_)
+            | Control::ArcLength(_) => {
                 return wrong(
-                    "this deck finds the factor of its load on the way (statics.control), where it may fall; increments go to loads that are told, as functions of t: leave control out",
+                    "this deck follows a path whose load factor may decrease (statics.control); increments go to loads that are functions of t: leave control out",
                 );
             }
         }
         if statics.cycles.is_some() {
             return wrong(
-                "increments of this deck are cycles that wear bonds out; the equilibrium of one load is what is coarsened: leave cycles out",
+                "increments of this deck are cycles of fatigue; the equilibrium of one load is what is coarsened: leave cycles out",
             );
         }
         if statics.timed {
             return wrong(
-                "t of this deck is a time (statics.duration), for laws that answer to how fast they are deformed; coarse increments take none: leave duration out",
+                "t of this deck is a time (statics.duration), for rate-dependent laws; coarse increments take none: leave duration out",
             );
         }
-        if spec.interactions.contact.is_some() || !spec.loading.indenters.is_empty() {
+        if spec.interactions.contact.is_some() || !spec.loading.rigid_bodies.is_empty() {
             return wrong(
-                "what touches only pushes, and has no tangent from which a coarse body could be made: write contact = false, and leave indenters out",
+                "contact has no tangent from which a coarse body could be made: write contact = false, and leave rigid bodies out",
             );
         }
-        if !spec.interactions.transfers.is_empty() || spec.damage.healing.is_some() {
+        if !spec.interactions.diffusions.is_empty() || spec.damage.healing.is_some() {
             return wrong(
-                "what spreads through bonds, and bonds that heal, change the body while the load stands still; increments know the load alone: leave heat, species and healing out",
+                "diffusion and healing change the body while the load stands still; increments depend on the load alone: leave heat, species and healing out",
             );
         }
         let TimeStep::Fixed(each) = spec.run.schedule.time_step else {
@@ -159,8 +161,12 @@ fn go<const D: usize>(
     let held = marked(deck, sim.as_ref(), prescribes)?;
     let selection = selection(arguments, kept(arguments, deck, sim.as_ref())?)?;
     let linear = asked.statics.method == Method::Linear;
-    let mut body = Model::<D>::new(&deck.spec, sim, linear)
-        .ok_or_else(|| Failure::input(format!("{}: a condition names no set", deck.file())))?;
+    let mut body = Model::<D>::new(&deck.spec, sim, linear).ok_or_else(|| {
+        Failure::input(format!(
+            "{}: a boundary condition names no set",
+            deck.file()
+        ))
+    })?;
     let supports = held.iter().map(|h| asked.way.supports && *h).collect();
     let sites = body.sites().to_vec();
     let mut thinning = Thinning::new(selection, sites, body.period(), supports);
@@ -245,7 +251,7 @@ fn plain<const D: usize>(
     let mut linear = Linear::of(body, begin);
     let plan = Plan {
         corrections: 0,
-        removed: Removed::Carried,
+        removed: Removed::KinematicPoints,
         ..plan.clone()
     };
     let mut path = Increments::new(&mut linear, plan, begin.to_vec());

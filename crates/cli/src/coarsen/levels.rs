@@ -7,7 +7,7 @@ use super::way::Way;
 use crate::failure::{Failure, say};
 use crate::side_by_side::{Reference, compare, run, save};
 use peridyne::space::Point;
-use peridyne::spec::{Carriers, LinearBody, Method};
+use peridyne::spec::{LinearBody, LoadMap, Method};
 use peridyne_io::deck::coarsened::coarsened;
 use peridyne_io::deck::upscaled::copied;
 use peridyne_io::deck::{Deck, Dim, rounded};
@@ -37,15 +37,15 @@ pub(super) fn levels<const D: usize>(
             x[a] += u[a];
         }
     }
-    if !way.condensed && body.carriers.is_some() {
+    if !way.condensed && body.load_map.is_some() {
         return Err(Failure::input(
             "--loads silling: this body was condensed with its loads; begin with the deck of the whole body",
         ));
     }
-    if way.condensed && body.carriers.is_none() && acting.loaded.contains(&true) {
+    if way.condensed && body.load_map.is_none() && acting.loaded.contains(&true) {
         let (position, volume) = (sites.clone(), body.volume.clone());
-        let carriers = Carriers::of(position, volume, acting.spacing, &acting.loaded);
-        body.carriers = Some(carriers);
+        let load_map = LoadMap::of(position, volume, acting.spacing, &acting.loaded);
+        body.load_map = Some(load_map);
     }
     let level0 = relaxed.is_some().then(|| at_sites(&body, &sites));
     let selection = selection(arguments, kept)?;
@@ -274,7 +274,7 @@ fn run_levels<const D: usize>(
         let m = compare(fine.until(coarse.time)?, &coarse);
         if !m.error.is_finite() {
             say(&format!(
-                "{name}: nothing moves at the {} points that both have: no error can be told",
+                "{name}: nothing moves at the {} points that both have: there is no error to compute",
                 m.points
             ));
             continue;

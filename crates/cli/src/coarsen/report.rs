@@ -120,7 +120,7 @@ pub(super) fn card<const D: usize>(made: &Level<D>, way: Way, units: UnitSystem)
                 each.join(", ")
             ));
         }
-        Frequencies::Unknown(why) => lines.push(format!("  error of frequencies not told: {why}")),
+        Frequencies::Unknown(why) => lines.push(format!("  no error of frequencies: {why}")),
     }
     if let [Some(fine), Some(coarse)] = made.steps {
         lines.push(format!(
@@ -182,7 +182,7 @@ pub(super) fn record<const D: usize>(level: &Level<D>, way: Way) -> serde_json::
     let distinct: HashSet<usize> = body.start.windows(2).map(|w| w[1] - w[0]).collect();
     serde_json::json!({
         "points": body.points(),
-        "directed_bonds": body.partner.len(),
+        "bonds": body.partner.len().div_ceil(2),
         "different_family_sizes": distinct.len(),
         "radius": report.radius.is_finite().then_some(report.radius),
         "convergence": report.convergence.iter().map(|t| serde_json::json!({

@@ -91,9 +91,12 @@ fn plot(f: &Finished, length: &str) -> Plot {
         // many points: the legend keeps away from them
         let ends = [&f.levels[0], &f.levels[f.levels.len() - 1]].map(|l| l.length(f.kind));
         let x: Vec<f64> = (0..=60)
-            .map(|n| ends[0] * (ends[1] / ends[0]).powf(f64::from(n) / 60.0))
+            .map(|n| ends[0] * libm::pow(ends[1] / ends[0], f64::from(n) / 60.0))
             .collect();
-        let y: Vec<f64> = x.iter().map(|h| o.constant * h.powf(o.fitted)).collect();
+        let y: Vec<f64> = x
+            .iter()
+            .map(|h| o.constant * libm::pow(*h, o.fitted))
+            .collect();
         plot = plot.dashed(&format!("order {:.2}", o.fitted), &x, &y);
     }
     plot

@@ -4,16 +4,25 @@ use super::around::Around;
 use crate::Input;
 use crate::deck;
 use crate::failure::Failure;
-use peridyne::error::RunError;
+use crate::study::{Quiet, Row};
 use peridyne::expression::Expression;
-use peridyne_io::deck::{Deck, Dim};
+use peridyne::observe::Ledger;
+use peridyne::run::Simulation;
+use peridyne::spec::TimeStep;
+use peridyne_io::deck::Deck;
+use peridyne_io::drive::Progress;
+use peridyne_io::read::npz::read_npz;
+use peridyne_io::write::WriteError;
+use peridyne_io::write::npz::write_npz;
 use peridyne_theory::convergence::Kind;
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::time::Instant;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-/// Steps between looks at the energy balance.
-const WATCH: u64 = 256;
+/// Reference positions and displacements of a level at the end, in its folder.
+const FILE: &str = "displacement.npz";
+const ARRAYS: [&str; 3] = ["reference", "displacement", "spacing_horizon_volume"];
 
 /// The end of all runs, and the step of all levels.
 pub struct Step {
@@ -75,43 +84,93 @@ pub fn common_step(decks: &[Deck], input: &Input, substeps: u32) -> Result<Step,
     })
 }
 
+impl Step {
+    /// The deck with steps of about `stretch` times this one, whole ones up to the final time, and no other output than history and states.
+    pub fn of(&self, deck: &Deck, stretch: u32) -> Deck {
+        let mut deck = deck.clone();
+        let steps = (self.time / (self.time_step * f64::from(stretch)) - 1e-6).ceil();
+        let schedule = &mut deck.spec.run.schedule;
+        schedule.steps = steps as u64;
+        schedule.time_step = TimeStep::Fixed(self.time / steps);
+        // it is a fraction of the deck's own on the finest level
+        schedule.force_unstable = true;
+        deck.duration = None;
+        deck.fields.clear();
+        deck.output.quiet();
+        deck
+    }
+}
+
+/// Keeps the end of a run in its folder.
+pub struct Keep {
+    path: PathBuf,
+    steps: u64,
+    /// Why it could not.
+    pub failed: Option<WriteError>,
+}
+
+impl Keep {
+    /// Of a deck that [`Step::of`] made.
+    pub fn of(deck: &Deck, dir: &Path) -> Keep {
+        Keep {
+            path: dir.join(FILE),
+            steps: deck.spec.run.schedule.steps,
+            failed: None,
+        }
+    }
+}
+
+impl Progress for Keep {
+    fn step(&mut self, _: u64, _: u64, _: Duration) {}
+    fn row(&mut self, _: u64, _: f64, _: &Ledger, _: u64) {}
+    fn warning(&mut self, _: &str) {}
+    fn ended(&mut self) -> Option<String> {
+        Quiet.ended()
+    }
+    fn look(&mut self, sim: &mut dyn Simulation, step: u64) {
+        if step < self.steps {
+            return;
+        }
+        let info = sim.info();
+        let lengths = [info.spacing, info.horizon, info.volume];
+        let (reference, displacement) = (sim.vectors("reference"), sim.displacements());
+        let shape = || vec![reference.len(), 3];
+        let arrays = [
+            (ARRAYS[0], reference.as_flattened(), shape()),
+            (ARRAYS[1], displacement.as_flattened(), shape()),
+            (ARRAYS[2], &lengths[..], vec![3]),
+        ];
+        self.failed = write_npz(&self.path, &arrays).err();
+    }
+}
+
 impl Level {
-    /// Runs to the final time, on which whole steps land, of about `stretch` times the common step.
-    pub fn run(deck: &Deck, input: &Input, step: &Step, stretch: u32) -> Result<Level, Failure> {
-        let mut trusting = deck.clone();
-        // the common step is set below
-        trusting.spec.run.schedule.force_unstable = true;
-        let mut sim = deck::model(&trusting, input)?;
-        let failed = |e: RunError| {
+    /// Of a run that is done.
+    pub fn of(row: &Row) -> Result<Level, Failure> {
+        let path = row.dir.join(FILE);
+        let wrong = |why: String| {
+            let path = path.display();
             Failure::Run(format!(
-                "spacing {}: {}",
-                deck.units
-                    .show(deck.spec.body.spacing().unwrap_or(0.0), Dim::LENGTH),
-                deck.units.tell(&e.message())
+                "{path}: {why}. Take its folder away: the same command makes it again"
             ))
         };
-        let steps = (step.time / (step.time_step * f64::from(stretch)) - 1e-6).ceil();
-        sim.set_time_step(step.time / steps);
-        let steps = steps as u64;
-        sim.start(true);
-        let began = Instant::now();
-        for n in 0..steps {
-            sim.step().map_err(failed)?;
-            if n % WATCH == 0 {
-                sim.ledger().map_err(failed)?;
-            }
-        }
-        sim.ledger().map_err(failed)?;
-        let info = sim.info();
+        let [reference, displacement, lengths] = read_npz(&path, ARRAYS).map_err(wrong)?;
+        let [reference, displacement] = [reference, displacement].map(|x| x.as_chunks().0.to_vec());
+        let (&[spacing, horizon, volume], true) =
+            (&lengths[..], reference.len() == displacement.len())
+        else {
+            return Err(wrong("its arrays have other lengths".into()));
+        };
+        let number = |key: &str| row.record.as_ref().and_then(|r| r[key].as_f64());
         Ok(Level {
-            spacing: info.spacing,
-            horizon: info.horizon,
-            points: info.points,
-            volume: info.volume,
-            steps,
-            seconds: began.elapsed().as_secs_f64(),
-            reference: sim.vectors("reference"),
-            displacement: sim.displacements(),
+            spacing,
+            horizon,
+            volume,
+            points: reference.len() as u64,
+            steps: number("steps").unwrap_or(f64::NAN) as u64,
+            seconds: number("seconds_stepping").unwrap_or(f64::NAN),
+            reference,
+            displacement,
             error: None,
             difference: None,
         })
@@ -136,7 +195,7 @@ impl Level {
             Some(&i) => Ok(self.displacement[i]),
             None => around.fitted(x, &self.displacement).ok_or_else(|| {
                 format!(
-                    "around the point {x:?} of the coarsest level too few points of the level with spacing {} lie to tell its displacement: the body is too thin there",
+                    "around the point {x:?} of the coarsest level there are too few points of the level with spacing {} for its displacement: the body is too thin there",
                     self.spacing
                 )
             }),

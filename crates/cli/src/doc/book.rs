@@ -1,11 +1,12 @@
 //! The deck reference as pages of the guide, in Markdown.
 
-use super::{header, measured};
+use super::header;
 use crate::failure::{Failure, say};
+use crate::keys::measured;
 use peridyne::observe::observables;
 use peridyne::space::lattice::LatticeKind;
 use peridyne_io::deck::reference::{Key, Page};
-use peridyne_io::deck::{UnitSystem, example, usual};
+use peridyne_io::deck::{UnitSystem, example, known, usual};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
@@ -28,45 +29,89 @@ pub fn write(
         "# Deck reference\n\nMade by `peridyne doc --book` from the program's own descriptions of its keys; `peridyne doc KEY` prints one of them, \
          `peridyne schema` the JSON schema for editors. Units of plain numbers: [units](units.md); fields of points: [fields](fields_of_points.md).\n",
     );
-    let mut count = 2;
+    let mut count = 3;
     for (top, pages) in all {
         let examples = decks.map_or_else(Examples::new, |d| examples(d, top, pages));
-        let _ = write!(index, "\n## {}\n\n| table | |\n|---|---|\n", title(top));
         for page in pages {
-            let file = file(top, page);
-            let first = page
-                .doc
-                .split(". ")
-                .next()
-                .unwrap_or_default()
-                .trim_end_matches('.');
-            let _ = writeln!(
-                index,
-                "| [`{}`]({file}) | {} |",
-                header(top, page),
-                cell(first)
-            );
-            std::fs::write(folder.join(&file), text(top, page, pages, &examples))
-                .map_err(failed)?;
+            let mut text = text(top, page, pages, &examples);
+            if (*top, &*page.path) == ("deck", "units") {
+                text.push_str(&units());
+            }
+            std::fs::write(folder.join(file(top, page)), text).map_err(failed)?;
             count += 1;
         }
     }
+    for group in GROUPS {
+        let _ = write!(index, "\n## {group}\n\n| table | what it is |\n|---|---|\n");
+        let every = { all.iter() }.flat_map(|(top, pages)| pages.iter().map(move |p| (*top, p)));
+        let mut here: Vec<(&str, &Page)> = every
+            .filter(|(top, page)| self::group(top, page) == group)
+            .collect();
+        // laws as their list has them
+        if group != LAWS {
+            here.sort_by_key(|(_, page)| &page.path);
+        }
+        for (top, page) in here {
+            let first = page.doc.split(". ").next().unwrap_or_default();
+            let _ = writeln!(
+                index,
+                "| [`{}`]({}) | {} |",
+                header(top, page),
+                file(top, page),
+                cell(first.trim_end_matches('.'))
+            );
+        }
+        let lists: &[(&str, &str)] = match group {
+            BODY => &[("Lattices", "lattices.md")],
+            OUTPUT => &[("Fields of points", "fields_of_points.md")],
+            _ => &[],
+        };
+        for (name, file) in lists {
+            let _ = writeln!(index, "| [{name}]({file}) | Their names |");
+        }
+    }
     std::fs::write(folder.join("index.md"), index).map_err(failed)?;
-    std::fs::write(folder.join("units.md"), units()).map_err(failed)?;
     std::fs::write(folder.join("fields_of_points.md"), fields()).map_err(failed)?;
     std::fs::write(folder.join("lattices.md"), lattices()).map_err(failed)?;
-    say(&format!(
-        "wrote {} pages to {}",
-        count + 2,
-        folder.display()
-    ));
+    say(&format!("wrote {count} pages to {}", folder.display()));
     Ok(())
 }
 
-fn title(top: &str) -> &'static str {
-    match top {
-        "deck" => "Decks of bodies and atoms",
-        _ => "Decks of conservation laws",
+const BODY: &str = "Body";
+const LAWS: &str = "Laws of solids and fluids";
+const OUTPUT: &str = "Output and measurement";
+const CONSERVATION: &str = "Conservation laws";
+/// What the index and the guide's menu are divided into.
+const GROUPS: [&str; 9] = [
+    "Deck and units",
+    BODY,
+    "Material and fracture",
+    LAWS,
+    "Loads, contact, initial cracks",
+    "Run: motion and statics",
+    OUTPUT,
+    "Atoms",
+    CONSERVATION,
+];
+
+/// Where a page belongs; a table that is new and named nowhere here is the deck's.
+fn group(top: &str, page: &Page) -> &'static str {
+    if top != "deck" {
+        return CONSERVATION;
+    }
+    if page.doc.starts_with("Atoms:") {
+        return "Atoms";
+    }
+    match page.path.split('.').next().unwrap_or_default() {
+        "body" | "sets" | "horizon" | "periodic" | "bond_stiffness" | "interface" => BODY,
+        "material" if page.path.starts_with("material.law.") => LAWS,
+        "material" | "toughness" | "healing" => "Material and fracture",
+        "boundary_condition" | "initial" | "rigid_body" | "contact" | "precrack" | "heat"
+        | "species" => "Loads, contact, initial cracks",
+        "run" | "statics" => "Run: motion and statics",
+        "output" | "probe" | "fields" => OUTPUT,
+        "pair" | "molecules" | "smooth" | "initial_velocities" => "Atoms",
+        _ => "Deck and units",
     }
 }
 
@@ -84,6 +129,11 @@ fn cell(text: &str) -> String {
     text.replace('|', "\\|")
         .replace('<', "&lt;")
         .replace('\n', " ")
+}
+
+/// Code in a table: all but bars stands as it is.
+fn code(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
 }
 
 fn text(top: &str, page: &Page, pages: &[Page], examples: &Examples) -> String {
@@ -108,7 +158,7 @@ fn text(top: &str, page: &Page, pages: &[Page], examples: &Examples) -> String {
     if page.one_of {
         text.push_str("One of these is given.\n\n");
     }
-    text.push_str("| key | what it is | takes | measures | left out |\n|---|---|---|---|---|\n");
+    text.push_str("| key | meaning | takes | default |\n|---|---|---|---|\n");
     for key in &page.keys {
         let _ = writeln!(text, "{}", row(top, page, key, pages, examples));
     }
@@ -121,15 +171,21 @@ fn row(top: &str, page: &Page, key: &Key, pages: &[Page], examples: &Examples) -
         path => format!("{path}.{}", key.name),
     };
     let mut what = cell(&key.doc);
-    for (word, said) in &key.words {
-        let _ = write!(what, "<br>`{word}` {}", cell(said));
+    if !key.words.is_empty() {
+        what.push_str("<ul>");
+        for (word, said) in &key.words {
+            let colon = if said.is_empty() { "" } else { ": " };
+            let _ = write!(what, "<li>`{word}`{colon}{}</li>", cell(said));
+        }
+        what.push_str("</ul>");
     }
     if let Some((deck, value)) = examples.get(&place) {
         let _ = write!(
             what,
-            "<br>Example: `{} = {}` ({deck})",
+            "{}Example: `{} = {}` ({deck})",
+            if key.words.is_empty() { "<br>" } else { "" },
             key.name,
-            cell(value)
+            code(value)
         );
     }
     let mut takes = cell(&key.takes);
@@ -138,17 +194,28 @@ fn row(top: &str, page: &Page, key: &Key, pages: &[Page], examples: &Examples) -
             let _ = write!(takes, " [`{}`]({})", header(top, page), file(top, page));
         }
     }
-    if !key.bounds.is_empty() {
-        let _ = write!(takes, ", {}", key.bounds);
+    let dimension = match &*key.dimension {
+        "a plain number" => String::new(),
+        dimension => measured(dimension),
+    };
+    for (before, said) in [(": ", &dimension), (", ", &key.bounds)] {
+        if !said.is_empty() {
+            let _ = write!(takes, "{before}{}", cell(said));
+        }
     }
-    let left_out = match (key.must, &*key.default) {
-        (true, _) => "must be given".to_string(),
-        (false, "") => key.need.clone(),
-        (false, default) => format!("`{default}`"),
+    let default = match (key.must, &*key.default) {
+        (true, _) => "*required*".to_string(),
+        (false, "") => cell(&key.need),
+        // words, or what would be written
+        (false, default)
+            if default.contains([' ', ',']) && !default.starts_with(['"', '{', '[']) =>
+        {
+            cell(default)
+        }
+        (false, default) => format!("`{}`", code(default)),
     };
     format!(
-        "| <a id=\"{name}\"></a>`{name}` | {what} | {takes} | {} | {left_out} |",
-        cell(&measured(&key.dimension)),
+        "| <a id=\"{name}\"></a>`{name}` | {what} | {takes} | {default} |",
         name = key.name
     )
 }
@@ -208,10 +275,15 @@ fn gather(table: &toml::Table, path: &str, deck: &str, pages: &[Page], examples:
 }
 
 fn units() -> String {
-    let mut text = String::from(
-        "# Units\n\nA number without unit is in the unit of its system (`units`); with one (`\"0.5 mm\"`) it is converted, and its dimension checked. \
-         Prefixes f p n u µ m c k M G T go with m, g, s, N, Pa, J, W, Hz, eV, K, bar; without prefix Å (angstrom), inch, min, h, t, u, mol, l, atm, psi, %. \
-         Products, quotients and powers: `\"7800 kg/m^3\"`. In `lj` and `none` numbers carry no unit.\n\n| | si | metal | as one would write it |\n|---|---|---|---|\n",
+    let mut text = format!(
+        "\n## Units of numbers\n\nA number without unit is in the unit of its system (`units`); with one (`\"0.5 mm\"`) it is converted, and its dimension checked. \
+         Known are {}. Products, quotients and powers: `\"7800 kg/m^3\"`, `\"45 W/(m K)\"`, `\"12e-6 1/K\"`; each `/` divides by what follows it. \
+         In `lj` and `none` numbers carry no unit.\n\n\
+         `\"20 degC\"` (also °C) is 293.15 K where it is the whole of a temperature; expressions, constants and differences are written in K. As a factor \
+         it is the kelvin: `\"25 W/m^2/degC\"`. Beside it `heat.reference` must be given: its default is 0 K. Angles are radians, `\"30 deg\"` too; angular \
+         velocities radians per time. A fracture toughness K is given as the energy K²/E: `\"(0.75 MPa)^2 * 1 m / 72 GPa\"`.\n\n\
+         | | si | metal | as one would write it |\n|---|---|---|---|\n",
+        known()
     );
     for dim in usual() {
         let [si, metal] =
@@ -224,7 +296,7 @@ fn units() -> String {
 
 fn fields() -> String {
     let mut text = String::from(
-        "# Fields of points\n\nNames for `output.fields` and for `of` of probes; laws with memory add their own ([laws](material.law.md)).\n\n\
+        "# Fields of points\n\nNames for `output.fields` and for `of` of probes; history-dependent laws add their own ([laws](material.law.md)).\n\n\
          | field | what it is | components | measures |\n|---|---|---|---|\n",
     );
     for o in observables::ALL {

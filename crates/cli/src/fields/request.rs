@@ -117,7 +117,9 @@ impl Request {
     /// For a frame in this cell.
     pub fn method(&self, cell: &Cell) -> Result<Method, String> {
         let made = || -> Result<Method, FieldsError> {
-            let extents = cell.extents(self.averaged)?;
+            let mut extents = cell.extents(self.averaged)?;
+            // a plane is as thick as the deck of the model says, whatever box the frames have
+            extents[self.model.dimension..].fill(Some(self.model.beyond()));
             let kernel = Kernel::averaged(self.kernel.shape(), self.kernel.width(), extents)?;
             Ok(Method {
                 partition: self.partition.clone(),

@@ -40,7 +40,7 @@ pub fn vary(text: &str) -> Result<(String, Values), String> {
         let unit = if unit.is_empty() { other } else { unit };
         return Ok((key, Values::Between([low, high], unit)));
     }
-    let all = apart(values);
+    let all = split(values);
     match all.iter().any(String::is_empty) {
         true => Err(format!("`{text}`: a value is missing")),
         false => Ok((key, Values::These(all))),
@@ -71,7 +71,7 @@ pub fn quantity(text: &str) -> Option<(f64, String)> {
 }
 
 /// Between commas that stand in no bracket and no quote.
-fn apart(text: &str) -> Vec<String> {
+fn split(text: &str) -> Vec<String> {
     let (mut all, mut deep, mut quote) = (vec![String::new()], 0i32, None);
     for c in text.chars() {
         match (quote, c) {

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 const OF_RECORD: [(&str, &str); 5] = [
     ("steps", ""),
     ("particles", ""),
-    ("broken_directed_bonds", ""),
+    ("broken_bonds", ""),
     ("fragments", ""),
     ("seconds_stepping", "s"),
 ];

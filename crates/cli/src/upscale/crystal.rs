@@ -4,9 +4,9 @@
 
 use crate::failure::Failure;
 use peridyne::law::descriptor::{Descriptor, Key, Need, Value};
-use peridyne::law::fan;
+use peridyne::law::many_body;
 use peridyne::law::solid::linear::{EamLike, Linear, Lps, Pmb, Springs};
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{FamilyChoice, Spec};
 use peridyne_io::deck::{Deck, Dim, Flag};
@@ -118,17 +118,17 @@ fn law(text: &str) -> Result<Law, String> {
         Some((name, file)) => (name, Some(file.to_string())),
         None => (text, None),
     };
-    let shelf = Shelf::standard();
-    let tabulated = || { shelf.descriptors() }.find(|d| is_tabulated(d));
+    let registry = Registry::standard();
+    let tabulated = || { registry.descriptors() }.find(|d| is_tabulated(d));
     let also = ALSO.iter().find(|(other, _)| *other == written);
     let name = match FILES.contains(&written) {
         true => tabulated().map_or(written, |d| &d.name),
         false => also.map_or(written, |(_, name)| name),
     };
     let solids = [Springs::NAME, EamLike::NAME, Lps::NAME, Pmb::NAME];
-    let known = |name: &str| solids.contains(&name) || shelf.is_potential(name);
-    let Some(descriptor) = shelf.descriptor(name).filter(|_| known(name)) else {
-        let all = shelf
+    let known = |name: &str| solids.contains(&name) || registry.is_potential(name);
+    let Some(descriptor) = registry.descriptor(name).filter(|_| known(name)) else {
+        let all = registry
             .descriptors()
             .filter(|d| known(&d.name) && !is_tabulated(d));
         let all = all.map(|d| match file_key(d) {
@@ -144,7 +144,7 @@ fn law(text: &str) -> Result<Law, String> {
     let law = Law {
         descriptor: descriptor.clone(),
         file,
-        solid: !shelf.is_potential(name),
+        solid: !registry.is_potential(name),
         structured: written == "structured_eam",
     };
     match (file_key(&law.descriptor), &law.file) {
@@ -218,7 +218,7 @@ fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
         (None, None) => {}
     }
     let fixed = arguments.m_ratio.is_some() || arguments.horizon.is_some();
-    if fixed && fan::is_known(law.name()) {
+    if fixed && many_body::is_known(law.name()) {
         return Err(Failure::input(format!(
             "{} lives on current neighbours: leave --m-ratio and --horizon out",
             law.name()
@@ -242,7 +242,7 @@ fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
         (None, None) => {
             return Err(needed(
                 "mass",
-                "the law does not know it (or give --density)",
+                "the law does not contain it (or give --density)",
             ));
         }
     }

@@ -175,7 +175,7 @@ fn stability(t: &mut String, found: &Found) {
         let _ = writeln!(
             t,
             "  its velocity Verlet raises the highest frequency by {:.3} %",
-            100.0 * (x.asin() / x - 1.0)
+            100.0 * (libm::asin(x) / x - 1.0)
         );
     }
 }
@@ -233,7 +233,7 @@ fn elastic(t: &mut String, found: &Found) {
         table(t, "stress against strain under this pressure", b, &pressure);
     }
     if let Some(c) = &s.continuum {
-        table(t, "continuum asked for", c, &pressure);
+        table(t, "target continuum", c, &pressure);
         let (a, b) = (s.stiffness.c[0][0], c.c[0][0]);
         let _ = writeln!(t, "  lattice over continuum, c11: {:.6}", a / b);
     }

@@ -1,4 +1,4 @@
-//! Time per directed bond and step of laws of the shelf beside the linear solid, whole steps in 3-D, on one thread or as many as asked for:
+//! Time per directed bond and step of laws of the registry beside the linear solid, whole steps in 3-D, on one thread or as many as asked for:
 //! `cargo run --release --example laws [threads] [words]`. Only rows with every word run, for example `laws avx2 stencil plastic`. A word
 //! `cells=20` makes the cube smaller than the 60 cells along an edge that no cache holds. The first rows are what such arithmetic costs alone
 //! ([`limit`]), on one thread; the last ones are of a chain of 200 points, whose step is so short that calls are most of it.
@@ -51,7 +51,7 @@ fn spec_of(
     let mut spec = Spec::new(kind.dimension(), body, 1.0, law);
     spec.bonds.horizon = Horizon::Ratio(3);
     spec.bonds.influence = Influence::Inverse;
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     spec.bonds.family = family;
     spec.run.schedule.time_step = TimeStep::Fraction(0.1);
     if breaks {
@@ -142,10 +142,7 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
             "fluid",
             LawSpec::named("fluid", Parameters::numbers(&fluid)),
         ),
-        (
-            "position_aware",
-            LawSpec::named("position_aware", elastic()),
-        ),
+        ("pals", LawSpec::named("pals", elastic())),
         (
             "bond_rotation",
             LawSpec::named(

@@ -4,7 +4,7 @@ pub(super) mod state;
 
 use super::system::System;
 use crate::body::view;
-use crate::condition::driven::Driven;
+use crate::boundary_condition::driven::Driven;
 use crate::constitutive::Laws;
 use crate::error::RunError;
 use crate::execute::exact::Exact;
@@ -30,7 +30,7 @@ impl<const D: usize> System<D> {
             ..self.accounts.ledger()
         };
         let swept = &self.accounts.swept;
-        let (mut conditions, mut indenters) = (Exact::ZERO, Exact::ZERO);
+        let (mut conditions, mut rigid_bodies) = (Exact::ZERO, Exact::ZERO);
         let mut damping = Exact::ZERO;
         for load in &self.applied.loads {
             match load.is_damping() {
@@ -41,10 +41,10 @@ impl<const D: usize> System<D> {
         self.prescribed
             .work()
             .for_each(|work| conditions.merge(work));
-        { self.applied.rigid.iter() }.for_each(|i| indenters.merge(&i.work));
+        { self.applied.rigid.iter() }.for_each(|i| rigid_bodies.merge(&i.work));
         for d in &self.applied.driven {
             match d {
-                Driven::Indenter(i) => indenters.merge(&i.work),
+                Driven::RigidBody(i) => rigid_bodies.merge(&i.work),
                 Driven::Load(l) => conditions.merge(&l.work),
             }
         }
@@ -62,7 +62,7 @@ impl<const D: usize> System<D> {
             dissipated,
             damping,
             conditions,
-            indenters,
+            rigid_bodies,
             touching,
             rubbed,
             stored,
@@ -75,7 +75,7 @@ impl<const D: usize> System<D> {
             dissipated,
             damping,
             conditions,
-            indenters,
+            rigid_bodies,
             touching,
             rubbed,
             stored,
@@ -85,8 +85,8 @@ impl<const D: usize> System<D> {
         ledger.released += lost;
         ledger.made += made;
         ledger.dissipated += dissipated - damping;
-        ledger.work_conditions += conditions;
-        ledger.work_indenter += indenters;
+        ledger.work_boundary_conditions += conditions;
+        ledger.work_rigid_bodies += rigid_bodies;
         ledger.contact += stored;
         ledger.dissipated -= rubbed + stored;
         ledger
@@ -105,8 +105,9 @@ impl<const D: usize> System<D> {
                 j,
             });
         }
-        let before =
-            ledger.initial.abs() + ledger.work_conditions.abs() + ledger.work_indenter.abs();
+        let before = ledger.initial.abs()
+            + ledger.work_boundary_conditions.abs()
+            + ledger.work_rigid_bodies.abs();
         let after = ledger.held() - self.last_kick();
         if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.clock.has_gone_on() {
             if self.regime.equilibrium {

@@ -4,11 +4,11 @@ use super::interfaces::interfaces;
 use super::parts::Part;
 use super::surface;
 use crate::body::Body;
-use crate::constitutive::{ConstitutiveModel, ConstitutiveModels, Shelf};
+use crate::constitutive::{ConstitutiveModel, ConstitutiveModels, Registry};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::Interaction;
-use crate::interaction::SeveralInteraction;
+use crate::interaction::MultiBodyInteraction;
 use crate::message;
 use crate::quantity::{Dimension, Warnings};
 use crate::spec::{BodySpec, Spec};
@@ -19,11 +19,11 @@ type Bound<const D: usize> = (ConstitutiveModel, Option<Box<dyn Interaction<D>>>
 fn bonds<const D: usize>(
     part: &mut Part,
     body: &mut Body<D>,
-    shelf: &Shelf,
+    registry: &Registry,
     simd: Simd,
     warnings: &mut Warnings,
 ) -> Result<Bound<D>, BuildError> {
-    let model = part.constitutive(body, shelf, simd, warnings)?;
+    let model = part.constitutive(body, registry, simd, warnings)?;
     let mut bonds = part.bonds(&model, body)?;
     if let (Some(factors), Some(bonds)) = (&part.spec.bonds.surface, &mut bonds) {
         surface::scale(factors, body, bonds.as_mut())?;
@@ -38,7 +38,7 @@ pub(super) fn bind<const D: usize>(
     spec: &Spec,
     parts: &mut [Part],
     body: &mut Body<D>,
-    shelf: &Shelf,
+    registry: &Registry,
     simd: Simd,
     warnings: &mut Warnings,
 ) -> Result<(ConstitutiveModels, Box<dyn Interaction<D>>), BuildError> {
@@ -51,15 +51,15 @@ pub(super) fn bind<const D: usize>(
             return Err(BuildError::conflict("interface[0].bodies", message)
                 .help("write [[body]] for each of the two"));
         }
-        let (model, interaction) = bonds(&mut parts[0], body, shelf, simd, warnings)?;
+        let (model, interaction) = bonds(&mut parts[0], body, registry, simd, warnings)?;
         let interaction = interaction.expect("a single body is bonded");
-        let interaction = super::bonded::around(spec, body, shelf, interaction, simd)?;
+        let interaction = super::bonded::around(spec, body, registry, interaction, simd)?;
         return Ok((ConstitutiveModels::one(model), interaction));
     };
     let (mut constitutive, mut all) = (vec![], vec![]);
     for (n, part) in parts.iter_mut().enumerate() {
         let mut told = Warnings::default();
-        let made = body.change_piece(n, |body| bonds(part, body, shelf, simd, &mut told));
+        let made = body.change_piece(n, |body| bonds(part, body, registry, simd, &mut told));
         let made = made.expect("made of several bodies");
         let (model, bonds) = made.map_err(|e| part.named(&named[n], e))?;
         warnings.extend(
@@ -73,12 +73,13 @@ pub(super) fn bind<const D: usize>(
         body.join_volumes();
     }
     let (mut joined, mut between) = (vec![], vec![]);
-    for made in interfaces(spec, named, body, shelf, simd)? {
+    for made in interfaces(spec, named, body, registry, simd)? {
         let (count, horizon) = (made.interface.near_horizon(), made.model.horizon);
         if count > 0 && !made.model.ratio {
             warnings.push(message![
                 format!(
-                    "{count} directed bonds of an interface end within round-off of its horizon "
+                    "{} bonds of an interface end within round-off of its horizon ",
+                    count.div_ceil(2)
                 ),
                 Dimension::LENGTH.of(horizon),
                 ": write it as a whole number of spacings (m_ratio), or well between two distances",
@@ -87,7 +88,7 @@ pub(super) fn bind<const D: usize>(
         joined.push(made.interface);
         between.extend(made.model.named);
     }
-    let interaction = SeveralInteraction::new(body, all, joined);
+    let interaction = MultiBodyInteraction::new(body, all, joined);
     let constitutive = ConstitutiveModels::several(constitutive, between);
     Ok((constitutive, Box::new(interaction)))
 }

@@ -1,7 +1,7 @@
 //! Molecules: bonded terms beside the potential of a body of atoms.
 
 use crate::body::Body;
-use crate::constitutive::Shelf;
+use crate::constitutive::Registry;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::BondedAtoms;
@@ -12,7 +12,7 @@ use crate::spec::{BodySpec, BondedSpec, Spec};
 pub(super) fn around<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
-    shelf: &Shelf,
+    registry: &Registry,
     interaction: Box<dyn Interaction<D>>,
     simd: Simd,
 ) -> Result<Box<dyn Interaction<D>>, BuildError> {
@@ -21,7 +21,7 @@ pub(super) fn around<const D: usize>(
     };
     let refused =
         |message: &str, help: &str| Err(BuildError::unsupported("bonded", message).help(help));
-    let Some(potentials) = shelf.potentials(spec)? else {
+    let Some(potentials) = registry.potentials(spec)? else {
         return Ok(interaction);
     };
     if !matches!(spec.body, BodySpec::Cloud(_)) {

@@ -8,7 +8,7 @@ use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
 use crate::law::BondFactors;
 use crate::law::solid::bond_based::between;
-use crate::spec::{BondFactorSpec, InterfaceRule, Spec};
+use crate::spec::{BondFactorSpec, BondMixing, Spec};
 use std::cell::Cell;
 
 /// Scale the bonds of `interaction` as the spec says, and what to warn of. Call before [`Interaction::prepare`] and any
@@ -99,11 +99,9 @@ fn pair(factor: f64) -> BondFactors<f64> {
 }
 
 /// The same for both ends gives the same; 0 in series gives 0.
-fn mean(rule: InterfaceRule, a: f64, b: f64) -> f64 {
+fn mean(rule: BondMixing, a: f64, b: f64) -> f64 {
     match rule {
-        InterfaceRule::Series if a * b == 0.0 => 0.0,
-        InterfaceRule::Series | InterfaceRule::Parallel | InterfaceRule::Minimum => {
-            between(rule, a, b)
-        }
+        BondMixing::Harmonic if a * b == 0.0 => 0.0,
+        BondMixing::Harmonic | BondMixing::Arithmetic | BondMixing::Minimum => between(rule, a, b),
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn cloud_moments<const D: usize>(
     cell: f64,
 ) -> Result<Option<Moments>, BuildError> {
     let list = HorizonList::new(body, horizon * (1.0 + 1e-9))?;
-    let scaling = spec.bonds.volume_scaling.then_some(cell);
+    let scaling = spec.bonds.partial_volume_correction.then_some(cell);
     let weight = BondWeight::new(spec.bonds.influence, horizon, scaling);
     let directions = directions::<D>();
     let bulk: Vec<Moments> = (0..list.rows().len())

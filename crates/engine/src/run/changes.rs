@@ -87,7 +87,7 @@ impl<const D: usize> System<D> {
         self.watch.forget();
         self.stressed = None;
         self.refresh_images();
-        self.look_again();
+        self.invalidate_neighbours();
         // what they carried is no longer asked for
         self.accounts.initial = Some(self.energy_now().base());
         moved

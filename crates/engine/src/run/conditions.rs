@@ -4,20 +4,21 @@ use super::LoadInfo;
 use super::names::Names;
 use super::system::System;
 use crate::body::Body;
-use crate::condition::Program;
-use crate::condition::applied::AppliedForces;
-use crate::condition::condensed::Condensed;
-use crate::condition::constraint::{Constraint, Kind};
-use crate::condition::indenter::Indenter;
-use crate::condition::load::{Load, LoadKind};
-use crate::condition::point_force::Placed;
+use crate::boundary_condition::Program;
+use crate::boundary_condition::applied::AppliedForces;
+use crate::boundary_condition::condensed::Condensed;
+use crate::boundary_condition::constraint::{Constraint, Kind};
+use crate::boundary_condition::load::{Load, LoadKind};
+use crate::boundary_condition::point_force::{Placed, PointForce};
+use crate::boundary_condition::rigid_body::RigidBody;
 use crate::error::BuildError;
 use crate::expression::Expression;
 use crate::message;
 use crate::quantity::{Dimension, place};
 use crate::space::Point;
-use crate::spec::{Carriers, ConditionKind, ConditionSpec, ForceSpec, IndenterSpec};
+use crate::spec::{ConditionKind, ConditionSpec, ForceSpec, LoadMap, RigidBodySpec};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Times up to the end at which a load is looked at.
 const LOOKS: u32 = 16;
@@ -56,19 +57,37 @@ fn spread<const D: usize>(
     }
 }
 
+/// What a force adds on these of its points, and what of it resists velocities. All ranks ask at once.
+pub(super) fn named<const D: usize>(
+    body: &Body<D>,
+    force: Arc<dyn PointForce>,
+    which: &[u32],
+) -> Vec<LoadKind<D>> {
+    let viscosity = which
+        .iter()
+        .map(|k| [Some(force.viscosity(*k as usize)), None, None]);
+    let viscosity: Vec<_> = viscosity.collect();
+    let resists = viscosity.iter().any(|c| c[0] != Some(0.0));
+    let mut kinds = vec![LoadKind::Named(force)];
+    if body.exchange().any(resists) {
+        kinds.push(LoadKind::Damping(Program::listed(&viscosity)));
+    }
+    kinds
+}
+
 impl<const D: usize> Names<D> {
     /// A load on points of the finer body from which this one was condensed.
     fn condensed(
         &self,
         body: &Body<D>,
-        carriers: &Carriers<D>,
+        load_map: &LoadMap<D>,
         set: &str,
         value: &[Option<Expression>; 3],
         traction: Option<Option<f64>>,
     ) -> Result<Load<D>, BuildError> {
-        let named = self.carrier_sets.iter().find(|(name, _)| name == set);
+        let named = self.loaded_sets.iter().find(|(name, _)| name == set);
         let members: Vec<u32> = match (set, named) {
-            ("all", _) => (0..carriers.points() as u32).collect(),
+            ("all", _) => (0..load_map.points() as u32).collect(),
             (_, Some((_, members))) => members.clone(),
             (_, None) => {
                 return Err(BuildError::unknown(
@@ -80,7 +99,7 @@ impl<const D: usize> Names<D> {
         };
         let lost = members
             .iter()
-            .filter(|p| !carriers.carries(**p as usize))
+            .filter(|p| !load_map.carries(**p as usize))
             .count();
         if lost > 0 || members.is_empty() {
             return Err(BuildError::conflict(
@@ -92,16 +111,16 @@ impl<const D: usize> Names<D> {
             )
             .help("coarsen again, from a deck with this load on this set"));
         }
-        let (condensed, ids) = Condensed::new(carriers, &members);
+        let (condensed, ids) = Condensed::new(load_map, &members);
         let mut program = Program::new(value, condensed.points());
         let mut whole = None;
         if let Some(area) = traction {
             let period = &body.period();
             let areas = self
                 .faces
-                .condensed(carriers, period, set, &members, area)?;
+                .condensed(load_map, period, set, &members, area)?;
             whole = Some(areas.iter().sum());
-            let volume = |k: usize| carriers.volume[members[k] as usize];
+            let volume = |k: usize| load_map.volume[members[k] as usize];
             program = spread(body, program, &areas, volume);
         }
         let slots = ids.iter().map(|id| body.slots()[*id as usize]);
@@ -110,7 +129,7 @@ impl<const D: usize> Names<D> {
         Ok(load)
     }
 
-    /// A force of the shelf on these points: what it adds, and what of it resists velocities; and which of the points of all ranks these are. All ranks ask
+    /// A force of the registry on these points: what it adds, and what of it resists velocities; and which of the points of all ranks these are. All ranks ask
     /// at once.
     fn force(
         &self,
@@ -141,17 +160,8 @@ impl<const D: usize> Names<D> {
             density: &all.iter().map(|p| p[4]).collect::<Vec<_>>(),
             spacing: body.spacing(),
         };
-        let made = self.shelf.force(force, &on)?;
-        let viscosity = which
-            .iter()
-            .map(|k| [Some(made.viscosity(*k as usize)), None, None]);
-        let viscosity: Vec<_> = viscosity.collect();
-        let resists = viscosity.iter().any(|c| c[0] != Some(0.0));
-        let mut kinds = vec![LoadKind::Named(made)];
-        if body.exchange().any(resists) {
-            kinds.push(LoadKind::Damping(Program::listed(&viscosity)));
-        }
-        Ok((kinds, which))
+        let made = self.registry.force(force, &on)?;
+        Ok((named(body, made, &which), which))
     }
 
     /// All that acts, and constraints.
@@ -159,7 +169,7 @@ impl<const D: usize> Names<D> {
         &self,
         body: &Body<D>,
         conditions: &[ConditionSpec],
-        rigid: &[IndenterSpec],
+        rigid: &[RigidBodySpec],
         sets: &[(String, Vec<u32>)],
     ) -> Result<(AppliedForces<D>, Vec<Constraint<D>>), BuildError> {
         let (mut loads, mut constraints) = (vec![], vec![]);
@@ -168,17 +178,17 @@ impl<const D: usize> Names<D> {
                 .slots_of(&c.set, sets)
                 .map_err(|e| e.at(format!("conditions[{n}].set")))?;
             let load = |kind| Load::new(kind, slots.clone(), points.clone());
-            if let Some(carriers) = &self.carriers
+            if let Some(load_map) = &self.load_map
                 && let Some((value, area)) = density(&c.kind)
             {
-                let made = self.condensed(body, carriers, &c.set, value, area);
+                let made = self.condensed(body, load_map, &c.set, value, area);
                 let mut made = made.map_err(|e| e.at(format!("conditions[{n}]")))?;
                 made.of = made.of.map(|(_, area)| (n, area));
                 loads.push(made);
                 continue;
             }
             // groups of scripts may be empty
-            if slots.is_empty() && self.carriers.is_some() {
+            if slots.is_empty() && self.load_map.is_some() {
                 return Err(BuildError::empty(
                     format!("conditions[{n}].set"),
                     format!("no point of `{}` was retained", c.set),
@@ -229,7 +239,7 @@ impl<const D: usize> Names<D> {
                 )),
             }
         }
-        let rigid = rigid.iter().map(Indenter::new).collect();
+        let rigid = rigid.iter().map(RigidBody::new).collect();
         Ok((AppliedForces::new(rigid, loads), constraints))
     }
 }
@@ -278,7 +288,7 @@ impl<const D: usize> System<D> {
                 };
                 let message = message![
                     format!(
-                        "two conditions, on `{}` and on `{}`, ask different motions of the point at ",
+                        "two boundary conditions, on `{}` and on `{}`, prescribe different motions of the point at ",
                         conditions[n].set, conditions[m].set
                     ),
                     place(&x[..D]),

@@ -146,7 +146,7 @@ pub(super) fn repulsion<const D: usize>(
     }))
 }
 
-/// [`own_stiffness`](super::own_horizons::own_stiffness) of all bodies, where any has one: in the others all points have that of their material.
+/// [`own_stiffness`](super::variable_horizons::own_stiffness) of all bodies, where any has one: in the others all points have that of their material.
 fn own_of_all<const D: usize>(constitutive: &ConstitutiveModels, body: &Body<D>) -> Vec<f64> {
     let of = |m: &ConstitutiveModel| m.repulsion.as_ref().map_or(vec![], |r| r.own.clone());
     let all: Vec<Vec<f64>> = constitutive.all().map(of).collect();

@@ -6,7 +6,7 @@ use super::model::Model;
 use super::system::System;
 use super::{AtomBond, Examined, Families, ModeShape, record};
 use crate::body::{view, view_mut, zeros};
-use crate::condition::load::Load;
+use crate::boundary_condition::load::Load;
 use crate::error::{RunError, SolveError};
 use crate::interaction::Sweep;
 use crate::observe::{Observed, PointForce, State};
@@ -65,7 +65,7 @@ impl<const D: usize> Examined for Model<D> {
 /// [`Examined::linear_body`] of all ranks, on the first.
 pub(super) fn linear_of_all<const D: usize>(model: &mut Model<D>) -> Option<AnyLinearBody> {
     let body = LinearBody {
-        carriers: model.names.carriers.clone(),
+        load_map: model.names.load_map.clone(),
         ..model.system.linear_now()?
     };
     Some(AnyLinearBody::new(body).expect("there are three dimensions"))

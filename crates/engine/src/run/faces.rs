@@ -1,11 +1,14 @@
 //! The one place that knows on what area tractions, fluxes and exchanges act.
 
+use super::reference::displacement;
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::space::Point;
 use crate::space::face::{NoFace, Site, Sites};
 use crate::space::lattice::{Lattice, LatticeKind};
-use crate::spec::{BodySpec, Carriers, ConditionKind, ConditionSpec, Members, Spec, TransferKind};
+use crate::spec::{
+    BodySpec, ConditionKind, ConditionSpec, DiffusionKind, LoadMap, Members, Perturbation, Spec,
+};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -16,10 +19,23 @@ const TOLERANCE: f64 = 1e-6;
 #[derive(Debug, Clone)]
 enum Origin {
     On(Lattice),
-    /// Sites of its points in order, of which they were moved away.
-    Moved(Lattice, Arc<[Site]>),
+    /// Of whose sites points were moved away.
+    Moved(Lattice, Perturbation),
     /// On a lattice perhaps, which is looked for.
     Given,
+}
+
+impl Origin {
+    /// Where the point of an id, whose place is this, was before it was moved.
+    fn home<const D: usize>(&self, id: usize, x: Point) -> Point {
+        match self {
+            Origin::On(_) | Origin::Given => x,
+            Origin::Moved(_, p) => {
+                let by = displacement::<D>(p, id);
+                crate::array::from_fn(|a| x[a] - by[a])
+            }
+        }
+    }
 }
 
 /// What faces follow from.
@@ -34,53 +50,45 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    pub fn new(spec: &Spec) -> Result<Faces, BuildError> {
-        let origin = |body: &BodySpec| -> Result<Origin, BuildError> {
-            Ok(match body {
-                BodySpec::Lattice {
-                    kind,
-                    spacing,
-                    origin,
-                    region,
-                    perturb,
-                } => {
-                    let lattice = Lattice {
-                        kind: *kind,
-                        spacing: *spacing,
-                        origin: *origin,
-                    };
-                    match perturb {
-                        None => Origin::On(lattice),
-                        Some(_) => {
-                            let sites = crate::space::fill::fill(&lattice, region)?;
-                            Origin::Moved(lattice, sites.quarters.into())
-                        }
-                    }
-                }
-                BodySpec::Sites {
-                    kind,
-                    spacing,
-                    origin,
-                    ..
-                } => Origin::On(Lattice {
+    pub fn new(spec: &Spec) -> Faces {
+        let origin = |body: &BodySpec| match body {
+            BodySpec::Lattice {
+                kind,
+                spacing,
+                origin,
+                perturb,
+                ..
+            } => {
+                let lattice = Lattice {
                     kind: *kind,
                     spacing: *spacing,
                     origin: *origin,
-                }),
-                BodySpec::Cloud(_) | BodySpec::Several(_) => Origin::Given,
-            })
+                };
+                match perturb {
+                    None => Origin::On(lattice),
+                    Some(by) => Origin::Moved(lattice, *by),
+                }
+            }
+            BodySpec::Sites {
+                kind,
+                spacing,
+                origin,
+                ..
+            } => Origin::On(Lattice {
+                kind: *kind,
+                spacing: *spacing,
+                origin: *origin,
+            }),
+            BodySpec::Cloud(_) | BodySpec::Several(_) => Origin::Given,
         };
         let origins = match &spec.body {
-            BodySpec::Several(pieces) => pieces
-                .iter()
-                .map(|p| origin(&p.body))
-                .collect::<Result<_, _>>()?,
-            one => vec![origin(one)?],
+            BodySpec::Several(pieces) => pieces.iter().map(|p| origin(&p.body)).collect(),
+            one => vec![origin(one)],
         };
         let named = { spec.sets.iter() }
             .filter_map(|set| Some((set.name.clone(), of_mesh(&spec.body, &set.members)?)))
             .collect();
-        Ok(Faces {
+        Faces {
             origins,
             named,
             ends_at_points: spec
@@ -89,7 +97,7 @@ impl Faces {
                 .as_ref()
                 .is_some_and(|f| f.ends_at_points()),
             section: spec.space.section,
-        })
+        }
     }
 
     /// The share of the loaded face that each point of a set has (area), `slots` in the order of its ids.
@@ -133,8 +141,13 @@ impl Faces {
             let first = body.pieces().get(n);
             let spacing = first.map_or(body.spacing(), |p| p.body.spacing());
             let all: Vec<usize> = body.slots()[ids].iter().map(|s| *s as usize).collect();
-            let points: Vec<(Point, f64)> = { all.iter() }
-                .map(|s| (body.position(*s), body.volume().at(*s)))
+            let points: Vec<(Point, f64)> = { all.iter().enumerate() }
+                .map(|(id, s)| {
+                    (
+                        origin.home::<D>(id, body.position(*s)),
+                        body.volume().at(*s),
+                    )
+                })
                 .collect();
             let mut place = vec![0u32; body.len()];
             for (k, slot) in all.iter().enumerate() {
@@ -152,23 +165,56 @@ impl Faces {
         Ok(areas)
     }
 
-    /// The same of a lattice that ranks share: all know all points of a face, and those beside them. All ask at once.
+    /// The same of lattices that ranks share: all know all points of a face, and those beside them. All ask at once.
     fn areas_of_all<const D: usize>(
         &self,
         body: &Body<D>,
         set: &str,
         slots: &[u32],
     ) -> Result<Vec<f64>, BuildError> {
-        let [origin @ Origin::On(lattice)] = &self.origins[..] else {
-            return Err(unknown(set, "ranks have parts of it"));
+        let firsts: Vec<usize> = match body.pieces() {
+            [] => vec![0],
+            _ => body.ids().iter().map(|ids| ids.start).collect(),
         };
+        let mut areas = vec![0.0; slots.len()];
+        for (n, (first, origin)) in firsts.into_iter().zip(&self.origins).enumerate() {
+            let is_own = |slot: &u32| body.piece_of(*slot as usize) == n;
+            let own: Vec<usize> = (0..slots.len()).filter(|k| is_own(&slots[*k])).collect();
+            let here: Vec<u32> = body.slots().iter().copied().filter(is_own).collect();
+            let of: Vec<u32> = own.iter().map(|k| slots[*k]).collect();
+            let shares = self.areas_of_one(body, origin, first, (&here, &of));
+            for (k, share) in own
+                .into_iter()
+                .zip(shares.map_err(|why| unknown(set, why))?)
+            {
+                areas[k] = share;
+            }
+        }
+        Ok(areas)
+    }
+
+    /// Of one of the bodies, whose ids begin at `first`: the points in `slots` of those that are `here`; what is wrong with them.
+    fn areas_of_one<const D: usize>(
+        &self,
+        body: &Body<D>,
+        origin: &Origin,
+        first: usize,
+        (here, slots): (&[u32], &[u32]),
+    ) -> Result<Vec<f64>, &'static str> {
         let ids = body.ids_of_all();
+        let home = |slot: usize| origin.home::<D>(ids[slot] as usize - first, body.position(slot));
         let point = |slot: &u32| {
-            let (s, [x, y, z]) = (*slot as usize, body.position(*slot as usize));
+            let (s, [x, y, z]) = (*slot as usize, home(*slot as usize));
             [f64::from(ids[s]), x, y, z, body.volume().at(s)]
         };
         let all = |own: Vec<[f64; 5]>| body.all_of(&own).concat();
         let mut face = all(slots.iter().map(point).collect());
+        if face.is_empty() {
+            return Ok(vec![]);
+        }
+        let (Origin::On(lattice) | Origin::Moved(lattice, _)) = origin else {
+            return Err("ranks have parts of it");
+        };
         face.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let period = quarters(lattice, &body.period());
         let site = |x: &Point, moved: Site| -> Site {
@@ -181,18 +227,23 @@ impl Faces {
         let members: HashSet<Site> = members.collect();
         // the next ones along the axes are all that matter
         let is_beside = |slot: &&u32| {
-            let x = body.position(**slot as usize);
+            let x = home(**slot as usize);
             let mut next = (0..D).flat_map(|a| {
                 [-4, 4].map(|by| crate::array::from_fn(|b| if b == a { by } else { 0 }))
             });
             !members.contains(&site(&x, [0; 3])) && next.any(|by| members.contains(&site(&x, by)))
         };
-        let beside = all(body.slots().iter().filter(is_beside).map(point).collect());
+        let beside = all(here.iter().filter(is_beside).map(point).collect());
         let points = face.iter().chain(&beside);
         let points: Vec<_> = points.map(|[_, x, y, z, v]| ([*x, *y, *z], *v)).collect();
         let numbers: Vec<usize> = (0..face.len()).collect();
-        let shares = self.shares(origin, body.spacing(), &body.period(), &points, &numbers);
-        let shares = shares.map_err(|why| unknown(set, why))?;
+        let shares = self.shares(
+            origin,
+            lattice.distance(),
+            &body.period(),
+            &points,
+            &numbers,
+        )?;
         let share = |slot: &u32| {
             let id = f64::from(ids[*slot as usize]);
             shares[face.partition_point(|of| of[0] < id)]
@@ -221,12 +272,12 @@ impl Faces {
         let before =
             { spec.run.preload.iter() }.flat_map(|p| of("preload.conditions", &p.conditions));
         let tractions = of("conditions", &spec.loading.conditions).chain(before);
-        let spreads = spec.interactions.transfers.iter().flat_map(|t| {
+        let spreads = spec.interactions.diffusions.iter().flat_map(|t| {
             t.conditions.iter().filter_map(|c| match &c.kind {
-                TransferKind::Flux { area, .. } | TransferKind::Exchange { area, .. } => area
+                DiffusionKind::Flux { area, .. } | DiffusionKind::Exchange { area, .. } => area
                     .is_none()
                     .then(|| (t.quantity.name().to_string(), &c.set)),
-                TransferKind::Value(_) | TransferKind::Source(_) => None,
+                DiffusionKind::Value(_) | DiffusionKind::Source(_) => None,
             })
         });
         for (path, set) in tractions.chain(spreads) {
@@ -252,26 +303,26 @@ impl Faces {
     /// The same of points of the finer body from which this one was condensed.
     pub fn condensed<const D: usize>(
         &self,
-        carriers: &Carriers<D>,
+        load_map: &LoadMap<D>,
         period: &[Option<f64>; D],
         set: &str,
         members: &[u32],
         given: Option<f64>,
     ) -> Result<Vec<f64>, BuildError> {
-        let volume = |p: &u32| carriers.volume[*p as usize];
+        let volume = |p: &u32| load_map.volume[*p as usize];
         if let Some(area) = given {
             let all: f64 = members.iter().map(volume).sum();
             return Ok(members.iter().map(|p| area * volume(p) / all).collect());
         }
-        let points: Vec<(Point, f64)> = { carriers.position.iter().zip(&carriers.volume) }
+        let points: Vec<(Point, f64)> = { load_map.position.iter().zip(&load_map.volume) }
             .map(|(x, v)| (crate::space::full(x), *v))
             .collect();
         let members: Vec<usize> = members.iter().map(|p| *p as usize).collect();
-        self.shares::<D>(&Origin::Given, carriers.spacing, period, &points, &members)
+        self.shares::<D>(&Origin::Given, load_map.spacing, period, &points, &members)
             .map_err(|why| unknown(set, why))
     }
 
-    /// Shares of some of the points of one body; what is wrong with them.
+    /// Shares of some of the points of one body, by the places that they have at [home](Origin::home); what is wrong with them.
     fn shares<const D: usize>(
         &self,
         origin: &Origin,
@@ -281,11 +332,10 @@ impl Faces {
         members: &[usize],
     ) -> Result<Vec<f64>, &'static str> {
         let (lattice, sites): (Lattice, Vec<Site>) = match origin {
-            Origin::On(lattice) => {
+            Origin::On(lattice) | Origin::Moved(lattice, _) => {
                 let sites = points.iter().map(|(x, _)| lattice.quarter(x));
                 (*lattice, sites.collect())
             }
-            Origin::Moved(lattice, sites) => (*lattice, sites.to_vec()),
             Origin::Given => regular::<D>(spacing, self.section, points)
                 .ok_or("its points come with volumes, and their faces are not known")?,
         };

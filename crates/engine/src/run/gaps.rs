@@ -1,6 +1,7 @@
 //! Gaps between bodies, and gaps inside one that bonds reach across.
 
 use super::Gap;
+use super::near::points_near;
 use crate::body::{Body, zeros};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::{BondStatus, Interaction};
@@ -8,6 +9,7 @@ use crate::message;
 use crate::quantity::{Dimension, Message, place};
 use crate::space::cells::Cells;
 use crate::spec::{BodySpec, PieceSpec, Spec};
+use std::collections::BTreeMap;
 
 /// Points further apart than so many spacings are not next to each other: diagonal neighbours are up to √3 apart, the
 /// other side of a missing layer is 2.
@@ -21,44 +23,48 @@ const FEW: u64 = 4;
 /// Nearer than this part of a spacing, the cells of two points overlap.
 const OVERLAP: f64 = 0.9;
 
-/// The shortest distance (length) between every two bodies that come nearer to each other than `reach`.
+/// The shortest distance (length) between every two bodies that come nearer to each other than `reach`. All ranks ask at once.
 pub(super) fn between<const D: usize>(body: &Body<D>, reach: f64) -> Vec<([usize; 2], f64)> {
     let count = body.pieces().len();
     if count < 2 {
         return vec![];
     }
-    let of: Vec<usize> = (body.slots().iter())
-        .map(|s| body.piece_of(*s as usize))
-        .collect();
-    let x: [Vec<f64>; D] = crate::array::from_fn(|a| {
-        let all = body.slots().iter();
-        all.map(|s| body.position(*s as usize)[a]).collect()
-    });
     let half = body
         .period()
         .iter()
         .flatten()
         .fold(f64::INFINITY, |m, p| m.min(0.49 * p));
     let reach = reach.min(half);
-    let slots: Vec<u32> = (0..of.len() as u32).collect();
-    let cells = Cells::new(
-        crate::array::from_fn(|a| x[a].as_slice()),
-        &slots,
-        body.period(),
-        reach,
-    );
-    let mut nearest = std::collections::BTreeMap::new();
-    for (i, own) in of.iter().enumerate() {
-        cells.candidates(i, |j, square| {
-            let other = of[j as usize];
-            if *own < other && square <= reach * reach {
-                let least: &mut f64 = nearest.entry([*own, other]).or_insert(square);
-                *least = least.min(square);
-            }
-        });
+    let points = points_near(body, reach, |_| true).0;
+    let x: [Vec<f64>; D] = crate::array::from_fn(|a| points.iter().map(|(.., x)| x[a]).collect());
+    let slots: Vec<u32> = (0..points.len() as u32).collect();
+    let mut nearest = BTreeMap::new();
+    if !points.is_empty() {
+        let x = crate::array::from_fn(|a| x[a].as_slice());
+        let cells = Cells::new(x, &slots, body.period(), reach);
+        for (i, (_, own, _)) in points.iter().enumerate() {
+            cells.candidates(i, |j, square| {
+                let other = points[j as usize].1;
+                if *own < other && square <= reach * reach {
+                    keep_least(&mut nearest, [*own, other], square);
+                }
+            });
+        }
+    }
+    let found: Vec<[f64; 3]> = { nearest.into_iter() }
+        .map(|([a, b], square)| [a as f64, b as f64, square])
+        .collect();
+    let mut nearest = BTreeMap::new();
+    for [a, b, square] in body.all_of(&found).concat() {
+        keep_least(&mut nearest, [a as usize, b as usize], square);
     }
     let root = |(bodies, square): ([usize; 2], f64)| (bodies, square.sqrt());
     nearest.into_iter().map(root).collect()
+}
+
+fn keep_least(nearest: &mut BTreeMap<[usize; 2], f64>, bodies: [usize; 2], square: f64) {
+    let least = nearest.entry(bodies).or_insert(square);
+    *least = least.min(square);
 }
 
 /// What is wrong with them.
@@ -212,7 +218,7 @@ pub(super) fn across<const D: usize>(
     interaction: &dyn Interaction<D>,
 ) -> Vec<Message> {
     let length = |s: usize| {
-        let own = (body.volume().at(s) / spec.space.section).powf(1.0 / D as f64);
+        let own = libm::pow(body.volume().at(s) / spec.space.section, 1.0 / D as f64);
         body.spacing_at(s).max(own)
     };
     let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();

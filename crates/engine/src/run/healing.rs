@@ -116,7 +116,7 @@ impl<const D: usize> System<D> {
         let [after, _] = self.interaction.energy(body, view(u));
         self.accounts.released.lost -= after - before;
         // they conduct again
-        self.break_transfers();
+        self.break_diffusions();
         true
     }
 }

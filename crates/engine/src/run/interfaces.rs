@@ -1,9 +1,10 @@
 //! Interfaces of a spec: which points of two bodies they bond, and by which law.
 
 use super::calibration::cloud_moments;
-use super::reference::{cell, reference};
+use super::near::{Placed, points_near};
+use super::reference::{cell, outlined};
 use crate::body::Body;
-use crate::constitutive::{Bulk, ConstitutiveModel, Shelf};
+use crate::constitutive::{Bulk, ConstitutiveModel, Registry};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::Interface;
@@ -25,12 +26,12 @@ pub(super) fn interfaces<const D: usize>(
     spec: &Spec,
     pieces: &[PieceSpec],
     all: &Body<D>,
-    shelf: &Shelf,
+    registry: &Registry,
     simd: Simd,
 ) -> Result<Vec<Joined<D>>, BuildError> {
     let mut made: Vec<Joined<D>> = vec![];
     for (n, written) in spec.interactions.interfaces.iter().enumerate() {
-        let joined = join(spec, pieces, all, shelf, simd, written);
+        let joined = join(spec, pieces, all, registry, simd, written);
         let joined = joined.map_err(|e| named(n, written, e))?;
         let [a, b] = joined.bodies;
         if made
@@ -55,15 +56,15 @@ fn join<const D: usize>(
     spec: &Spec,
     pieces: &[PieceSpec],
     all: &Body<D>,
-    shelf: &Shelf,
+    registry: &Registry,
     simd: Simd,
     written: &InterfaceSpec,
 ) -> Result<Joined<D>, BuildError> {
     let bodies = joined_by(pieces, written)?;
     // its law on a full family of the first body
     let mut own = of_first(spec, &pieces[bodies[0]], written);
-    shelf.resolve(&mut own)?;
-    let full = reference::<D>(&own, None)?;
+    registry.resolve(&mut own)?;
+    let full = outlined::<D>(&own)?;
     let spacings = bodies.map(|b| {
         let piece = &all.pieces()[b].body;
         cell(
@@ -76,8 +77,9 @@ fn join<const D: usize>(
     });
     let spacing = 0.5 * (spacings[0] + spacings[1]);
     let mut moments = full.bulk;
-    if moments.is_none() && spec.bonds.calibration == Calibration::Discrete {
-        moments = cloud_moments(&own, &full.body, full.horizon, spacings[0])?;
+    if let (None, Some(body), Calibration::Discrete) = (moments, &full.body, spec.bonds.calibration)
+    {
+        moments = cloud_moments(&own, body, full.horizon, spacings[0])?;
     }
     let continuum = || Moments::continuum(D, full.horizon, spec.space.section, written.influence);
     let bulk = Bulk {
@@ -85,7 +87,8 @@ fn join<const D: usize>(
         // bonds between two bodies are on no lattice
         family: vec![],
     };
-    let model = ConstitutiveModel::new::<D>(&own, None, full.horizon, spacing, bulk, shelf, simd)?;
+    let model =
+        ConstitutiveModel::new::<D>(&own, None, full.horizon, spacing, bulk, registry, simd)?;
     let slots = near(all, bodies, model.reach());
     if slots.is_empty() {
         return Err(BuildError::empty(
@@ -152,7 +155,7 @@ fn of_first(spec: &Spec, first: &PieceSpec, written: &InterfaceSpec) -> Spec {
     };
     own.bonds.horizon = written.horizon;
     own.bonds.influence = written.influence;
-    own.bonds.own_horizon = None;
+    own.bonds.variable_horizon = None;
     own.interactions.pairs = vec![];
     own.interactions.contact = None;
     own.interactions.interfaces = vec![];
@@ -160,17 +163,19 @@ fn of_first(spec: &Spec, first: &PieceSpec, written: &InterfaceSpec) -> Spec {
     own
 }
 
-/// Points (ids in their order) that bonds of interfaces may have, of bodies that are still whole: ranks have copies of them.
+/// Points (ids in their order) that bonds of interfaces may have: ranks have copies of them. All ask at once.
 pub(super) fn ends<const D: usize>(spec: &Spec, all: &Body<D>) -> Result<Vec<u32>, BuildError> {
     let (pieces, mut ends) = (spec.body.pieces(), vec![]);
-    let ids = all.ids_by_slot();
     for (n, written) in spec.interactions.interfaces.iter().enumerate() {
         let named = |e| named(n, written, e);
         let bodies = joined_by(pieces, written).map_err(named)?;
         let own = of_first(spec, &pieces[bodies[0]], written);
         // none that is as near as its law says is left out by round-off
-        let reach = 1.001 * reference::<D>(&own, None).map_err(named)?.horizon;
-        ends.extend(near(all, bodies, reach).iter().map(|s| ids[*s as usize]));
+        let reach = 1.001 * outlined::<D>(&own).map_err(named)?.horizon;
+        let (points, own) = points_near(all, reach, |n| bodies.contains(&n));
+        let joined = is_near(&points, &all.period(), reach);
+        let own = (0..own).filter(|i| joined[*i]).map(|i| points[i].0);
+        ends.extend(all.all_of(&own.collect::<Vec<_>>()).concat());
     }
     ends.sort_unstable();
     ends.dedup();
@@ -179,30 +184,34 @@ pub(super) fn ends<const D: usize>(spec: &Spec, all: &Body<D>) -> Result<Vec<u32
 
 /// Slots of the points of two bodies that are within `reach` (length) of the other, in order of ids; of a part of them slots of copies, too.
 fn near<const D: usize>(all: &Body<D>, bodies: [usize; 2], reach: f64) -> Vec<u32> {
-    let of: Vec<(u32, usize)> = all
-        .slots_by_id()
-        .into_iter()
-        .map(|s| (s, all.piece_of(s as usize)))
-        .filter(|(_, piece)| bodies.contains(piece))
-        .collect();
-    let x: [Vec<f64>; D] =
-        crate::array::from_fn(|a| of.iter().map(|(s, _)| all.home(*s as usize)[a]).collect());
-    let slots: Vec<u32> = (0..of.len() as u32).collect();
-    let cells = Cells::new(
-        crate::array::from_fn(|a| x[a].as_slice()),
-        &slots,
-        all.period(),
-        reach,
-    );
-    let joined = |i: usize| {
-        let mut found = false;
-        cells.candidates(i, |j, square| {
-            found |= of[j as usize].1 != of[i].1 && square <= reach * reach;
-        });
-        found
-    };
-    (0..of.len())
-        .filter(|i| joined(*i))
-        .map(|i| of[i].0)
-        .collect()
+    let of = all.slots_by_id().into_iter().map(|s| {
+        let home = all.home(s as usize);
+        let place = crate::array::from_fn(|a| home[a]);
+        (s, all.piece_of(s as usize), place)
+    });
+    let of: Vec<Placed<D>> = of.filter(|of| bodies.contains(&of.1)).collect();
+    let joined = is_near(&of, &all.period(), reach);
+    let near = (0..of.len()).filter(|i| joined[*i]);
+    near.map(|i| of[i].0).collect()
+}
+
+/// Which of these points are within `reach` (length) of one of another body.
+fn is_near<const D: usize>(
+    points: &[Placed<D>],
+    period: &[Option<f64>; D],
+    reach: f64,
+) -> Vec<bool> {
+    let x: [Vec<f64>; D] = crate::array::from_fn(|a| points.iter().map(|(.., x)| x[a]).collect());
+    let slots: Vec<u32> = (0..points.len() as u32).collect();
+    let mut found = vec![false; points.len()];
+    if !points.is_empty() {
+        let x = crate::array::from_fn(|a| x[a].as_slice());
+        let cells = Cells::new(x, &slots, *period, reach);
+        for (i, found) in found.iter_mut().enumerate() {
+            cells.candidates(i, |j, square| {
+                *found |= points[j as usize].1 != points[i].1 && square <= reach * reach;
+            });
+        }
+    }
+    found
 }

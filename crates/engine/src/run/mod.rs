@@ -12,24 +12,26 @@ mod calibration;
 mod changes;
 mod clock;
 mod clouds;
+mod co_simulation;
 mod conditions;
 mod contact;
+mod diffusions;
 mod equilibrium;
 mod examined;
 mod faces;
 mod fault;
-mod feasible;
 mod gaps;
 mod healing;
 mod implicit;
-mod indenters;
 mod inertia;
+pub mod initial;
 mod interfaces;
-mod meant;
+mod lints;
 mod model;
 mod names;
+mod near;
 mod observation;
-mod own_horizons;
+mod overloaded;
 mod parts;
 mod precracks;
 mod preload;
@@ -38,30 +40,34 @@ mod probes;
 pub mod ranks;
 mod record;
 mod reference;
+mod rigid_bodies;
+mod sanity;
 mod sets;
 mod stages;
 mod state_hash;
-mod steered;
 mod stepper;
 mod surface;
 mod system;
 mod time_step;
-mod torn;
 mod toughness;
 mod traits;
-mod transfers;
+mod variable_horizons;
 mod virial;
 
-pub use crate::constitutive::{Shelf, Sweeps};
+pub use crate::constitutive::{Registry, Sweeps};
 pub use build::{Options, build, build_in, build_with};
+pub use diffusions::DiffusionInfo;
 pub use model::Model;
 pub use sets::{materials_of, materials_of_bodies};
-pub use transfers::TransferInfo;
 
+use crate::boundary_condition::constraint::Kind;
+use crate::boundary_condition::driven::Drive;
+use crate::boundary_condition::external::ExternalValues;
+use crate::boundary_condition::kinematic::Motion;
+use crate::boundary_condition::point_force::PointForce as Push;
+use crate::boundary_condition::reaction::Reaction;
 use crate::columns::Declaration;
-use crate::condition::carried::Motion;
-use crate::condition::driven::Drive;
-use crate::condition::reaction::Reaction;
+use crate::diffusion::DiffusionAccount;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{
     Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, StateHash, Values,
@@ -71,7 +77,7 @@ use crate::space::Point;
 use crate::spec::{AnyLinearBody, Influence, Quantity, Stepper};
 use crate::state::Owner;
 use crate::statics::Solved;
-use crate::transfer::TransferAccount;
+use std::sync::Arc;
 
 /// What a model is, for headers and reports.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -117,7 +123,7 @@ pub struct Info {
     /// The shortest distances between bodies that are nearer to each other than the horizon or the range of contact.
     pub gaps: Vec<Gap>,
     /// What spreads through the bonds.
-    pub transfers: Vec<TransferInfo>,
+    pub diffusions: Vec<DiffusionInfo>,
     /// What acts on sets: tractions, body forces, fluxes, exchanges; of statics before motion first.
     pub loads: Vec<LoadInfo>,
     /// Bonds cut by pre-cracks, directed.
@@ -202,8 +208,8 @@ pub struct ModeShape {
 pub enum Prescription {
     /// No step moves them; they keep their velocity.
     Still,
-    /// Where [`Steered::depart`] is told.
-    Carried,
+    /// Where [`CoSimulation::depart`] is told.
+    KinematicPoints,
 }
 
 /// How far a run is.
@@ -253,10 +259,10 @@ pub struct Wall {
 pub struct Summary {
     /// Directed bonds broken since the start, as often as they broke.
     pub broken: u64,
-    /// Centres of the indenters of the specification, as they are now (length).
-    pub indenters: Vec<Point>,
+    /// Centres of the rigid_bodies of the specification, as they are now (length).
+    pub rigid_bodies: Vec<Point>,
     /// What came in of every quantity that spreads since the start, and what is there.
-    pub transfers: Vec<(Quantity, TransferAccount)>,
+    pub diffusions: Vec<(Quantity, DiffusionAccount)>,
     /// Cycles of load since the start; `None`: increments are no cycles.
     pub cycles: Option<f64>,
     /// What the solver did in the last increment; `None`: steps are steps in time.
@@ -267,7 +273,7 @@ pub struct Summary {
 ///
 /// It [owns](Owner) its state: a model of the same specification that reads what this one wrote goes on as this one, bit for bit, and is not
 /// [started](Simulation::start).
-pub trait Simulation: Steered + Examined + Owner + Send {
+pub trait Simulation: CoSimulation + Examined + Owner + Send {
     fn info(&self) -> &Info;
     /// Forces at the current state. Call once before the first step, and after changing the state from outside.
     /// `bonds = false` leaves the bonds out, as LAMMPS does in the first set-up of a run.
@@ -316,23 +322,40 @@ pub trait Simulation: Steered + Examined + Owner + Send {
     fn members(&self, set: &str) -> Option<Vec<u32>>;
 }
 
+/// What a program gives a model, for points that it knows in the order of their list.
+#[derive(Debug, Clone)]
+pub enum Given {
+    /// Displacements or velocities on these axes.
+    Motion(Kind, [bool; 3], Arc<dyn ExternalValues>),
+    /// A force among those of conditions.
+    Force(Arc<dyn Push>),
+}
+
 /// What somebody asks who leads a model step by step: halves of steps, values from outside, blocks of numbers, and what a force
 /// evaluation saw.
-pub trait Steered {
-    /// The first half of a step of a model in time: displacements of its end. Until [`Steered::arrive`] the
+pub trait CoSimulation {
+    /// Where the next step is the first of a motion that follows statics the motion begins, and values of driven conditions may be set for its first forces.
+    /// Did it?
+    ///
+    /// # Errors
+    /// As for [`Simulation::step`].
+    fn begin_motion(&mut self) -> Result<bool, RunError>;
+    /// The first half of a step of a model in time: displacements of its end. Until [`CoSimulation::arrive`] the
     /// velocities are those of the step's middle, forces those of its start; values of driven conditions may be set.
-    /// Answers a bound on the path of any point (length). `carried`: where the carried points are at the end of the step, in their order.
+    /// Answers a bound on the path of any point (length). `kinematic`: where the carried points are at the end of the step, in their order.
     ///
     /// # Errors
     /// As for [`Simulation::step`], whose state is left behind then; implicit steps have no halves.
-    fn depart(&mut self, carried: &[Motion]) -> Result<f64, RunError>;
+    fn depart(&mut self, kinematic: &[Motion]) -> Result<f64, RunError>;
     /// The second half of a step: the forces at its end.
     ///
     /// # Errors
     /// As for [`Simulation::step`].
     fn arrive(&mut self) -> Result<(), RunError>;
+    /// Instead of [`CoSimulation::arrive`]: the state is that before [`CoSimulation::depart`], to rounding.
+    fn turn_back(&mut self);
     /// Mirrors points (`None`: all) that are behind the wall, with their velocity across it; between
-    /// [`Steered::depart`] and [`Steered::arrive`].
+    /// [`CoSimulation::depart`] and [`CoSimulation::arrive`].
     fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>);
     /// Points that no force moves. Replaces those of the last call for the same way.
     fn prescribe(&mut self, way: Prescription, ids: &[u32]);
@@ -341,13 +364,19 @@ pub trait Steered {
     fn remove(&mut self, ids: &[u32]);
     /// The number of steps and the time, and the length of a step, are these; `None`: stay as they are.
     fn set_clock(&mut self, now: Option<(u64, f64)>, time_step: Option<f64>);
-    /// Replace loads, constraints and indenters; driven conditions go.
+    /// Replace loads, constraints and rigid_bodies; driven conditions go.
     fn set_conditions(
         &mut self,
         conditions: &[crate::spec::ConditionSpec],
         sets: &[(String, Vec<u32>)],
-        indenters: &[crate::spec::IndenterSpec],
+        rigid_bodies: &[crate::spec::RigidBodySpec],
     ) -> Result<(), BuildError>;
+    /// One more condition, on these points. It stays, with its account of work; before a motion that follows statics it is one of the motion.
+    /// [Start](Simulation::start) afterwards.
+    ///
+    /// # Errors
+    /// Steps cannot take it, or a component is held already; nothing is changed.
+    fn give(&mut self, ids: &[u32], what: Given) -> Result<(), BuildError>;
     /// Keep something of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its forces see it: with the bonds that
     /// break in it. LAMMPS prints these.
     fn watch(&mut self, what: Watched);
@@ -355,7 +384,7 @@ pub trait Steered {
     /// bonds that are whole.
     fn watched(&mut self, what: Watched) -> Option<Seen>;
     /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
-    /// order in which they act, after all other forces. Replaces those of the last call.
+    /// order in which they act, after all other forces. Replaces those of the last call. Before a motion that follows statics they are of the motion.
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]);
     /// Hands driven condition `index` a value for the next force evaluation ([`Simulation::start`] or [`Simulation::step`]); false: there is no such
     /// condition, or it is of another kind.
@@ -411,7 +440,7 @@ impl dyn Simulation + '_ {
         self.now().clock
     }
 
-    /// As [`Steered::set_clock`].
+    /// As [`CoSimulation::set_clock`].
     pub fn set_time(&mut self, step: u64, time: f64) {
         self.set_clock(Some((step, time)), None);
     }
@@ -450,14 +479,14 @@ impl dyn Simulation + '_ {
         self.summary().broken
     }
 
-    /// [`Summary::indenters`].
-    pub fn indenters(&self) -> Vec<Point> {
-        self.summary().indenters
+    /// [`Summary::rigid_bodies`].
+    pub fn rigid_bodies(&self) -> Vec<Point> {
+        self.summary().rigid_bodies
     }
 
-    /// [`Summary::transfers`].
-    pub fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {
-        self.summary().transfers
+    /// [`Summary::diffusions`].
+    pub fn diffusions(&self) -> Vec<(Quantity, DiffusionAccount)> {
+        self.summary().diffusions
     }
 
     /// [`Summary::cycles`].

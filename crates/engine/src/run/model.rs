@@ -141,7 +141,7 @@ impl<const D: usize> Simulation for Model<D> {
         self.finish();
         let vector = match name {
             "displacement" => {
-                self.system.look_again();
+                self.system.invalidate_neighbours();
                 self.system.watch.forget_virials();
                 &mut self.system.u
             }
@@ -161,8 +161,8 @@ impl<const D: usize> Simulation for Model<D> {
         let rigid = self.system.applied.rigid.iter();
         Summary {
             broken: self.system.body.count(accounts.swept.broken),
-            indenters: rigid.map(|i| i.rigid.center).collect(),
-            transfers: self.system.transfer_accounts(),
+            rigid_bodies: rigid.map(|i| i.rigid.center).collect(),
+            diffusions: self.system.diffusion_accounts(),
             cycles: self.system.regime.cycles.then_some(accounts.cycles),
             solved: self.stages.solved(),
         }

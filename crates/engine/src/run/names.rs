@@ -1,20 +1,20 @@
 //! What a deck calls by name: sets of points, and what may be named beside what is built in.
 
 use super::faces::Faces;
-use crate::constitutive::Shelf;
-use crate::spec::Carriers;
+use crate::constitutive::Registry;
+use crate::spec::LoadMap;
 
 /// Names of a model.
 pub(super) struct Names<const D: usize> {
     /// Named sets of point ids.
     pub sets: Vec<(String, Vec<u32>)>,
     /// Of a condensed body: where its loads act, and the named sets there.
-    pub carriers: Option<Carriers<D>>,
-    pub carrier_sets: Vec<(String, Vec<u32>)>,
+    pub load_map: Option<LoadMap<D>>,
+    pub loaded_sets: Vec<(String, Vec<u32>)>,
     /// On what area loads act.
     pub faces: Faces,
     /// Observables and forces by their names.
-    pub shelf: Shelf,
+    pub registry: Registry,
 }
 
 impl<const D: usize> Names<D> {

@@ -4,7 +4,7 @@ use super::model::Model;
 use super::system::System;
 use crate::body::view;
 use crate::columns::{Declaration, Life, On};
-use crate::constitutive::Shelf;
+use crate::constitutive::Registry;
 use crate::error::BuildError;
 use crate::expression::nearest;
 use crate::fracture::fragments::Fragments;
@@ -17,7 +17,7 @@ use crate::space::{Point, full};
 /// The state of a model, and what was computed of it already.
 pub(super) struct View<'a, const D: usize> {
     system: &'a mut System<D>,
-    shelf: &'a Shelf,
+    registry: &'a Registry,
     /// Boltzmann's constant (energy / temperature).
     boltzmann: f64,
     /// Id of every slot of a point.
@@ -26,10 +26,10 @@ pub(super) struct View<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> View<'a, D> {
-    pub fn of(system: &'a mut System<D>, shelf: &'a Shelf, boltzmann: f64) -> Self {
+    pub fn of(system: &'a mut System<D>, registry: &'a Registry, boltzmann: f64) -> Self {
         View {
             system,
-            shelf,
+            registry,
             boltzmann,
             id: vec![],
             seen: None,
@@ -178,7 +178,7 @@ impl<const D: usize> State for View<'_, D> {
 impl<const D: usize> Model<D> {
     /// A look at the model as it stands.
     pub(super) fn look(&mut self) -> View<'_, D> {
-        View::of(&mut self.system, &self.names.shelf, self.boltzmann)
+        View::of(&mut self.system, &self.names.registry, self.boltzmann)
     }
 
     /// A look with velocities and images up to date.
@@ -229,7 +229,7 @@ impl<const D: usize> Model<D> {
         if let Some(before) = broken.filter(|_| written) {
             let broken = self.system.accounts.swept.broken + self.system.count_broken();
             self.system.accounts.swept.broken = broken.saturating_sub(before);
-            self.system.break_transfers();
+            self.system.break_diffusions();
         }
         self.stale |= written;
         written
@@ -360,13 +360,13 @@ impl<const D: usize> View<'_, D> {
     ) -> Result<Declaration, BuildError> {
         if let Some(found) = self
             .system
-            .transfer_columns()
+            .diffusion_columns()
             .into_iter()
             .find(|c| c.name == name)
         {
             return Ok(found);
         }
-        if let Some(observable) = self.shelf.observable(name) {
+        if let Some(observable) = self.registry.observable(name) {
             return match self.lacking(observable) {
                 None => Ok(observable.declaration.clone()),
                 Some(why) => Err(BuildError::unsupported(
@@ -396,8 +396,8 @@ impl<const D: usize> View<'_, D> {
 
     /// Everything that has a name and values.
     pub(super) fn declared(&mut self) -> Vec<Declaration> {
-        let mut all = self.system.transfer_columns();
-        for observable in self.shelf.observables().to_vec() {
+        let mut all = self.system.diffusion_columns();
+        for observable in self.registry.observables().to_vec() {
             if self.lacking(observable).is_none()
                 && !all.iter().any(|c| c.name == observable.declaration.name)
             {
@@ -414,13 +414,13 @@ impl<const D: usize> View<'_, D> {
 
     fn column(&mut self, name: &str) -> Option<Column> {
         if let Some(values) = self.system.transferred(name) {
-            let mut declared = self.system.transfer_columns().into_iter();
+            let mut declared = self.system.diffusion_columns().into_iter();
             return Some(Column {
                 declaration: declared.find(|c| c.name == name)?,
                 values: Values::Scalars(values),
             });
         }
-        match self.shelf.observable(name) {
+        match self.registry.observable(name) {
             Some(observable) if !self.may(observable) => None,
             Some(observable) => Some(Column {
                 declaration: observable.declaration.clone(),

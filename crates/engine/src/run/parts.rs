@@ -2,10 +2,12 @@
 
 use super::agreed::agreed;
 use super::calibration::cloud_moments;
-use super::own_horizons::{own_stiffness, strengths};
-use super::reference::{Reference, cell, reference};
+use super::interfaces;
+use super::reference::{Reference, cell, countable, counted, current_neighbours, reference};
+use super::variable_horizons::{own_stiffness, strengths};
+use crate::body::cut::Counted;
 use crate::body::{Body, Layout};
-use crate::constitutive::{Bulk, ConstitutiveModel, Shelf};
+use crate::constitutive::{Bulk, ConstitutiveModel, Registry};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
@@ -38,57 +40,107 @@ pub(super) struct Part<'a> {
     pub horizon: f64,
 }
 
-/// The bodies of a spec, and where their points are; of one that ranks can make part by part this rank's points.
+/// The bodies of a spec, and where their points are; of bodies that ranks can make part by part this rank's points.
 pub(super) fn parts<'a, const D: usize>(
     spec: &'a Spec,
     ranks: Option<&Arc<Comm>>,
 ) -> Result<(Vec<Part<'a>>, Body<D>), BuildError> {
-    let part = |spec: Cow<'a, Spec>,
-                bonded: bool,
-                ranks: Option<&Arc<Comm>>|
-     -> Result<(Part<'a>, Body<D>), BuildError> {
-        let Reference {
-            body,
-            stencil,
-            bulk,
-            family,
-            horizon,
-        } = reference::<D>(&spec, ranks)?;
-        let part = Part {
-            materials: (0..spec.materials.len()).collect(),
-            spec,
-            bonded,
-            stencil,
-            bulk,
-            family,
-            horizon,
-        };
-        Ok((part, body))
+    let pieces = spec.body.pieces();
+    let own = alone(spec)?;
+    let named = |n: usize, e: BuildError| match pieces.get(n) {
+        None => e,
+        Some(piece) => BuildError {
+            path: e.path.replacen("body", &format!("body[{n}]"), 1),
+            message: message![format!("body `{}`: ", piece.name), e.message],
+            ..e
+        },
     };
-    let pieces = match &spec.body {
-        BodySpec::Several(pieces) => pieces,
-        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => {
-            let (part, body) = part(Cow::Borrowed(spec), true, ranks)?;
-            return Ok((vec![part], body));
+    let shared = ranks.filter(|_| own.iter().all(|(own, _)| countable(own)));
+    let (mut all, mut bodies) = (vec![], vec![]);
+    match shared {
+        None => {
+            for (n, (own, bonded)) in own.into_iter().enumerate() {
+                let made = reference::<D>(&own).map_err(|e| named(n, e))?;
+                let (part, body) = part(own, bonded, made);
+                all.push(part);
+                bodies.push(body);
+            }
         }
+        Some(ranks) => {
+            let mut whole = vec![];
+            for (n, (own, bonded)) in own.into_iter().enumerate() {
+                let made = counted::<D>(&own, ranks).map_err(|e| named(n, e))?;
+                let (part, body) = part(own, bonded, made);
+                all.push(part);
+                whole.push(body);
+            }
+            let spacing = whole.iter().map(Counted::spacing);
+            let spacing = spacing.fold(f64::INFINITY, f64::min);
+            let halo = halo(spec, spacing, horizons(&all)[0], || 0.0);
+            bodies = Counted::parts(&whole, ranks, halo);
+        }
+    }
+    if pieces.is_empty() {
+        return Ok((all, bodies.remove(0)));
+    }
+    let body = Body::several(bodies);
+    if body.subdomain().is_none() {
+        return Ok((all, body));
+    }
+    let ends = interfaces::ends(spec, &body)?;
+    Ok((all, body.beside(&ends)))
+}
+
+/// What a spec says of each of its bodies alone, and whether it has bonds.
+fn alone(spec: &Spec) -> Result<Vec<(Cow<'_, Spec>, bool)>, BuildError> {
+    let BodySpec::Several(pieces) = &spec.body else {
+        return Ok(vec![(Cow::Borrowed(spec), true)]);
     };
     several_can(pieces)?;
     let without = Spec {
         body: BodySpec::Several(vec![]),
         ..spec.clone()
     };
-    let (mut all, mut bodies) = (vec![], vec![]);
-    for (n, piece) in pieces.iter().enumerate() {
-        let own = without.alone(piece);
-        let (part, body) = part(Cow::Owned(own), piece.bonded, None).map_err(|e| BuildError {
-            path: e.path.replacen("body", &format!("body[{n}]"), 1),
-            message: message![format!("body `{}`: ", piece.name), e.message],
-            ..e
-        })?;
-        all.push(part);
-        bodies.push(body);
+    let each = pieces.iter();
+    Ok(each
+        .map(|piece| (Cow::Owned(without.alone(piece)), piece.bonded))
+        .collect())
+}
+
+/// What a reference says, but for its points.
+fn part<B>(spec: Cow<'_, Spec>, bonded: bool, reference: Reference<B>) -> (Part<'_>, B) {
+    let part = Part {
+        materials: (0..spec.materials.len()).collect(),
+        spec,
+        bonded,
+        stencil: reference.stencil,
+        bulk: reference.bulk,
+        family: reference.family,
+        horizon: reference.horizon,
+    };
+    (part, reference.body)
+}
+
+/// The longest and the shortest horizon of bodies that have bonds (length).
+pub(super) fn horizons(parts: &[Part]) -> [f64; 2] {
+    let bonded = || parts.iter().filter(|p| p.bonded).map(|p| p.horizon);
+    let longest = bonded().reduce(f64::max).unwrap_or(parts[0].horizon);
+    [longest, bonded().fold(longest, f64::min)]
+}
+
+/// How far the points are of which a part of a body has copies (length), of the least spacing and the longest horizon, and of how far terms of atoms reach.
+/// Atoms find who is near by themselves, but for those that they are bonded to.
+pub(super) fn halo(spec: &Spec, spacing: f64, horizon: f64, term: impl FnOnce() -> f64) -> f64 {
+    if let Some(smooth) = &spec.bonds.smooth {
+        // nodes feel each other through two atoms of a family, each within reach of one of them
+        return horizon + 2.0 * smooth.reach + spacing;
     }
-    Ok((all, Body::several(bodies)))
+    let given = spec.micromoduli().map_or(0.0, |l| 1.001 * l.longest());
+    match current_neighbours(spec) {
+        true => term().max(spacing),
+        // volumes of partners fade over a spacing at the horizon
+        false => given.max(horizon + spacing),
+    }
 }
 
 /// Are there bodies, and has each a name of its own?
@@ -128,7 +180,11 @@ impl Part<'_> {
         let of: Vec<usize> = slots
             .map(|s| all.material_of(piece.first + *s as usize))
             .collect();
+        // of all ranks
         let mut used = of.clone();
+        used.sort_unstable();
+        used.dedup();
+        let mut used = all.all_of(&used).concat();
         used.sort_unstable();
         used.dedup();
         let density = body.slots().iter();
@@ -162,7 +218,7 @@ impl Part<'_> {
     pub fn constitutive<const D: usize>(
         &mut self,
         body: &Body<D>,
-        shelf: &Shelf,
+        registry: &Registry,
         simd: Simd,
         warnings: &mut Warnings,
     ) -> Result<ConstitutiveModel, BuildError> {
@@ -170,7 +226,7 @@ impl Part<'_> {
         let cell = cell(spec, body);
         let from_modulus = |m: &MaterialSpec| {
             use PmbStiffness::{Bulk, Young};
-            let turns = |law: &LawSpec| matches!(law, LawSpec::Named(l) if shelf.turns(&l.name));
+            let turns = |law: &LawSpec| matches!(law, LawSpec::Named(l) if registry.tangential_stiffness(&l.name));
             matches!(m.law.linear(), LawSpec::Pmb(Bulk(_) | Young(_))) || turns(&m.law)
         };
         let mut bulk = self.bulk;
@@ -194,11 +250,11 @@ impl Part<'_> {
         };
         let (stencil, horizon) = (self.stencil.take(), self.horizon);
         let mut model =
-            ConstitutiveModel::new::<D>(spec, stencil, horizon, cell, bulk, shelf, simd)?;
+            ConstitutiveModel::new::<D>(spec, stencil, horizon, cell, bulk, registry, simd)?;
         if let Some(repulsion) = &mut model.repulsion {
             repulsion.own = own_stiffness(spec, body, &model.contact, model.horizon);
         }
-        model.strength = agreed(body, strengths(spec, body, model.horizon, shelf))?;
+        model.strength = agreed(body, strengths(spec, body, model.horizon, registry))?;
         Ok(model)
     }
 

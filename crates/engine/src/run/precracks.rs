@@ -17,7 +17,7 @@ pub(super) fn cut<const D: usize>(
     warnings: &mut Warnings,
 ) -> Result<u64, BuildError> {
     let mut cut = 0;
-    for kind in [CrackKind::Absent, CrackKind::Broken] {
+    for kind in [CrackKind::Excluded, CrackKind::Broken] {
         if kind == CrackKind::Broken {
             interaction.prepare(body);
         }

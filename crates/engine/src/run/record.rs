@@ -49,7 +49,7 @@ pub(super) fn bonds_of_atoms<const D: usize>(
     system: &mut System<D>,
     visit: &mut dyn FnMut(AtomBond),
 ) -> Option<Vec<f64>> {
-    if !system.interaction.is_potential() || system.interaction.has_fans() {
+    if !system.interaction.is_potential() || system.interaction.has_many_body() {
         return None;
     }
     system.refresh_images();

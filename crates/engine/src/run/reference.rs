@@ -1,6 +1,7 @@
 //! Where the points of a spec are, and what their family is.
 
-use crate::body::{Body, Layout};
+use crate::body::Body;
+use crate::body::cut::Counted;
 use crate::error::BuildError;
 use crate::family::stencil::{MOST, Stencil, too_many};
 use crate::law::influence::mean_influence;
@@ -16,9 +17,9 @@ use crate::spec::{BodySpec, Cloud, FamilyChoice, Horizon, Perturbation, Spec};
 use peridyne_comm::Comm;
 use std::sync::Arc;
 
-/// Where the points are, and what their family is.
-pub(super) struct Reference<const D: usize> {
-    pub body: Body<D>,
+/// Where the points are, and what their family is; `B` is a [`Body`], or a [`Counted`] one that ranks will share.
+pub(super) struct Reference<B> {
+    pub body: B,
     /// The family, if it is a stencil.
     pub stencil: Option<Stencil>,
     /// Sums over a full family of the lattice that the points come from, whatever the family is.
@@ -31,6 +32,11 @@ pub(super) struct Reference<const D: usize> {
 
 /// Distance over which the horizon cuts cells.
 pub(super) fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
+    cell_of(spec, body.spacing())
+}
+
+/// The same of points of this typical distance (length).
+fn cell_of(spec: &Spec, distance: f64) -> f64 {
     match &spec.body {
         BodySpec::Lattice {
             kind: LatticeKind::Cubic | LatticeKind::Square | LatticeKind::Chain,
@@ -44,7 +50,7 @@ pub(super) fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
         }
         | BodySpec::Sites { .. }
         | BodySpec::Cloud(_)
-        | BodySpec::Several(_) => body.spacing(),
+        | BodySpec::Several(_) => distance,
     }
 }
 
@@ -58,17 +64,13 @@ pub(super) fn current_neighbours(spec: &Spec) -> bool {
 }
 
 /// Sums over a full family of the lattice, averaged over the sublattices; and this family.
-fn bulk_family<const D: usize>(
+fn bulk_family(
     spec: &Spec,
-    body: &Body<D>,
+    (lattice, volume): (&Lattice, f64),
     stencil: &Stencil,
     horizon: f64,
-    cell: f64,
 ) -> (Moments, Vec<Partner<3>>) {
-    let Layout::Grid(grid) = body.layout() else {
-        unreachable!("stencils live on grids")
-    };
-    let volume = body.volume().uniform().unwrap_or(0.0);
+    let cell = cell_of(spec, lattice.distance());
     let mut sum = Moments {
         first: 0.0,
         second: 0.0,
@@ -76,16 +78,15 @@ fn bulk_family<const D: usize>(
     };
     let mut family = vec![];
     for o in stencil.offsets().iter().flatten() {
-        let r0 = grid.lattice().spacing * (o.squared as f64).sqrt() / 4.0;
-        let nu = if spec.bonds.volume_scaling {
+        let r0 = lattice.spacing * (o.squared as f64).sqrt() / 4.0;
+        let nu = if spec.bonds.partial_volume_correction {
             crate::family::volume_fraction(r0, horizon, cell)
         } else {
             1.0
         };
-        let edges = grid.lattice().kind.edges();
-        let xi: [f64; 3] = crate::array::from_fn(|a| {
-            0.25 * grid.lattice().spacing * edges[a] * f64::from(o.quarter[a])
-        });
+        let edges = lattice.kind.edges();
+        let xi: [f64; 3] =
+            crate::array::from_fn(|a| 0.25 * lattice.spacing * edges[a] * f64::from(o.quarter[a]));
         let omega = mean_influence(spec.bonds.influence, &xi, r0, horizon);
         let w = nu * omega * volume / stencil.offsets().len() as f64;
         sum.bare += nu * volume / stencil.offsets().len() as f64 * r0;
@@ -100,11 +101,23 @@ fn bulk_family<const D: usize>(
     (sum, family)
 }
 
-/// The reference of a spec of one body; of a lattice that these ranks can share without listing its sites, this rank's part.
-pub(super) fn reference<const D: usize>(
-    spec: &Spec,
-    ranks: Option<&Arc<Comm>>,
-) -> Result<Reference<D>, BuildError> {
+/// The lattice that a spec says.
+fn lattice_of(kind: LatticeKind, spacing: f64, origin: Point) -> Result<Lattice, BuildError> {
+    if !(spacing > 0.0 && spacing.is_finite()) {
+        return Err(BuildError::invalid(
+            "body.spacing",
+            format!("the spacing is {spacing}, expected a positive length"),
+        ));
+    }
+    Ok(Lattice {
+        kind,
+        spacing,
+        origin,
+    })
+}
+
+/// The reference of a spec of one body.
+pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<Body<D>>, BuildError> {
     match &spec.body {
         BodySpec::Lattice {
             kind,
@@ -113,32 +126,12 @@ pub(super) fn reference<const D: usize>(
             region,
             perturb,
         } => {
-            if !(*spacing > 0.0 && spacing.is_finite()) {
-                return Err(BuildError::invalid(
-                    "body.spacing",
-                    format!("the spacing is {spacing}, expected a positive length"),
-                ));
-            }
-            let lattice = Lattice {
-                kind: *kind,
-                spacing: *spacing,
-                origin: *origin,
-            };
-            if let Some(ranks) = ranks
-                && perturb.is_none()
-                && spec.bonds.smooth.is_none()
-                && !listed(spec)
-            {
-                let search = Search::new(&lattice, region)?;
-                agreed_among(ranks, search.affordable(ranks.ranks()))?;
-                return on_lattice(spec, lattice, None, |reach, periodic, volume| {
-                    Body::shared_lattice(ranks, &search, reach, periodic, volume)
-                });
-            }
+            let lattice = lattice_of(*kind, *spacing, *origin)?;
             let sites = fill(&lattice, region)?;
-            let r = on_lattice(spec, lattice, None, |reach, periodic, volume| {
+            let make = |reach, periodic, volume| {
                 Body::on_lattice(lattice, &sites.quarters, reach, periodic, volume)
-            })?;
+            };
+            let r = on_lattice(spec, lattice, None, make, Body::period)?;
             match perturb {
                 Some(p) => Ok(Reference {
                     body: perturbed(&r.body, p)?,
@@ -161,9 +154,10 @@ pub(super) fn reference<const D: usize>(
                 spacing: *spacing,
                 origin: *origin,
             };
-            let r = on_lattice(spec, lattice, *volume, |reach, periodic, volume| {
+            let make = |reach, periodic, volume| {
                 Body::on_lattice(lattice, quarters, reach, periodic, volume)
-            })?;
+            };
+            let r = on_lattice(spec, lattice, *volume, make, Body::period)?;
             listed_if_asked(spec, r)
         }
         BodySpec::Cloud(cloud) => of_cloud(spec, cloud),
@@ -174,13 +168,95 @@ pub(super) fn reference<const D: usize>(
     }
 }
 
+/// The reference of a spec of one body, without its points where these are sites in a region.
+pub(super) fn outlined<const D: usize>(
+    spec: &Spec,
+) -> Result<Reference<Option<Body<D>>>, BuildError> {
+    let BodySpec::Lattice {
+        kind,
+        spacing,
+        origin,
+        ..
+    } = &spec.body
+    else {
+        let r = reference(spec)?;
+        return Ok(Reference {
+            body: Some(r.body),
+            stencil: r.stencil,
+            bulk: r.bulk,
+            family: r.family,
+            horizon: r.horizon,
+        });
+    };
+    let lattice = lattice_of(*kind, *spacing, *origin)?;
+    // whoever has made its points has seen whether the periods fit
+    on_lattice(spec, lattice, None, |_, _, _| Ok(None), |_| [None; D])
+}
+
+/// Can ranks share this one body without that one of them lists its points?
+pub(super) fn countable(spec: &Spec) -> bool {
+    let alone = spec.bonds.smooth.is_none()
+        // how far terms between atoms reach follows from all of them
+        && !(current_neighbours(spec) && spec.interactions.bonded.is_some());
+    alone && matches!(spec.body, BodySpec::Lattice { .. })
+}
+
+/// The reference of a spec of one body that is [`countable`]: how many points it has where. All ranks ask at once.
+pub(super) fn counted<const D: usize>(
+    spec: &Spec,
+    ranks: &Arc<Comm>,
+) -> Result<Reference<Counted<D>>, BuildError> {
+    let BodySpec::Lattice {
+        kind,
+        spacing,
+        origin,
+        region,
+        perturb,
+    } = &spec.body
+    else {
+        unreachable!("a body on a lattice");
+    };
+    let lattice = lattice_of(*kind, *spacing, *origin)?;
+    let search = Search::new(&lattice, region)?;
+    agreed_among(ranks, search.affordable(ranks.ranks()))?;
+    let listed = listed(spec);
+    let make = |reach, periodic, volume| {
+        let reach = (reach, periodic);
+        match *perturb {
+            Some(p) => {
+                possible(&p, lattice.distance())?;
+                let moved = move |id, site: Point| {
+                    let by = displacement::<D>(&p, id);
+                    crate::array::from_fn(|a| site[a] + by[a])
+                };
+                Counted::cloud(ranks, search, reach, volume, Box::new(moved))
+            }
+            None if listed => {
+                Counted::cloud(ranks, search, reach, volume, Box::new(|_, site| site))
+            }
+            None => Counted::lattice(ranks, search, reach, volume),
+        }
+    };
+    let r = on_lattice(spec, lattice, None, make, Counted::period)?;
+    Ok(match (perturb, listed) {
+        (Some(_), _) => Reference {
+            stencil: None,
+            family: vec![],
+            ..r
+        },
+        (None, true) => Reference { stencil: None, ..r },
+        (None, false) => r,
+    })
+}
+
 /// Points on sites of a lattice, each of `volume` or of that of its cell, and their stencil; `body` of cells that a bond spans, periodic axes and that volume.
-fn on_lattice<const D: usize>(
+fn on_lattice<const D: usize, B>(
     spec: &Spec,
     lattice: Lattice,
     volume: Option<f64>,
-    body: impl FnOnce(usize, [bool; D], f64) -> Result<Body<D>, BuildError>,
-) -> Result<Reference<D>, BuildError> {
+    body: impl FnOnce(usize, [bool; D], f64) -> Result<B, BuildError>,
+    period: impl FnOnce(&B) -> [Option<f64>; D],
+) -> Result<Reference<B>, BuildError> {
     let Lattice { kind, spacing, .. } = lattice;
     if kind.dimension() != D {
         return Err(BuildError::conflict(
@@ -196,8 +272,8 @@ fn on_lattice<const D: usize>(
     let periodic: [bool; D] = crate::array::from_fn(|a| spec.space.periodic[a].is_some());
     let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.space.section);
     let body = body(stencil.reach(), periodic, volume)?;
-    periods_fit(spec, &body)?;
-    let (bulk, family) = bulk_family::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
+    periods_fit(spec, period(&body))?;
+    let (bulk, family) = bulk_family(spec, (&lattice, volume), &stencil, horizon);
     Ok(Reference {
         body,
         stencil: Some(stencil),
@@ -241,9 +317,9 @@ fn stencil_of(spec: &Spec, kind: LatticeKind, spacing: f64) -> Result<(Stencil, 
 }
 
 /// Are the periods that somebody gave those of the lattice?
-fn periods_fit<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildError> {
+fn periods_fit<const D: usize>(spec: &Spec, period: [Option<f64>; D]) -> Result<(), BuildError> {
     for a in 0..D {
-        if let (Some(given), Some(p)) = (spec.space.periodic[a], body.period()[a])
+        if let (Some(given), Some(p)) = (spec.space.periodic[a], period[a])
             && given > 0.0
             && (given - p).abs() > 1e-9 * p
         {
@@ -273,8 +349,8 @@ pub(super) fn listed(spec: &Spec) -> bool {
 /// As a cloud, where the spec wants lists of neighbours.
 fn listed_if_asked<const D: usize>(
     spec: &Spec,
-    r: Reference<D>,
-) -> Result<Reference<D>, BuildError> {
+    r: Reference<Body<D>>,
+) -> Result<Reference<Body<D>>, BuildError> {
     if listed(spec) {
         Ok(Reference {
             body: r.body.to_cloud()?,
@@ -286,7 +362,7 @@ fn listed_if_asked<const D: usize>(
     }
 }
 
-fn of_cloud<const D: usize>(spec: &Spec, cloud: &Cloud) -> Result<Reference<D>, BuildError> {
+fn of_cloud<const D: usize>(spec: &Spec, cloud: &Cloud) -> Result<Reference<Body<D>>, BuildError> {
     if spec.bonds.family == FamilyChoice::Stencil {
         return Err(BuildError::unsupported(
             "family",
@@ -295,7 +371,7 @@ fn of_cloud<const D: usize>(spec: &Spec, cloud: &Cloud) -> Result<Reference<D>, 
     }
     let mean =
         cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.space.section;
-    let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
+    let spacing = cloud.spacing.unwrap_or(libm::pow(mean, 1.0 / D as f64));
     let period = crate::array::from_fn(|a| spec.space.periodic[a]);
     let body = Body::<D>::from_cloud(&cloud.position, &cloud.volume, &cloud.mark, spacing, period)?;
     Ok(Reference {
@@ -307,30 +383,14 @@ fn of_cloud<const D: usize>(spec: &Spec, cloud: &Cloud) -> Result<Reference<D>, 
     })
 }
 
-/// Every site moved by a uniform random vector in ±amplitude per axis.
+/// Every site moved by its [`displacement`].
 fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>, BuildError> {
-    if !(p.amplitude >= 0.0 && p.amplitude < 0.5 * body.spacing()) {
-        return Err(BuildError::invalid(
-            "body.perturb",
-            format!(
-                "the amplitude {} must be below half the spacing {}",
-                p.amplitude,
-                body.spacing()
-            ),
-        ));
-    }
-    let mut random = SplitMix(p.seed);
-    let position: Vec<Point> = body
-        .slots()
-        .iter()
-        .map(|s| {
-            let mut x = body.position(*s as usize);
-            for c in x.iter_mut().take(D) {
-                *c += p.amplitude * (2.0 * random.unit() - 1.0);
-            }
-            x
-        })
-        .collect();
+    possible(p, body.spacing())?;
+    let site = |(id, slot): (usize, &u32)| -> Point {
+        let (x, by) = (body.position(*slot as usize), displacement::<D>(p, id));
+        crate::array::from_fn(|a| x[a] + by[a])
+    };
+    let position: Vec<Point> = body.slots().iter().enumerate().map(site).collect();
     let volume = vec![body.volume().uniform().unwrap_or(1.0); position.len()];
     Body::from_cloud(
         &position,
@@ -339,6 +399,28 @@ fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>
         body.spacing(),
         body.period(),
     )
+}
+
+/// Sites may be moved so far.
+fn possible(p: &Perturbation, spacing: f64) -> Result<(), BuildError> {
+    if !(p.amplitude >= 0.0 && p.amplitude < 0.5 * spacing) {
+        return Err(BuildError::invalid(
+            "body.perturb",
+            format!(
+                "the amplitude {} must be below half the spacing {spacing}",
+                p.amplitude
+            ),
+        ));
+    }
+    Ok(())
+}
+
+/// By what a site is moved, by its id: a uniform random vector in ±amplitude per axis, the same whoever asks.
+pub(super) fn displacement<const D: usize>(p: &Perturbation, id: usize) -> Point {
+    crate::array::from_fn(|a| match a < D {
+        true => p.amplitude * (2.0 * SplitMix::number(p.seed, (D * id + a) as u64) - 1.0),
+        false => 0.0,
+    })
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014): a seed gives the same body on every machine.

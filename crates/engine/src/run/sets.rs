@@ -1,10 +1,10 @@
 //! Named sets, the materials and the initial state of the points in them.
 
 use super::agreed::agreed;
-use super::feasible::possible;
 use super::names::Names;
 use super::parts::parts;
 use super::reference::SplitMix;
+use super::sanity::possible;
 use super::system::System;
 use crate::body::Body;
 use crate::error::BuildError;
@@ -12,7 +12,7 @@ use crate::message;
 use crate::quantity::{Dimension, Message};
 use crate::space::lattice::Lattice;
 use crate::space::{AXES, Point};
-use crate::spec::{BodySpec, Carriers, MaterialSpec, Members, Spec};
+use crate::spec::{BodySpec, LoadMap, MaterialSpec, Members, Spec};
 
 /// Does a point (id among all, reference position) belong?
 type Member<'a> = Box<dyn Fn(usize, &Point) -> bool + 'a>;
@@ -24,9 +24,9 @@ pub(super) type Sets = Vec<(String, Vec<u32>)>;
 pub(super) fn sets<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
-    carriers: Option<&Carriers<D>>,
+    load_map: Option<&LoadMap<D>>,
 ) -> Result<(Sets, Sets), BuildError> {
-    let (mut out, mut carried) = (vec![], vec![]);
+    let (mut out, mut kinematic) = (vec![], vec![]);
     for set in &spec.sets {
         let belongs = member(spec, body, &set.name, &set.members, 0, body.spacing())?;
         let ids: Vec<u32> = body
@@ -46,15 +46,15 @@ pub(super) fn sets<const D: usize>(
             | Members::Outside(_)
             | Members::Within { .. } => false,
         };
-        if let Some(carriers) = carriers
+        if let Some(load_map) = load_map
             && by_place
         {
-            let belongs = member(spec, body, &set.name, &set.members, 0, carriers.spacing)?;
+            let belongs = member(spec, body, &set.name, &set.members, 0, load_map.spacing)?;
             let at = |p: &usize| {
-                let x = &carriers.position[*p];
+                let x = &load_map.position[*p];
                 crate::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
             };
-            let points = (0..carriers.points()).filter(|p| belongs(*p, &at(p)));
+            let points = (0..load_map.points()).filter(|p| belongs(*p, &at(p)));
             loaded = points.map(|p| p as u32).collect();
         }
         if loaded.is_empty() && body.count(ids.len() as u64) == 0 {
@@ -65,9 +65,9 @@ pub(super) fn sets<const D: usize>(
             .help(extent(body)));
         }
         out.push((set.name.clone(), ids));
-        carried.push((set.name.clone(), loaded));
+        kinematic.push((set.name.clone(), loaded));
     }
-    Ok((out, carried))
+    Ok((out, kinematic))
 }
 
 /// Where the points of a body are, for somebody who missed them all.
@@ -388,7 +388,7 @@ pub(super) fn initial<const D: usize>(
     for (n, init) in spec.loading.initial.iter().enumerate() {
         let members = system.body.slots_of(&init.set, &names.sets);
         let (slots, points) = members.map_err(|e| e.at(format!("initial[{n}].set")))?;
-        if slots.is_empty() && names.carriers.is_some() {
+        if slots.is_empty() && names.load_map.is_some() {
             return Err(BuildError::empty(
                 format!("initial[{n}].set"),
                 format!("no point of `{}` was retained", init.set),

@@ -3,8 +3,8 @@
 use super::stepper::Stepper;
 use super::system::System;
 use crate::body::Field;
-use crate::condition::applied::AppliedForces;
-use crate::condition::prescribed_motion::PrescribedMotion;
+use crate::boundary_condition::applied::AppliedForces;
+use crate::boundary_condition::prescribed_motion::PrescribedMotion;
 use crate::fracture::precrack::Crack;
 use crate::interaction::ContactForces;
 use crate::interaction::friction::Friction;

@@ -6,10 +6,10 @@
 use super::system::System;
 use crate::body::{Field, view};
 use crate::columns::{Life, On};
+use crate::diffusion::DiffusionAccount;
 use crate::interaction::{BondStatus, history};
 use crate::observe::state_hash::{Words, hash_of_name};
 use crate::observe::{Ledger, StateHash};
-use crate::transfer::TransferAccount;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -26,7 +26,7 @@ enum Owner {
     Velocity,
     /// Forces of a step in which bonds broke are found no more.
     Force,
-    Transfer,
+    Diffusion,
     /// So many numbers of each point.
     Law(usize),
 }
@@ -96,8 +96,8 @@ fn hash_of_state<const D: usize>(system: &System<D>) -> u64 {
     for (digest, bonds) in digests.into_iter().flat_map(|(d, b)| d.into_iter().zip(b)) {
         words.put([digest, bonds]);
     }
-    for indenter in &system.applied.rigid {
-        words.numbers(indenter.rigid.center);
+    for rigid_body in &system.applied.rigid {
+        words.numbers(rigid_body.rigid.center);
     }
     words.hash(0)
 }
@@ -109,8 +109,8 @@ fn digests_of_points<const D: usize>(system: &System<D>) -> Option<Vec<u64>> {
         ("velocity".into(), Owner::Velocity),
         ("force_density".into(), Owner::Force),
     ];
-    let spread = system.transfer_columns().into_iter();
-    columns.extend(spread.map(|c| (c.name, Owner::Transfer)));
+    let spread = system.diffusion_columns().into_iter();
+    columns.extend(spread.map(|c| (c.name, Owner::Diffusion)));
     columns.extend(declared(system, On::Points).map(|(name, each)| (name, Owner::Law(each))));
     columns.sort_by(|a, b| a.0.cmp(&b.0));
 
@@ -127,7 +127,7 @@ fn digests_of_points<const D: usize>(system: &System<D>) -> Option<Vec<u64>> {
             Owner::Displacement => (D, of(&system.u)),
             Owner::Velocity => (D, of(&system.v)),
             Owner::Force => (D, of(&system.f)),
-            Owner::Transfer => (1, system.transferred(&name).unwrap_or_default()),
+            Owner::Diffusion => (1, system.transferred(&name).unwrap_or_default()),
             Owner::Law(each) => {
                 let values = of_law(system, &name);
                 let own = slots().flat_map(|s| &values[each * s..each * (s + 1)]);
@@ -212,8 +212,8 @@ fn hash_of_ledger<const D: usize>(system: &mut System<D>) -> Option<u64> {
         made,
         dissipated,
         numerical,
-        work_conditions,
-        work_indenter,
+        work_boundary_conditions,
+        work_rigid_bodies,
         initial,
     } = system.balance().ok()?;
     let mut words = Words::default();
@@ -225,12 +225,12 @@ fn hash_of_ledger<const D: usize>(system: &mut System<D>) -> Option<u64> {
         made,
         dissipated,
         numerical,
-        work_conditions,
-        work_indenter,
+        work_boundary_conditions,
+        work_rigid_bodies,
         initial,
     ]);
-    for (quantity, account) in system.transfer_accounts() {
-        let TransferAccount {
+    for (quantity, account) in system.diffusion_accounts() {
+        let DiffusionAccount {
             content,
             initial,
             supplied,

@@ -57,7 +57,7 @@ pub(super) fn scale<const D: usize>(
         return Err(BuildError::conflict(
             "surface",
             format!(
-                "the factors of bonds are for {} points of {rows} kinds on a lattice, and do not fit this body of {points} points",
+                "the bond stiffness factors are for {} points of {rows} kinds on a lattice, and do not fit this body of {points} points",
                 surface.row.len()
             ),
         ));

@@ -1,8 +1,8 @@
-//! Toughness of places and times: before every test each point is told what it bears.
+//! Toughness of places and times: before every test each point is told what it resistance.
 
 use super::agreed::agreed;
 use super::system::System;
-use crate::condition::toughness::{Bears, ToughnessField};
+use crate::boundary_condition::toughness::{Resistance, SpatialToughness};
 use crate::error::{BuildError, RunError};
 use crate::message;
 use crate::quantity::place;
@@ -26,7 +26,7 @@ fn refused(spec: &Spec) -> Result<(), BuildError> {
             }
             if !spec
                 .interactions
-                .transfers
+                .diffusions
                 .iter()
                 .any(|t| t.quantity == Quantity::Heat)
             {
@@ -50,21 +50,21 @@ impl<const D: usize> System<D> {
         &self,
         spec: &Spec,
         sets: &[(String, Vec<u32>)],
-    ) -> Result<Option<ToughnessField>, BuildError> {
+    ) -> Result<Option<SpatialToughness>, BuildError> {
         match spec.damage.toughness.is_empty() {
             true if self.constitutive.all().all(|m| m.strength.is_empty()) => return Ok(None),
             true => {}
             false => refused(spec)?,
         }
-        let mut base = vec![(Bears::Stretch, f64::INFINITY); self.body.len()];
+        let mut base = vec![(Resistance::Stretch, f64::INFINITY); self.body.len()];
         for &s in self.body.slots() {
             let s = s as usize;
-            base[s] = self.constitutive.bears(s, self.body.material_of(s));
+            base[s] = self.constitutive.resistance(s, self.body.material_of(s));
         }
-        let works = |s: &u32| base[*s as usize].0 == Bears::Work;
+        let works = |s: &u32| base[*s as usize].0 == Resistance::Work;
         if self.body.slots().iter().all(works) {
             // slots without a point are as all others: no column of stretches
-            base.iter_mut().for_each(|b| b.0 = Bears::Work);
+            base.iter_mut().for_each(|b| b.0 = Resistance::Work);
         }
         let mut factors = vec![];
         for (n, t) in spec.damage.toughness.iter().enumerate() {
@@ -72,7 +72,7 @@ impl<const D: usize> System<D> {
                 .map_err(|e| e.at(format!("toughness[{n}].set")))?;
             factors.push((slots, t.factor.clone()));
         }
-        let mut field = ToughnessField::new(base, factors);
+        let mut field = SpatialToughness::new(base, factors);
         let heat = self.temperatures(field.feels_heat());
         let at = |s: usize| heat.get(s).copied().unwrap_or(0.0);
         let fits = field.set(&self.body, 0.0, at).map_err(|unfit| {
@@ -93,7 +93,7 @@ impl<const D: usize> System<D> {
         let feels = self
             .toughness
             .as_ref()
-            .is_some_and(ToughnessField::feels_heat);
+            .is_some_and(SpatialToughness::feels_heat);
         let heat = self.temperatures(feels);
         let Some(field) = self.toughness.as_mut().filter(|f| f.changes()) else {
             return Ok(());
@@ -132,9 +132,9 @@ impl<const D: usize> System<D> {
         let Some(field) = &self.toughness else {
             return;
         };
-        for bears in [Bears::Stretch, Bears::Work] {
-            let (column, at_once) = bears.column();
-            if let Some(values) = field.values(bears)
+        for resistance in [Resistance::Stretch, Resistance::Work] {
+            let (column, at_once) = resistance.column();
+            if let Some(values) = field.values(resistance)
                 && (at_once || self.accounts.initial.is_some())
             {
                 self.interaction.write_column(&self.body, column, &values);

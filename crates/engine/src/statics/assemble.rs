@@ -74,7 +74,7 @@ pub fn linear_body_touching<const D: usize>(
         start: vec![0],
         partner: Vec::with_capacity(entries),
         block: Vec::with_capacity(entries),
-        carriers: None,
+        load_map: None,
         mass: None,
     };
     for part in parts {

@@ -128,7 +128,7 @@ impl<const D: usize> Masses<D> {
             start: vec![0],
             partner: vec![],
             block: vec![],
-            carriers: None,
+            load_map: None,
             mass: None,
             ..body.clone()
         };

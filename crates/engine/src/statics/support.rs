@@ -361,7 +361,7 @@ mod tests {
             start: vec![0, 1, 3, 4],
             partner: vec![1, 0, 2, 1],
             block: [2.0, 2.0, 0.0, 0.0].map(|c| [[c]]).to_vec(),
-            carriers: None,
+            load_map: None,
             mass: None,
         };
         let mut support = Support::none(3);

@@ -11,7 +11,7 @@ use peridyne::law::potential::morse::Morse;
 use peridyne::law::potential::no_potential::NoPotential;
 use peridyne::law::potential::tabulated::{Eam, Tabulated};
 use peridyne::law::terms::Near;
-use peridyne::run::{Options, Shelf, Simulation, build};
+use peridyne::run::{Options, Registry, Simulation, build};
 use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
@@ -179,7 +179,7 @@ fn consistent(name: &str, spec: &Spec) {
 
 /// The energy of all terms of all sites is that of the body.
 fn sites_agree(name: &str, spec: &Spec, energy: f64) {
-    let sites = Shelf::standard().sites_of(spec).unwrap();
+    let sites = Registry::standard().sites_of(spec).unwrap();
     let (x, kind) = atoms_of(spec);
     let mut sum = 0.0;
     for i in 0..x.len() {

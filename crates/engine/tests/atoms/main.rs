@@ -2,8 +2,8 @@
 
 mod chain;
 mod crystal;
-mod fans;
 mod kinds;
+mod many_body;
 mod relax;
 mod sample;
 mod scaled;

@@ -1,7 +1,7 @@
 //! Potentials and bodies that the tests share.
 
-use peridyne::law::fan::stillinger_weber::StillingerWeber;
-use peridyne::law::fan::tersoff::Tersoff;
+use peridyne::law::many_body::stillinger_weber::StillingerWeber;
+use peridyne::law::many_body::tersoff::Tersoff;
 use peridyne::law::potential::Potential;
 use peridyne::law::potential::born_mayer::BornMayer;
 use peridyne::law::potential::buckingham::Buckingham;
@@ -219,12 +219,12 @@ fn two_kinds() -> PotentialSpec {
 }
 
 /// Name, potential, edge of the lattice and number of kinds.
-pub fn fans() -> Vec<(&'static str, PotentialSpec, f64, usize)> {
-    let weber = PotentialSpec::of_fan::<StillingerWeber>(&SILICON).unwrap();
+pub fn many_body() -> Vec<(&'static str, PotentialSpec, f64, usize)> {
+    let weber = PotentialSpec::of_many_body::<StillingerWeber>(&SILICON).unwrap();
     let mut powers = SILICON;
     powers[8].1 = 4.2;
     powers[9].1 = 0.1;
-    let powers = PotentialSpec::of_fan::<StillingerWeber>(&powers).unwrap();
+    let powers = PotentialSpec::of_many_body::<StillingerWeber>(&powers).unwrap();
     let row = [&[0.0; 3][..], &SI].concat();
     let tersoff = PotentialSpec::of_entries::<Tersoff>(vec![row]).unwrap();
     vec![

@@ -113,7 +113,7 @@ fn loads() -> Vec<(&'static str, Vec<ConditionSpec>)> {
 }
 
 fn work(l: &Ledger) -> f64 {
-    l.work_conditions.abs() + l.work_indenter.abs() + l.dissipated.abs()
+    l.work_boundary_conditions.abs() + l.work_rigid_bodies.abs() + l.dissipated.abs()
 }
 
 #[test]
@@ -156,11 +156,11 @@ fn the_ledger_of_intact_bodies_closes_to_second_order() {
 }
 
 /// Families, and when their bonds let go.
-const WAYS: [(FamilyChoice, Release); 4] = [
-    (FamilyChoice::Stencil, Release::AtOnce),
-    (FamilyChoice::Stencil, Release::AfterForce),
-    (FamilyChoice::List, Release::AtOnce),
-    (FamilyChoice::List, Release::AfterForce),
+const WAYS: [(FamilyChoice, Breakage); 4] = [
+    (FamilyChoice::Stencil, Breakage::BeforeForce),
+    (FamilyChoice::Stencil, Breakage::AfterForce),
+    (FamilyChoice::List, Breakage::BeforeForce),
+    (FamilyChoice::List, Breakage::AfterForce),
 ];
 
 /// Bonds that break give up what they held, whenever they let go.
@@ -179,12 +179,12 @@ fn the_ledger_of_breaking_bodies_closes() {
             _ => &["pmb", "lps", "lps mixed", "viscoelastic", "softening"],
         };
         for name in laws {
-            for (family, release) in WAYS {
+            for (family, breakage) in WAYS {
                 let place = block(kind);
                 let case = Case::of(name, place);
                 let mut spec = case.spec();
                 spec.bonds.family = family;
-                spec.damage.release = release;
+                spec.damage.breakage = breakage;
                 ends(&mut spec, place.cells[0]);
                 spec.loading.conditions = vec![
                     on(
@@ -206,7 +206,7 @@ fn the_ledger_of_breaking_bodies_closes() {
                 assert!(sim.fragments() > 1 && sim.broken() > 0, "{}", case.name());
                 let off = l.residual().abs() / work(&l);
                 println!(
-                    "{name} {kind:?} {family:?} {release:?}, torn: residual {off:.1e} of the work, released {:.2} of it",
+                    "{name} {kind:?} {family:?} {breakage:?}, torn: residual {off:.1e} of the work, released {:.2} of it",
                     l.released / work(&l)
                 );
                 // bonds that soften dissipate before they break
@@ -240,7 +240,7 @@ fn what_breaking_bodies_lose_is_of_second_order() {
             "laminae",
         ];
         for name in laws {
-            for (family, release) in WAYS {
+            for (family, breakage) in WAYS {
                 let place = block_of(name, kind);
                 let case = Case::of(name, place);
                 let residual = |n: usize| {
@@ -249,7 +249,7 @@ fn what_breaking_bodies_lose_is_of_second_order() {
                         spec.space.periodic[1] = case.periodic().space.periodic[1];
                     }
                     spec.bonds.family = family;
-                    spec.damage.release = release;
+                    spec.damage.breakage = breakage;
                     ends(&mut spec, place.cells[0]);
                     spec.loading.conditions = [("low", "-0.2"), ("high", "0.2")]
                         .map(|(set, v)| on(set, ConditionKind::Velocity([Some(e(v)), None, None])))
@@ -265,16 +265,16 @@ fn what_breaking_bodies_lose_is_of_second_order() {
                 };
                 let [coarse, fine] = [400, 3200].map(residual).map(f64::abs);
                 println!(
-                    "{name} {kind:?} {family:?} {release:?}, periodic {periodic}: {coarse:.2e}, {fine:.2e}"
+                    "{name} {kind:?} {family:?} {breakage:?}, periodic {periodic}: {coarse:.2e}, {fine:.2e}"
                 );
                 // second order is 64 and first order 8; bonds do not break at the same time in both
                 // 25 and 28 of what relaxes across a plane, whose bonds let go after the force
                 let plane = name.starts_with("viscoelastic") && kind == LatticeKind::Square;
-                let late = plane && release == Release::AfterForce;
+                let late = plane && breakage == Breakage::AfterForce;
                 let least = if late { 20.0 } else { 30.0 };
                 assert!(
                     fine < coarse / least,
-                    "{name} {kind:?} {family:?} {release:?}"
+                    "{name} {kind:?} {family:?} {breakage:?}"
                 );
             }
         }
@@ -290,10 +290,10 @@ fn a_thrown_mass_gives_what_it_loses() {
             let mut spec = Case::of(name, place).spec();
             let (mass, v0) = (0.02, -0.4);
             let top = (place.cells[1] as f64 - 1.0) * H;
-            spec.loading.indenters = vec![IndenterSpec::sphere(
+            spec.loading.rigid_bodies = vec![RigidBodySpec::sphere(
                 40.0,
                 1.5 * H,
-                IndenterMotion::Free(FreeSpec::new(
+                RigidBodyMotion::Free(FreeSpec::new(
                     mass,
                     [1.3, top + 1.55 * H, 0.4],
                     [0.0, v0, 0.0],
@@ -308,17 +308,17 @@ fn a_thrown_mass_gives_what_it_loses() {
             steps(sim.as_mut(), 200);
             let l = sim.ledger().unwrap();
             assert_eq!(
-                before.work_indenter, l.work_indenter,
+                before.work_rigid_bodies, l.work_rigid_bodies,
                 "{name}: still touching"
             );
-            assert!(l.work_indenter > 0.0);
+            assert!(l.work_rigid_bodies > 0.0);
             let given = momentum(sim.as_mut());
             let w = given.map(|p| -p / mass);
             let lost = 0.5 * mass * (v0 * v0 - w[0].powi(2) - (v0 + w[1]).powi(2) - w[2].powi(2));
             assert!(given[1] < 0.0 && v0 + w[1] > v0, "{given:?}");
             let (energy, balance) = (
-                (lost - l.work_indenter).abs() / l.work_indenter,
-                l.residual().abs() / l.work_indenter,
+                (lost - l.work_rigid_bodies).abs() / l.work_rigid_bodies,
+                l.residual().abs() / l.work_rigid_bodies,
             );
             println!(
                 "{name} {kind:?}, thrown mass: energy lost = work to {energy:.1e}, residual {balance:.1e}"

@@ -2,7 +2,7 @@
 
 use crate::sample::*;
 use peridyne::law::descriptor;
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::*;
@@ -35,7 +35,7 @@ fn lame(law: &LawSpec, d: usize, plane: Plane) -> (f64, f64) {
         LawSpec::Pmb(PmbStiffness::Bulk(k)) => from(3.0 * k * (1.0 - 2.0 * bond_based), bond_based),
         LawSpec::Pmb(PmbStiffness::Micromodulus(_)) => panic!("no modulus was asked for"),
         LawSpec::Lps(m) => from(m.young, m.poisson),
-        LawSpec::LpsAsTyped { bulk, shear } => typed(*bulk, *shear),
+        LawSpec::Lps3d { bulk, shear } => typed(*bulk, *shear),
         LawSpec::Named(law) => match descriptor::moduli(&law.parameters) {
             Ok(m) => from(m.young, m.poisson),
             Err(_) => match law.parameters.number("young") {
@@ -43,7 +43,7 @@ fn lame(law: &LawSpec, d: usize, plane: Plane) -> (f64, f64) {
                 // of an energy those of small strains
                 None => {
                     let mut written = LawSpec::Named(law.clone());
-                    Shelf::standard().look_up(&mut written).unwrap();
+                    Registry::standard().look_up(&mut written).unwrap();
                     match written {
                         LawSpec::Named(NamedLaw {
                             linear: Some(linear),

@@ -1,7 +1,7 @@
-//! Constants that cannot be are refused, by the key and with the reason, whatever the law of the shelf.
+//! Constants that cannot be are refused, by the key and with the reason, whatever the law of the registry.
 
 use peridyne::law::descriptor::{Bounds, Need, Value};
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::spec::{LawSpec, Parameter, Parameters};
 
 /// Keys of solids whose numbers may have any sign, and what judges them instead.
@@ -45,9 +45,9 @@ fn beyond(bounds: &Bounds) -> Vec<f64> {
 
 #[test]
 fn numbers_out_of_bounds_are_refused_by_their_key() {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let mut asked = 0;
-    for descriptor in shelf.descriptors() {
+    for descriptor in registry.descriptors() {
         let refused = |key: &str, given: Parameter| {
             let mut parameters = Parameters::default().with(key, given.clone());
             let (wrong, why) = descriptor.check(&mut parameters).unwrap_err();
@@ -102,10 +102,10 @@ fn numbers_out_of_bounds_are_refused_by_their_key() {
 /// A stiffness, a strength, a rate of a solid is bounded from below; what is not is on the list.
 #[test]
 fn constants_of_solids_have_signs() {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let mut found = vec![];
-    for descriptor in shelf.descriptors() {
-        if shelf.is_potential(&descriptor.name) {
+    for descriptor in registry.descriptors() {
+        if registry.is_potential(&descriptor.name) {
             continue;
         }
         for key in descriptor.taken() {
@@ -133,7 +133,7 @@ fn constants_of_solids_have_signs() {
 /// Pairs of moduli of no stable solid, whatever law asks for two.
 #[test]
 fn moduli_of_no_solid_are_refused() {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let pairs = [
         [("young", 3.0), ("poisson", 0.5)],
         [("young", 3.0), ("poisson", -1.0)],
@@ -144,7 +144,7 @@ fn moduli_of_no_solid_are_refused() {
         [("bulk", 1.0), ("shear", 0.0)],
     ];
     let mut laws = 0;
-    for descriptor in shelf.descriptors() {
+    for descriptor in registry.descriptors() {
         if !descriptor.keys.iter().any(|k| k.need == Need::TwoOf) {
             continue;
         }
@@ -158,7 +158,7 @@ fn moduli_of_no_solid_are_refused() {
     assert!(laws >= 8, "{laws}");
     // joint bounds of laws with other constants
     let refused = |law: &str, parameters: Parameters, part: &str| {
-        let error = shelf.look_up(&mut LawSpec::named(law, parameters));
+        let error = registry.look_up(&mut LawSpec::named(law, parameters));
         let message = error.unwrap_err().message.to_string();
         assert!(message.contains(part), "{law}: {message}");
     };

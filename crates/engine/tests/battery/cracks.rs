@@ -41,7 +41,7 @@ fn a_body_cut_in_two_has_two_fragments_and_damage_where_bonds_broke() {
             assert_eq!(sim.fragments(), 1, "{}", case.name());
             let (whole, reach) = (sim.info().directed_bonds, sim.info().horizon);
             let x = (case.place.cells[0] as f64 * 0.5 - 0.3) * H;
-            for kind in [CrackKind::Broken, CrackKind::Absent] {
+            for kind in [CrackKind::Broken, CrackKind::Excluded] {
                 spec.damage.precracks = vec![PrecrackSpec {
                     shape: through(case.d(), x),
                     kind,
@@ -51,13 +51,13 @@ fn a_body_cut_in_two_has_two_fragments_and_damage_where_bonds_broke() {
                 assert_eq!(sim.fragments(), 2, "{}", case.name());
                 assert!(info.cut > 0 && info.cut.is_multiple_of(2));
                 let damage = sim.scalars("damage");
-                let left = if kind == CrackKind::Absent {
+                let left = if kind == CrackKind::Excluded {
                     whole - info.cut
                 } else {
                     whole
                 };
                 assert_eq!(info.directed_bonds, left, "{}", case.name());
-                if kind == CrackKind::Absent {
+                if kind == CrackKind::Excluded {
                     assert!(damage.iter().all(|d| *d == 0.0), "{}", case.name());
                 } else {
                     // far away nothing is damaged, and bonds lost are bonds cut
@@ -115,7 +115,7 @@ fn a_body_cut_by_an_absent_crack_is_two_bodies() {
         let mut spec = case.spec();
         spec.damage.precracks = vec![PrecrackSpec {
             shape: through(case.d(), (cut_at as f64 - 0.5) * H),
-            kind: CrackKind::Absent,
+            kind: CrackKind::Excluded,
         }];
         let mut cut = at_rest(&spec);
         let mut half = case.clone();
@@ -190,7 +190,7 @@ fn a_cut_of_one_image_cuts_both_directions() {
     let body = Body::<1>::on_lattice(lattice, &quarters, stencil.reach(), [true], 1.0).unwrap();
     for (face, kind) in [
         (-0.5, CrackKind::Broken),
-        (n as f64 - 0.5, CrackKind::Absent),
+        (n as f64 - 0.5, CrackKind::Excluded),
     ] {
         let mut it = StencilInteraction::new(StencilParts {
             body: &body,
@@ -271,7 +271,7 @@ fn a_bond_lets_go_at_once_or_after_its_force() {
     for family in [FamilyChoice::Stencil, FamilyChoice::List] {
         for name in ["pmb", "lps"] {
             let mut held = vec![];
-            for release in [Release::AtOnce, Release::AfterForce] {
+            for breakage in [Breakage::BeforeForce, Breakage::AfterForce] {
                 let place = Place {
                     kind: LatticeKind::Chain,
                     plane: Plane::Strain,
@@ -279,7 +279,7 @@ fn a_bond_lets_go_at_once_or_after_its_force() {
                     cells: [2, 1, 1],
                 };
                 let mut spec = Case::of(name, place).spec();
-                (spec.bonds.family, spec.damage.release) = (family, release);
+                (spec.bonds.family, spec.damage.breakage) = (family, breakage);
                 breaking(&mut spec, 0.05);
                 spec.run.schedule.time_step = TimeStep::Fixed(0.01);
                 let mut sim = made(&spec);
@@ -292,9 +292,9 @@ fn a_bond_lets_go_at_once_or_after_its_force() {
                     assert!(sim.step_number() < 100, "{name}: nothing breaks");
                 }
                 let now = largest(&sim.vectors("force_density"));
-                match release {
-                    Release::AtOnce => assert_eq!(now, 0.0, "{name} {family:?}"),
-                    Release::AfterForce => assert!(now > last, "{name} {family:?}: {now}"),
+                match breakage {
+                    Breakage::BeforeForce => assert_eq!(now, 0.0, "{name} {family:?}"),
+                    Breakage::AfterForce => assert!(now > last, "{name} {family:?}: {now}"),
                 }
                 sim.step().unwrap();
                 assert_eq!(largest(&sim.vectors("force_density")), 0.0);

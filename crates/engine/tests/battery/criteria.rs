@@ -2,7 +2,7 @@
 
 use crate::sample::*;
 use peridyne::observe::Values;
-use peridyne::run::{Options, Shelf, Simulation, build};
+use peridyne::run::{Options, Registry, Simulation, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::*;
@@ -104,14 +104,14 @@ fn the_solid_that_remembers_is_lps() {
 /// counted twice, and nothing is left out.
 #[test]
 fn the_work_on_bonds_is_what_they_store_and_dissipate() {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let mut tried = 0;
     for case in cases() {
         let spec = case.spec();
         let remembers = |m: &MaterialSpec| match &m.law {
             LawSpec::Pmb(_) | LawSpec::Lps(_) => m.fracture.is_none(),
             // constants of softening hold its critical stretch
-            LawSpec::Named(law) => m.fracture.is_none() && shelf.descriptor(&law.name).is_some(),
+            LawSpec::Named(law) => m.fracture.is_none() && registry.descriptor(&law.name).is_some(),
             _ => false,
         };
         if !spec.materials.iter().all(remembers) || case.material.laws.len() > 1 {
@@ -119,7 +119,7 @@ fn the_work_on_bonds_is_what_they_store_and_dissipate() {
         }
         let miss = |part: f64| {
             let mut spec = spec.clone();
-            spec.bonds.volume_scaling = false;
+            spec.bonds.partial_volume_correction = false;
             spec.interactions.contact = None;
             spec.materials[0].fracture = fracture(Criterion::BondEnergy(1e9));
             spec.loading.initial = vec![InitialSpec {
@@ -432,21 +432,21 @@ fn warm_bonds_bear_less() {
             set: "all".into(),
             factor: ToughnessFactor::Temperature(vec![[0.0, 1.0], [10.0, 1.0], [20.0, 0.5]]),
         }];
-        spec.interactions.transfers = vec![TransferSpec {
+        spec.interactions.diffusions = vec![DiffusionSpec {
             quantity: Quantity::Heat,
-            method: TransferMethod::Explicit { safety: 0.9 },
+            method: DiffusionMethod::Explicit { safety: 0.9 },
             reference: 0.0,
             across_broken: false,
             deformation: false,
-            materials: vec![TransferMaterial {
+            materials: vec![DiffusionMaterial {
                 conductivity: 1.0,
                 capacity: 1.0,
                 expansion: 0.0,
             }],
             initial: vec![],
-            conditions: vec![TransferCondition {
+            conditions: vec![DiffusionCondition {
                 set: "all".into(),
-                kind: TransferKind::Value(e("t")),
+                kind: DiffusionKind::Value(e("t")),
             }],
         }];
         spec.run.schedule.time_step = TimeStep::Fixed(0.05);

@@ -142,7 +142,7 @@ fn thermoelastic_and_position_aware_solids_are_lps() {
         let mut spec = Case::of("lps", place).periodic();
         spec.materials[0].law = LawSpec::Lps(Moduli { young, poisson });
         let f = at_rest(&spec).forces_under(&u);
-        spec.materials[0].law = LawSpec::named("position_aware", elastic);
+        spec.materials[0].law = LawSpec::named("pals", elastic);
         let off = distance(&f, &at_rest(&spec).forces_under(&u)) / largest(&f);
         assert!(off < 1e-12, "{place:?}: {off:e}");
     }
@@ -157,7 +157,7 @@ fn lps_is_eam_like() {
         let case = Case::of("lps as typed", place);
         let mut spec = case.spec();
         let mut laws = vec![
-            LawSpec::LpsAsTyped { bulk, shear },
+            LawSpec::Lps3d { bulk, shear },
             LawSpec::EamLike {
                 pair: 30.0 * shear,
                 volume: 3.0 * bulk - 5.0 * shear,
@@ -213,9 +213,9 @@ fn interface_bonds_follow_their_rule() {
         cells: [6, 1, 1],
     };
     for (rule, expected) in [
-        (InterfaceRule::Series, 2.0 * 3.0 / 4.0),
-        (InterfaceRule::Parallel, 2.0),
-        (InterfaceRule::Minimum, 1.0),
+        (BondMixing::Harmonic, 2.0 * 3.0 / 4.0),
+        (BondMixing::Arithmetic, 2.0),
+        (BondMixing::Minimum, 1.0),
     ] {
         let mut spec = Case::of("pmb mixed", place).spec();
         spec.interactions.interface = rule;
@@ -258,9 +258,9 @@ fn slopes<const D: usize>(sim: &mut dyn Simulation, change: &[[f64; 3]]) -> Vec<
 #[test]
 fn bonds_between_materials_follow_their_rule_whatever_they_break_by() {
     let rules = [
-        InterfaceRule::Series,
-        InterfaceRule::Parallel,
-        InterfaceRule::Minimum,
+        BondMixing::Harmonic,
+        BondMixing::Arithmetic,
+        BondMixing::Minimum,
     ];
     let families = [FamilyChoice::Stencil, FamilyChoice::List];
     let each = || rules.into_iter().flat_map(|r| families.map(|f| (r, f)));

@@ -37,7 +37,7 @@ fn general() -> Vec<(LawSpec, FamilyChoice)> {
     let all = [
         ("thermoelastic", Parameters::numbers(&[("young", 100.0)])),
         ("thermoelastic_solid", solid()),
-        ("position_aware", solid()),
+        ("pals", solid()),
         ("bond_rotation", solid()),
         ("correspondence", solid()),
         ("correspondence", solid().with("gradient", gradient)),
@@ -143,7 +143,7 @@ fn bonds_of_an_absent_crack_do_not_heal() {
                 },
                 kind,
             };
-            spec.damage.precracks = vec![crack(4.0, CrackKind::Absent)];
+            spec.damage.precracks = vec![crack(4.0, CrackKind::Excluded)];
             if broken {
                 let other = crack(9.0, CrackKind::Broken);
                 spec.damage.precracks.push(other);
@@ -229,9 +229,9 @@ fn torn_and_closed_again_it_is_whole() {
     };
     let own = |spec: &mut Spec| {
         spec.bonds.horizon = Horizon::Length(2.4);
-        spec.bonds.own_horizon = Some(e("2.4 - 0.03*x"));
+        spec.bonds.variable_horizon = Some(e("2.4 - 0.03*x"));
         spec.bonds.calibration = Calibration::Continuum;
-        spec.bonds.volume_scaling = true;
+        spec.bonds.partial_volume_correction = true;
     };
     // as much as a stretch of about a tenth takes: bonds that still knew it would break again
     let work = |spec: &mut Spec| {
@@ -344,7 +344,7 @@ fn what_heals_at_the_end_of_an_implicit_step_pulls_in_the_next() {
             assert_eq!(sim.scalars("damage").iter().sum::<f64>(), 0.0);
             let l = sim.ledger().unwrap();
             assert!(
-                l.strain > 0.0 && l.residual().abs() < 1e-2 * l.work_conditions,
+                l.strain > 0.0 && l.residual().abs() < 1e-2 * l.work_boundary_conditions,
                 "{l:?}"
             );
             sim.displacements()
@@ -381,7 +381,7 @@ fn what_heals_after_statics_moves_as_what_was_never_cut() {
                     set: "ends".into(),
                     kind: ConditionKind::Displacement([Some(e("0")), Some(e("0")), None]),
                 }],
-                indenters: vec![],
+                rigid_bodies: vec![],
                 cuts: vec![],
             });
             let mut sim = started(&spec);

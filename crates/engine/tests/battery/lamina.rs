@@ -225,7 +225,7 @@ fn ratio_and_shear_follow() {
             let conical: fn(f64) -> f64 = |x| 1.0 - x;
             for (influence, omega) in [
                 (Influence::Constant, (|_| 1.0) as fn(f64) -> f64),
-                (Influence::Conical, conical),
+                (Influence::Linear, conical),
             ] {
                 case.material.influence = influence;
                 let sim = at_rest(&case.periodic());
@@ -463,7 +463,7 @@ fn each_kind_breaks_at_its_own_stretch() {
 }
 
 /// What broke in a notched strip.
-struct Torn {
+struct Breaking {
     /// Most and mean distance of broken bonds from the tip of the notch, along x and y (cells).
     reach: [f64; 2],
     mean: [f64; 2],
@@ -472,14 +472,14 @@ struct Torn {
 }
 
 /// A strip of 40 by 24 cells, pulled along an axis by ends that do not fail, until so many directed bonds are broken.
-fn torn(law: LawSpec, notch: [Point; 2], (axis, rate): (usize, f64), most: u64) -> Torn {
+fn torn(law: LawSpec, notch: [Point; 2], (axis, rate): (usize, f64), most: u64) -> Breaking {
     let cells = [40, 24, 1];
     let case = with(place(LatticeKind::Square, 3, cells), law, Some(0.01));
     let mut spec = case.spec();
     let [from, to] = notch;
     spec.damage.precracks = vec![PrecrackSpec {
         shape: CrackShape::Segment { from, to },
-        kind: CrackKind::Absent,
+        kind: CrackKind::Excluded,
     }];
     let along = |text: String| -> [Option<peridyne::expression::Expression>; 3] {
         let mut all = [None, None, None];
@@ -518,7 +518,7 @@ fn torn(law: LawSpec, notch: [Point; 2], (axis, rate): (usize, f64), most: u64) 
         assert!(sim.step_number() < 4000, "{} broken", sim.broken());
     }
     let after = whole(sim.as_mut());
-    let mut torn = Torn {
+    let mut torn = Breaking {
         reach: [0.0; 2],
         mean: [0.0; 2],
         bonds: 0,
@@ -604,7 +604,7 @@ fn bonds_broken_in_turn_know_their_kind() {
         spec.run.schedule.steps = 2;
         spec.run.schedule.time_step = TimeStep::Fixed(1.0);
         spec.run.schedule.stepper = Stepper::Statics(Statics {
-            control: Control::Breaking,
+            control: Control::SequentiallyLinear,
             ..Statics::default()
         });
         let mut sim = build(&spec, Default::default()).unwrap();

@@ -40,10 +40,10 @@ fn busy(name: &str, kind: LatticeKind, family: FamilyChoice) -> Spec {
         1 => ("-0.8+0.1*t".to_string(), "0.2"),
         _ => (format!("{}", 0.5 * H * place.cells[0] as f64), "-0.9+0.5*t"),
     };
-    spec.loading.indenters = vec![IndenterSpec::sphere(
+    spec.loading.rigid_bodies = vec![RigidBodySpec::sphere(
         100.0,
         2.0 * H,
-        IndenterMotion::Kinematic([e(&x), e(y), e("0.3")]),
+        RigidBodyMotion::Kinematic([e(&x), e(y), e("0.3")]),
     )];
     spec.loading.conditions = vec![
         ConditionSpec {
@@ -66,8 +66,8 @@ fn state(sim: &mut dyn Simulation) -> Vec<u64> {
         l.contact,
         l.released,
         l.dissipated,
-        l.work_conditions,
-        l.work_indenter,
+        l.work_boundary_conditions,
+        l.work_rigid_bodies,
     ];
     let mut bits: Vec<u64> = numbers.iter().map(|x| x.to_bits()).collect();
     for field in [
@@ -141,7 +141,7 @@ fn the_same_bits_on_any_number_of_threads_and_in_every_width() {
                         assert!(sim.broken() > 0 && sim.broken() < sim.info().directed_bonds);
                         let l = sim.ledger().unwrap();
                         assert!(
-                            l.contact > 0.0 && l.work_indenter != 0.0,
+                            l.contact > 0.0 && l.work_rigid_bodies != 0.0,
                             "{name} {kind:?}: {l:?}"
                         );
                         state(sim.as_mut())
@@ -177,10 +177,10 @@ fn a_step_allocates_nothing() {
         for name in names(kind) {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 let mut spec = busy(name, kind, family);
-                // the indenter rests in the body: what it touches does not grow
+                // the rigid_body rests in the body: what it touches does not grow
                 let x = e(if kind.dimension() == 1 { "-0.7" } else { "1.3" });
-                spec.loading.indenters[0].motion =
-                    IndenterMotion::Kinematic([x, e("-0.2"), e("0.3")]);
+                spec.loading.rigid_bodies[0].motion =
+                    RigidBodyMotion::Kinematic([x, e("-0.2"), e("0.3")]);
                 pool.install(|| {
                     let mut sim = at_rest(&spec);
                     // an energy with a pole at no volume ends with an error once a family is pushed flat
@@ -198,7 +198,7 @@ fn a_step_allocates_nothing() {
                     let count = allocations() - before;
                     assert_eq!(count, 0, "{name} {kind:?} {family:?}");
                     assert!(sim.broken() > broken, "{name} {kind:?}: nothing happened");
-                    assert!(sim.ledger().unwrap().work_indenter != 0.0);
+                    assert!(sim.ledger().unwrap().work_rigid_bodies != 0.0);
                     // the count is of this very thread
                     let before = allocations();
                     std::hint::black_box(sim.displacements());

@@ -77,7 +77,7 @@ fn a_larger_body_has_the_same_strains() {
 fn contact_is_that_of_bonds_of_the_same_bulk_modulus_whatever_the_influence() {
     for influence in [
         Influence::Constant,
-        Influence::Conical,
+        Influence::Linear,
         Influence::Inverse,
         Influence::Gaussian,
     ] {

@@ -136,10 +136,10 @@ fn a_run_that_begins_is_not_unstable() {
             continue;
         }
         let mut spec = case.spec();
-        spec.loading.indenters = vec![IndenterSpec::sphere(
+        spec.loading.rigid_bodies = vec![RigidBodySpec::sphere(
             10.0,
             H,
-            IndenterMotion::Kinematic([e("-0.6+0.3*t"), e("0"), e("0")]),
+            RigidBodyMotion::Kinematic([e("-0.6+0.3*t"), e("0"), e("0")]),
         )];
         let mut sim = made(&spec);
         sim.start(true);

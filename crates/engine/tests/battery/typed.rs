@@ -14,7 +14,7 @@ const HORIZON: f64 = 3.0;
 /// The same constants, κ = K − 5G/3 and β = 15 G, under three names.
 fn typed() -> [LawSpec; 2] {
     [
-        LawSpec::LpsAsTyped { bulk: K, shear: G },
+        LawSpec::Lps3d { bulk: K, shear: G },
         LawSpec::EamLike {
             pair: 30.0 * G,
             volume: 3.0 * K - 5.0 * G,
@@ -172,8 +172,8 @@ fn solids_as_typed_know_directions_and_horizons_of_points() {
                 match own {
                     true => {
                         spec.bonds.family = FamilyChoice::List;
-                        spec.bonds.volume_scaling = true;
-                        spec.bonds.own_horizon = Some(e("2 + 0.1*x"));
+                        spec.bonds.partial_volume_correction = true;
+                        spec.bonds.variable_horizon = Some(e("2 + 0.1*x"));
                     }
                     false => spec.bonds.influence = formula,
                 }

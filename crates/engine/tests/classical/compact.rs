@@ -139,7 +139,7 @@ fn the_work_of_a_compact_test_is_its_fracture_energy() {
     assert!((energy / ENERGY - 1.0).abs() < 0.1);
     assert!(cracked > 0.6 * (f64::from(WIDTH) - NOTCH));
     // the probes' area is the work of the ledger
-    assert!((area - ledger.work_conditions).abs() < 0.01 * area);
+    assert!((area - ledger.work_boundary_conditions).abs() < 0.01 * area);
     assert!(
         (area - left_over - crack).abs() < 0.1 * crack,
         "{area} of {crack}"

@@ -36,7 +36,7 @@ fn block(kind: LatticeKind, sites: [i32; 3], ratio: u32, law: LawSpec) -> Spec {
     let mut spec = Spec::new(kind.dimension(), body, 1.0, law);
     spec.bonds.horizon = Horizon::Ratio(ratio);
     spec.bonds.influence = Influence::Inverse;
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     spec
 }
 

@@ -25,7 +25,7 @@ fn strip(cells: i32, spacing: f64, left: (f64, LawSpec), right: (f64, LawSpec)) 
     let mut spec = Spec::new(2, body, left.0, left.1);
     spec.space.plane = Plane::Strain;
     spec.bonds.horizon = Horizon::Ratio(2);
-    spec.bonds.volume_scaling = true;
+    spec.bonds.partial_volume_correction = true;
     spec.space.periodic[1] = Some(f64::from(across) * spacing);
     let half = |name: &str, sign: f64| SetSpec {
         name: name.into(),

@@ -292,7 +292,7 @@ fn statics_without_contact_does_not_pass_over_attraction() {
             increments: 1,
             duration: None,
             conditions: vec![held("one"), held("held")],
-            indenters: vec![],
+            rigid_bodies: vec![],
             cuts: vec![],
         });
         let mut sim = build(&spec, Options::default()).unwrap();

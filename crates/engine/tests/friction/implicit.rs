@@ -99,13 +99,13 @@ fn blocks_that_glance_keep_their_momentum() {
 fn bodies_with_mass_go_the_way_of_explicit_steps() {
     for friction in [None, Some(FrictionSpec::constant(0.4))] {
         let place = |sim: &mut dyn Simulation| {
-            ["center", "turn", "velocity", "spin"]
+            ["center", "rotation", "velocity", "angular_velocity"]
                 .map(|q| seen(sim, q))
                 .concat()
         };
         let thrown = |dt: f64| {
             let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, friction.clone(), dt);
-            let IndenterMotion::Free(free) = &mut spec.loading.indenters[0].motion else {
+            let RigidBodyMotion::Free(free) = &mut spec.loading.rigid_bodies[0].motion else {
                 panic!()
             };
             (free.center, free.velocity) = ([2.2, 2.6, 4.6], [0.15, 0.1, -0.3]);
@@ -181,7 +181,7 @@ fn tumbled(solver: Solver) -> Vec<f64> {
     );
     assert!(straight < 1e-9 && turned < 1e-3, "{straight} {turned}");
     assert!((end / start - 1.0).abs() < 0.02, "{start} {end}");
-    ["center", "turn", "velocity", "spin"]
+    ["center", "rotation", "velocity", "angular_velocity"]
         .map(|q| seen(sim.as_mut(), q))
         .concat()
 }
@@ -191,7 +191,7 @@ fn tumbled(solver: Solver) -> Vec<f64> {
 fn a_ball_bounces_off_held_points() {
     for solver in [Solver::Direct, Solver::ConjugateGradients] {
         let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, None, 0.04);
-        let IndenterMotion::Free(free) = &mut spec.loading.indenters[0].motion else {
+        let RigidBodyMotion::Free(free) = &mut spec.loading.rigid_bodies[0].motion else {
             panic!()
         };
         (free.center, free.velocity) = ([2.5, 2.5, 4.6], [0.0, 0.0, -0.3]);
@@ -222,11 +222,11 @@ fn a_ball_bounces_off_held_points() {
 #[test]
 fn a_head_with_cohesion_draws_points_along() {
     let rises = |z: &str| {
-        IndenterMotion::Kinematic([text("0").unwrap(), text("0").unwrap(), text(z).unwrap()])
+        RigidBodyMotion::Kinematic([text("0").unwrap(), text("0").unwrap(), text(z).unwrap()])
     };
     let drawn = |stepper: Stepper, dt: f64| {
         let normal = [0.0, 0.0, 1.0];
-        let mut plane = IndenterSpec::new(10.0, RigidShape::Plane { normal }, rises("0.05*t"));
+        let mut plane = RigidBodySpec::new(10.0, RigidShape::Plane { normal }, rises("0.05*t"));
         plane.turn = Some(TurnSpec {
             axis: [1.0, 0.0, 0.0],
             angle: text("pi").unwrap(),
@@ -263,5 +263,8 @@ fn a_head_with_cohesion_draws_points_along() {
         (implicit / explicit - 1.0).abs() < 0.02,
         "{implicit} {explicit}"
     );
-    assert!(l.residual().abs() < 1e-2 * l.work_indenter.abs(), "{l:?}");
+    assert!(
+        l.residual().abs() < 1e-2 * l.work_rigid_bodies.abs(),
+        "{l:?}"
+    );
 }

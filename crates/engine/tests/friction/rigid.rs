@@ -21,12 +21,12 @@ pub(super) fn run(sim: &mut dyn Simulation, steps: usize) {
     (0..steps).for_each(|_| sim.step().unwrap());
 }
 
-fn probe(spec: &mut Spec, indenter: &str) {
+fn probe(spec: &mut Spec, rigid_body: &str) {
     spec.run.probes.push(ProbeSpec {
         name: "p".into(),
         set: "all".into(),
-        measure: Measure::Indenter {
-            indenter: indenter.into(),
+        measure: Measure::RigidBody {
+            rigid_body: rigid_body.into(),
             of: None,
         },
     });
@@ -76,7 +76,7 @@ pub(super) fn on_an_incline(friction: FrictionSpec, tangent: f64) -> Spec {
     };
     let depth = (0.03f64 / 20.0).sqrt();
     let center = [0.0, depth - 3.0, 0.0];
-    let mut plane = IndenterSpec::new(20.0, shape, IndenterMotion::Kinematic(constants(center)));
+    let mut plane = RigidBodySpec::new(20.0, shape, RigidBodyMotion::Kinematic(constants(center)));
     // an edge of 800 lies along x
     plane.turn = Some(TurnSpec {
         axis: [0.0, 0.0, 1.0],
@@ -84,7 +84,7 @@ pub(super) fn on_an_incline(friction: FrictionSpec, tangent: f64) -> Spec {
     });
     plane.name = "plane".into();
     plane.friction = Some(friction);
-    spec.loading.indenters = vec![plane];
+    spec.loading.rigid_bodies = vec![plane];
     probe(&mut spec, "plane");
     spec
 }
@@ -127,7 +127,7 @@ fn a_block_slides_down_an_incline_by_coulombs_law() {
     let l = sim.ledger().unwrap();
     assert!(l.residual().abs() < 1e-6 * dissipated, "{l:?}");
     assert!(
-        (l.work_indenter + dissipated).abs() < 1e-2 * dissipated,
+        (l.work_rigid_bodies + dissipated).abs() < 1e-2 * dissipated,
         "{l:?} {dissipated}"
     );
 }
@@ -196,8 +196,8 @@ fn dragging_to_and_fro_takes_the_area_of_the_loop() {
         set: "top".into(),
         kind: ConditionKind::Displacement([text(&way), text(&down), None]),
     }];
-    spec.loading.indenters[0].stiffness = 2e4;
-    spec.loading.indenters[0].motion = IndenterMotion::Kinematic(constants([0.0, -3.0, 0.0]));
+    spec.loading.rigid_bodies[0].stiffness = 2e4;
+    spec.loading.rigid_bodies[0].motion = RigidBodyMotion::Kinematic(constants([0.0, -3.0, 0.0]));
     spec.run.schedule = Schedule {
         steps: count as u64,
         time_step: TimeStep::Fixed(1.0 / count),
@@ -262,14 +262,14 @@ pub(super) fn tumbling(shape: RigidShape, friction: Option<FrictionSpec>, dt: f6
     spec.bonds.horizon = Horizon::Ratio(2);
     let mut free = FreeSpec::new(30.0, [2.2, 2.6, 5.1], [0.05, 0.1, -0.3]);
     free.spin = [0.03, -0.04, 0.1];
-    let mut body = IndenterSpec::new(8.0, shape, IndenterMotion::Free(free));
+    let mut body = RigidBodySpec::new(8.0, shape, RigidBodyMotion::Free(free));
     body.turn = Some(TurnSpec {
         axis: [0.6, 0.0, 0.8],
         angle: text("0.7").unwrap(),
     });
     body.name = "box".into();
     body.friction = friction;
-    spec.loading.indenters = vec![body];
+    spec.loading.rigid_bodies = vec![body];
     spec.run.schedule.time_step = TimeStep::Fixed(dt);
     probe(&mut spec, "box");
     spec
@@ -288,7 +288,8 @@ pub(super) fn of_both(sim: &mut dyn Simulation) -> ([f64; 6], f64) {
     };
     let (volume, density) = (sim.scalars("volume"), sim.scalars("density"));
     let (x, v) = (sim.vectors("position"), sim.velocities());
-    let [c, w, turn, spin] = ["center", "velocity", "turn", "spin"].map(|q| seen(sim, q));
+    let [c, w, turn, spin] =
+        ["center", "velocity", "rotation", "angular_velocity"].map(|q| seen(sim, q));
     let mass = 30.0;
     let mut sum = [0.0; 6];
     let mut size = 0.0;
@@ -368,7 +369,10 @@ fn a_tumbling_box_keeps_what_both_have_and_loses_what_friction_takes() {
             // the nearest face of a box changes from place to place, and forces turn there: no order, and a bound set after the fact
             assert!((end / start - 1.0).abs() < 5e-3, "{start} {end}");
             let l = sim.ledger().unwrap();
-            assert!(l.residual().abs() < 1e-3 * l.work_indenter.abs(), "{l:?}");
+            assert!(
+                l.residual().abs() < 1e-3 * l.work_rigid_bodies.abs(),
+                "{l:?}"
+            );
         }
     }
 }
@@ -378,7 +382,7 @@ fn a_rubbing_ball_keeps_energy_at_second_order() {
     for friction in [None, Some(FrictionSpec::constant(0.4))] {
         let off = |dt: f64, steps: usize| {
             let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, friction.clone(), dt);
-            let IndenterMotion::Free(free) = &mut spec.loading.indenters[0].motion else {
+            let RigidBodyMotion::Free(free) = &mut spec.loading.rigid_bodies[0].motion else {
                 panic!()
             };
             (free.center, free.velocity) = ([2.2, 2.6, 4.6], [0.15, 0.1, -0.3]);
@@ -412,7 +416,7 @@ fn a_box_of_triangles_tumbles_as_the_box() {
     let end = |shape: RigidShape| {
         let mut sim = made(&tumbling(shape, Some(FrictionSpec::constant(0.4)), 0.02));
         run(sim.as_mut(), 500);
-        ["center", "turn", "spin"]
+        ["center", "rotation", "angular_velocity"]
             .map(|q| seen(sim.as_mut(), q))
             .concat()
     };
@@ -426,7 +430,7 @@ fn a_box_of_triangles_tumbles_as_the_box() {
 fn what_touches_hard_is_stepped_in_parts() {
     let mut spec = tumbling(RigidShape::Box { half: HALF }, None, 0.02);
     spec.run.schedule.time_step = TimeStep::Auto;
-    spec.loading.indenters[0].stiffness = 4000.0;
+    spec.loading.rigid_bodies[0].stiffness = 4000.0;
     let mut sim = made(&spec);
     while sim.time() < 20.0 {
         sim.step().unwrap();
@@ -435,15 +439,18 @@ fn what_touches_hard_is_stepped_in_parts() {
     println!(
         "parts {}, residual over work {:.1e}",
         sim.info().parts,
-        l.residual() / l.work_indenter
+        l.residual() / l.work_rigid_bodies
     );
     assert!(sim.info().parts > 1);
     // stable, not exact: a hard blow makes waves of which eight tenths of the stable step know little; a bound set after the fact
-    assert!(l.residual().abs() < 0.2 * l.work_indenter.abs(), "{l:?}");
+    assert!(
+        l.residual().abs() < 0.2 * l.work_rigid_bodies.abs(),
+        "{l:?}"
+    );
 }
 
 /// A held layer of points of spacing 1 below z = 0.
-pub(super) fn layer(edge: f64, body: IndenterSpec) -> Spec {
+pub(super) fn layer(edge: f64, body: RigidBodySpec) -> Spec {
     let plate = BodySpec::Lattice {
         kind: LatticeKind::Cubic,
         spacing: 1.0,
@@ -461,7 +468,7 @@ pub(super) fn layer(edge: f64, body: IndenterSpec) -> Spec {
         kind: ConditionKind::Displacement([text("0"), text("0"), text("0")]),
     }];
     spec.run.schedule.time_step = TimeStep::Fixed(0.005);
-    spec.loading.indenters = vec![IndenterSpec {
+    spec.loading.rigid_bodies = vec![RigidBodySpec {
         name: "head".into(),
         ..body
     }];
@@ -477,11 +484,11 @@ fn pulling_a_flat_face_off_takes_the_work_of_adhesion() {
     };
     assert!((cohesion.range() - 0.8).abs() < 1e-15);
     let rises = |z: &str| {
-        IndenterMotion::Kinematic([text("0").unwrap(), text("0").unwrap(), text(z).unwrap()])
+        RigidBodyMotion::Kinematic([text("0").unwrap(), text("0").unwrap(), text(z).unwrap()])
     };
     // solid above: its normal points down once it is turned
     let normal = [0.0, 0.0, 1.0];
-    let mut plane = IndenterSpec::new(10.0, RigidShape::Plane { normal }, rises("t"));
+    let mut plane = RigidBodySpec::new(10.0, RigidShape::Plane { normal }, rises("t"));
     plane.turn = Some(TurnSpec {
         axis: [1.0, 0.0, 0.0],
         angle: text("pi").unwrap(),
@@ -505,12 +512,12 @@ fn pulling_a_flat_face_off_takes_the_work_of_adhesion() {
 #[test]
 fn a_sphere_is_pulled_off_by_bradleys_force() {
     let (radius, w) = (400.0, 0.9);
-    let motion = IndenterMotion::Kinematic([
+    let motion = RigidBodyMotion::Kinematic([
         text("0.3").unwrap(),
         text("0.2").unwrap(),
         text("400 - 0.05 + 0.5*t").unwrap(),
     ]);
-    let mut ball = IndenterSpec::sphere(1e-3, radius, motion);
+    let mut ball = RigidBodySpec::sphere(1e-3, radius, motion);
     ball.cohesion = Some(CohesionSpec {
         energy: w,
         strength: 2.0,
@@ -541,28 +548,32 @@ fn what_rigid_bodies_cannot_be_is_refused() {
     };
     refused(
         &|s| {
-            s.loading.indenters[0].shape = RigidShape::Plane {
+            s.loading.rigid_bodies[0].shape = RigidShape::Plane {
                 normal: [0.0, 0.0, 1.0],
             }
         },
-        "a plane has no end",
+        "an infinite plane has no mass",
     );
     refused(
         &|s| {
-            s.run.probes[0].measure = Measure::Indenter {
-                indenter: "ball".into(),
+            s.run.probes[0].measure = Measure::RigidBody {
+                rigid_body: "ball".into(),
                 of: None,
             }
         },
-        "no indenter `ball`",
-    );
-    refused(
-        &|s| s.loading.indenters.push(s.loading.indenters[0].clone()),
-        "two indenters",
+        "no rigid body `ball`",
     );
     refused(
         &|s| {
-            if let IndenterMotion::Free(free) = &mut s.loading.indenters[0].motion {
+            s.loading
+                .rigid_bodies
+                .push(s.loading.rigid_bodies[0].clone())
+        },
+        "two rigid bodies",
+    );
+    refused(
+        &|s| {
+            if let RigidBodyMotion::Free(free) = &mut s.loading.rigid_bodies[0].motion {
                 free.inertia = Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3.0]]);
             }
         },
@@ -571,7 +582,7 @@ fn what_rigid_bodies_cannot_be_is_refused() {
     refused(
         &|s| {
             s.space.periodic = [Some(6.0), None, None];
-            s.loading.indenters[0].shape = RigidShape::Box {
+            s.loading.rigid_bodies[0].shape = RigidShape::Box {
                 half: [1.0, 1.5, 4.0],
             };
         },
@@ -579,7 +590,7 @@ fn what_rigid_bodies_cannot_be_is_refused() {
     );
     refused(
         &|s| {
-            s.loading.indenters[0].cohesion = Some(CohesionSpec {
+            s.loading.rigid_bodies[0].cohesion = Some(CohesionSpec {
                 energy: 1.0,
                 strength: 1.0,
             })

@@ -212,7 +212,7 @@ fn a_ball_that_rolls_does_not_rub() {
     let begins = |velocity: f64| {
         let friction = Some(FrictionSpec::constant(0.4));
         let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, friction, 0.005);
-        let IndenterMotion::Free(free) = &mut spec.loading.indenters[0].motion else {
+        let RigidBodyMotion::Free(free) = &mut spec.loading.rigid_bodies[0].motion else {
             panic!()
         };
         // 1.9 above the point (2, 2, 2), and further than its radius from all others

@@ -17,11 +17,11 @@ const FLOORS: &[&[&str]] = &[
     &["law"],
     &["interaction"],
     &["fracture"],
-    &["condition"],
+    &["boundary_condition"],
     &["observe"],
     &["constitutive"],
     &["dynamics", "statics"],
-    &["transfer"],
+    &["diffusion"],
     &["run"],
 ];
 

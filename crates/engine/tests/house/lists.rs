@@ -1,8 +1,8 @@
 //! What is one of many is one file, and a line in the list of its folder.
 
 use crate::reading::sources;
-use peridyne::law::descriptor::Shelved;
-use peridyne::law::fan;
+use peridyne::law::descriptor::Registered;
+use peridyne::law::many_body;
 use peridyne::law::material::{self, Material};
 use peridyne::law::potential::{self, Described};
 use peridyne::observe::observables;
@@ -82,9 +82,10 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "LAMMPS has another word for it",
     ),
     ("eam", "lammps/src/command/molecular.rs", "a word of LAMMPS"),
+    ("pals", "io/src/deck/renamed.rs", "it had another name"),
     (
         "no_potential",
-        "mechanics/src/constitutive/shelf/atoms.rs",
+        "mechanics/src/constitutive/registry/atoms.rs",
         "a message says what to write",
     ),
     (
@@ -143,17 +144,17 @@ impl potential::Kinds for Listed {
     }
 }
 
-impl fan::Kinds for Listed {
-    fn fan<F: fan::Described>(&mut self) {
+impl many_body::Kinds for Listed {
+    fn many_body<F: many_body::Described>(&mut self) {
         self.put(F::NAME, type_name::<F>());
     }
 }
 
 impl material::Kinds for Listed {
-    fn law<M: Shelved + Material<1> + Material<2> + Material<3>>(&mut self) {
+    fn law<M: Registered + Material<1> + Material<2> + Material<3>>(&mut self) {
         self.put(&M::descriptor().name, type_name::<M>());
     }
-    fn solid<M: Shelved + Material<2> + Material<3>>(&mut self) {
+    fn solid<M: Registered + Material<2> + Material<3>>(&mut self) {
         self.put(&M::descriptor().name, type_name::<M>());
     }
 }
@@ -193,15 +194,15 @@ fn touched(
 fn a_law_or_potential_is_a_file_and_a_line() {
     let sources = sources();
     let mut potentials = Listed::default();
-    let (mut fans, mut laws) = (Listed::default(), Listed::default());
+    let (mut many_body, mut laws) = (Listed::default(), Listed::default());
     potential::each(&mut potentials);
-    fan::each(&mut fans);
+    many_body::each(&mut many_body);
     material::each(&mut laws);
-    assert!(potentials.0.len() >= 12 && fans.0.len() >= 4 && laws.0.len() >= 8);
+    assert!(potentials.0.len() >= 12 && many_body.0.len() >= 4 && laws.0.len() >= 8);
     let (mut wrong, mut used) = (vec![], BTreeSet::new());
     for (listed, folder) in [
         (potentials, "mechanics/src/law/potential/"),
-        (fans, "mechanics/src/law/fan/"),
+        (many_body, "mechanics/src/law/many_body/"),
         (laws, "mechanics/src/law/material/"),
     ] {
         for word in &listed.0 {

@@ -23,8 +23,9 @@ const MIDDLE: &[(&str, &str, [usize; 3])] = &[
         [2, 46, 11],
     ),
 ];
-/// Methods of `Simulation`, `Steered` and `Examined`.
-const ASKED: [usize; 3] = [19, 12, 9];
+/// Methods of `Simulation`, `CoSimulation` and `Examined`.
+// what acts from outside may begin with a motion that follows statics
+const ASKED: [usize; 3] = [19, 15, 9];
 /// Lines of a function.
 const LONG: usize = 120;
 
@@ -62,7 +63,7 @@ fn several_bodies_answer_no_default() {
     let asked = of("contract.rs", "pub trait Interaction");
     let each = of(
         "several.rs",
-        "impl<const D: usize> Interaction<D> for SeveralInteraction<D>",
+        "impl<const D: usize> Interaction<D> for MultiBodyInteraction<D>",
     );
     let left: Vec<&str> = asked.difference(&each).map(String::as_str).collect();
     assert_eq!(left, FOLLOW);
@@ -95,7 +96,7 @@ fn the_middle_of_the_house_only_shrinks() {
     });
     let found: Vec<_> = found.collect();
     let asked = fs::read_to_string(run.join("mod.rs")).unwrap();
-    let asked = ["Simulation", "Steered", "Examined"].map(|name| {
+    let asked = ["Simulation", "CoSimulation", "Examined"].map(|name| {
         let text = block(&asked, &format!("pub trait {name}"));
         functions(text).iter().filter(|f| f.1 == 4).count()
     });
@@ -106,7 +107,10 @@ fn the_middle_of_the_house_only_shrinks() {
         );
         assert!(found[0] <= 16 || *name == "System", "{name} is too much");
     }
-    assert_eq!(asked, ASKED, "methods of Simulation, Steered, Examined");
+    assert_eq!(
+        asked, ASKED,
+        "methods of Simulation, CoSimulation, Examined"
+    );
 }
 
 #[test]

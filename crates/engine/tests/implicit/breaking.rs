@@ -1,4 +1,4 @@
-//! Implicit steps with fracture, contact and indenters: as explicit ones do where both can, and with the ledger closed.
+//! Implicit steps with fracture, contact and rigid_bodies: as explicit ones do where both can, and with the ledger closed.
 
 use super::*;
 
@@ -51,7 +51,7 @@ fn bonds_break_at_the_end_of_a_step_as_explicit_ones_do() {
         };
         let (explicit, begins, _) = run(Stepper::Verlet, 0.5, 80.0);
         let (implicit, begun, l) = run(Stepper::Newmark(Newmark::hht(-0.05)), 0.5, 80.0);
-        let worked = l.work_conditions.abs();
+        let worked = l.work_boundary_conditions.abs();
         println!("{law:?}: {explicit} and {implicit} broken, from {begins} and {begun} on; {l:?}");
         assert!(explicit > 20.0, "{law:?}: {explicit}");
         assert!(
@@ -69,7 +69,7 @@ fn bonds_break_at_the_end_of_a_step_as_explicit_ones_do() {
             let (broken, _, l) = run(Stepper::Newmark(Newmark::hht(-0.05)), 5.0, 120.0);
             assert!(broken > 20.0);
             assert!(
-                l.residual().abs() < 1e-2 * l.work_conditions.abs(),
+                l.residual().abs() < 1e-2 * l.work_boundary_conditions.abs(),
                 "{law:?}: {l:?}"
             );
         }
@@ -118,7 +118,10 @@ fn bonds_that_remember_break_at_the_end_of_a_step_as_explicit_ones_do() {
         assert!(explicit > 20.0, "{fracture:?}: {explicit}");
         assert!((implicit / explicit - 1.0).abs() < 0.1, "{fracture:?}");
         assert!((begun / begins - 1.0).abs() < 0.02, "{fracture:?}");
-        assert!(l.residual().abs() < 1e-3 * l.work_conditions.abs(), "{l:?}");
+        assert!(
+            l.residual().abs() < 1e-3 * l.work_boundary_conditions.abs(),
+            "{l:?}"
+        );
     }
 }
 
@@ -203,10 +206,10 @@ fn a_ball_that_is_pressed_in_does_the_work_that_the_block_holds() {
             kind: ConditionKind::Displacement([text("0"), text("0"), None]),
         });
         let center = ["6", "10.5 - 0.005*t", "0"].map(|e| text(e).unwrap());
-        let motion = IndenterMotion::Kinematic(center);
+        let motion = RigidBodyMotion::Kinematic(center);
         spec.loading
-            .indenters
-            .push(IndenterSpec::sphere(2.0, 4.0, motion));
+            .rigid_bodies
+            .push(RigidBodySpec::sphere(2.0, 4.0, motion));
         spec.run.schedule.stepper = stepper;
         spec.run.schedule.time_step = TimeStep::Fixed(step);
         let mut sim = built(&spec);
@@ -218,10 +221,10 @@ fn a_ball_that_is_pressed_in_does_the_work_that_the_block_holds() {
     };
     let (far, l) = run(Stepper::Newmark(Newmark::hht(-0.1)), 5.0);
     assert!(
-        l.work_indenter > 0.0 && l.work_indenter > 0.9 * l.strain,
+        l.work_rigid_bodies > 0.0 && l.work_rigid_bodies > 0.9 * l.strain,
         "{l:?}"
     );
-    assert!(l.residual().abs() < 0.02 * l.work_indenter, "{l:?}");
+    assert!(l.residual().abs() < 0.02 * l.work_rigid_bodies, "{l:?}");
     let (near, _) = run(Stepper::Verlet, 0.25);
     let most = near.iter().map(|u| u[1].abs()).fold(0.0, f64::max);
     assert!(most > 0.1, "{most}");

@@ -80,7 +80,7 @@ fn chains() -> [(Body<1>, fn(&Body<1>) -> Bonds); 2] {
 
 /// An absent crack between points 4 and 5, a broken one between 9 and 10.
 fn cracked(body: &Body<1>, mut it: Bonds) -> Bonds {
-    for (kind, place) in [(CrackKind::Absent, 4.5), (CrackKind::Broken, 9.5)] {
+    for (kind, place) in [(CrackKind::Excluded, 4.5), (CrackKind::Broken, 9.5)] {
         let crosses = |a: [f64; 1], b: [f64; 1]| (a[0] < place) != (b[0] < place);
         assert_eq!(it.cut(body, kind, &crosses), ACROSS as u64);
     }
@@ -162,9 +162,9 @@ fn what_damage_counts_is_stored_once_a_crack_is_absent() {
         it.cut(&body, CrackKind::Broken, &crosses(9.5));
         assert_eq!(it.bytes(), before);
         // nothing lies there
-        assert_eq!(it.cut(&body, CrackKind::Absent, &crosses(-0.5)), 0);
+        assert_eq!(it.cut(&body, CrackKind::Excluded, &crosses(-0.5)), 0);
         assert_eq!(it.bytes(), before);
-        it.cut(&body, CrackKind::Absent, &crosses(4.5));
+        it.cut(&body, CrackKind::Excluded, &crosses(4.5));
         assert_eq!(it.bytes(), before + it.memory().0.len());
     }
 }

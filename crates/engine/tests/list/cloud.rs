@@ -9,7 +9,7 @@ use peridyne::interaction::weight::BondWeight;
 use peridyne::interaction::{Interaction, PointConstants, PointEnergies, Sweep, Toughness};
 use peridyne::law::solid::bond_based::BondBased;
 use peridyne::law::solid::eam_like::{EamLike, Solid};
-use peridyne::spec::{CrackKind, Influence, Release};
+use peridyne::spec::{Breakage, CrackKind, Influence};
 
 /// ξ to the nearest image along y, and its square.
 fn distance<const D: usize>(a: [f64; 3], b: [f64; 3], period: f64) -> ([f64; 3], f64) {
@@ -143,7 +143,7 @@ fn textbook<const D: usize>() {
             Sweep::Evolve {
                 v: view(&zeros(body.len())),
                 steps: [0.0; 2],
-                release: Release::AfterForce,
+                breakage: Breakage::AfterForce,
             },
             None,
         );
@@ -225,7 +225,7 @@ fn a_body_at_rest_has_exactly_no_force() {
             Sweep::Evolve {
                 v: view(&zeros(body.len())),
                 steps: [0.0; 2],
-                release: Release::AfterForce,
+                breakage: Breakage::AfterForce,
             },
             None,
         );

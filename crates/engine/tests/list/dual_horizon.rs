@@ -26,8 +26,8 @@ fn solid(size: &[f64], longest: f64, own: Option<&str>) -> Spec {
     spec.bonds.horizon = Horizon::Length(longest);
     spec.bonds.family = FamilyChoice::List;
     spec.bonds.calibration = Calibration::Continuum;
-    spec.bonds.volume_scaling = true;
-    spec.bonds.own_horizon = own.and_then(text);
+    spec.bonds.partial_volume_correction = true;
+    spec.bonds.variable_horizon = own.and_then(text);
     spec
 }
 
@@ -144,7 +144,7 @@ fn influences() -> impl Iterator<Item = Influence> + Clone {
 
 /// The force on every point of a line by `Σ_j ½ (c_i ω_i ν_i + c_j ω_j ν_j) s sign ξ`, with `c = 2E/∫ω|ξ|dξ` at the horizon of each end.
 #[test]
-fn both_ends_of_a_bond_weigh_it_by_their_own_horizon() {
+fn both_ends_of_a_bond_weigh_it_by_their_variable_horizon() {
     // ∫ω|ξ|dξ over the segment, and ω within the horizon
     type Closed = (&'static str, fn(f64) -> f64, fn(f64, f64) -> f64);
     let cases: [Closed; 4] = [
@@ -195,7 +195,7 @@ fn a_point_has_no_bonds_that_weigh_nothing() {
         LawSpec::Pmb(PmbStiffness::Young(1.0)),
         of_families(2).remove(0),
     ] {
-        for influence in [Influence::Conical, Influence::CubicSpline] {
+        for influence in [Influence::Linear, Influence::CubicSpline] {
             let mut spec = with_law(solid(&[9.0, 8.0], 2.9, Some("2.9")), &law);
             spec.bonds.influence = influence;
             let mut sim = started(&spec);
@@ -490,22 +490,34 @@ fn what_knows_one_horizon_is_refused() {
         change(&mut spec);
         build(&spec, Options::default()).err().unwrap().path
     };
-    assert_eq!(said(&|s| s.bonds.own_horizon = text("5")), "own_horizon");
-    assert_eq!(said(&|s| s.bonds.own_horizon = text("x-1")), "own_horizon");
-    assert_eq!(said(&|s| s.bonds.own_horizon = text("2+t")), "own_horizon");
+    assert_eq!(
+        said(&|s| s.bonds.variable_horizon = text("5")),
+        "variable_horizon"
+    );
+    assert_eq!(
+        said(&|s| s.bonds.variable_horizon = text("x-1")),
+        "variable_horizon"
+    );
+    assert_eq!(
+        said(&|s| s.bonds.variable_horizon = text("2+t")),
+        "variable_horizon"
+    );
     assert_eq!(
         said(&|s| s.bonds.family = FamilyChoice::Auto),
-        "own_horizon"
+        "variable_horizon"
     );
-    assert_eq!(said(&|s| s.bonds.volume_scaling = false), "volume_scaling");
+    assert_eq!(
+        said(&|s| s.bonds.partial_volume_correction = false),
+        "partial_volume_correction"
+    );
     assert_eq!(
         said(&|s| s.bonds.calibration = Calibration::Discrete),
         "calibration"
     );
     let moduli = Parameters::numbers(&[("young", 1.0), ("poisson", 0.3)]);
     assert_eq!(
-        said(&|s| s.materials[0].law = LawSpec::named("position_aware", moduli.clone())),
-        "own_horizon"
+        said(&|s| s.materials[0].law = LawSpec::named("pals", moduli.clone())),
+        "variable_horizon"
     );
     let softening = Parameters::numbers(&[("young", 1.0), ("onset", 0.2)]);
     assert_eq!(
@@ -513,7 +525,7 @@ fn what_knows_one_horizon_is_refused() {
             s.materials[0].law = LawSpec::named("softening", softening.clone());
             s.materials[0].fracture = Some(FractureSpec::new(Criterion::Energy(0.1)));
         }),
-        "own_horizon"
+        "variable_horizon"
     );
 }
 
@@ -573,7 +585,7 @@ fn laws_of_bonds_answer_at_every_horizon_as_pmb_does() {
 }
 
 /// Two materials, the second three times as stiff.
-fn of_two(mut spec: Spec, rule: InterfaceRule) -> Spec {
+fn of_two(mut spec: Spec, rule: BondMixing) -> Spec {
     spec.interactions.interface = rule;
     spec.materials.push(spec.materials[0].clone());
     spec.materials[1].law = LawSpec::Pmb(PmbStiffness::Young(3.0));
@@ -589,10 +601,10 @@ fn of_two(mut spec: Spec, rule: InterfaceRule) -> Spec {
 }
 
 /// What a bond between micromoduli 1 and 3 has.
-const RULES: [(InterfaceRule, f64); 3] = [
-    (InterfaceRule::Series, 1.5),
-    (InterfaceRule::Parallel, 2.0),
-    (InterfaceRule::Minimum, 1.0),
+const RULES: [(BondMixing, f64); 3] = [
+    (BondMixing::Harmonic, 1.5),
+    (BondMixing::Arithmetic, 2.0),
+    (BondMixing::Minimum, 1.0),
 ];
 
 #[test]
@@ -740,7 +752,7 @@ fn one_horizon_point_by_point_is_that_of_the_body() {
 
 /// Where horizons are graded, each point yields, and spreads shocks, as in a body of its own one.
 #[test]
-fn graded_points_answer_as_in_a_body_of_their_own_horizon() {
+fn graded_points_answer_as_in_a_body_of_their_variable_horizon() {
     let graded = "1.45 + 0.85*clamp((x-7)/4, 0, 1)";
     for (law, column) in of_points() {
         let spec = told(&law, 2.3, Some(graded));
@@ -879,7 +891,7 @@ fn a_fracture_energy_is_one_of_every_horizon() {
         (&[24.0][..], &pmb, Influence::Constant),
         (&[24.0, 6.0], &pmb, Influence::Constant),
         (&[24.0, 6.0], &lps, Influence::Constant),
-        (&[24.0], &pmb, Influence::Conical),
+        (&[24.0], &pmb, Influence::Linear),
         (&[24.0], &pmb, falls),
     ] {
         let of = |horizon: f64, own: Option<&str>, g: f64| {

@@ -11,7 +11,7 @@ use peridyne::law::Law;
 use peridyne::law::solid::bond_based::{BondBased, BondBasedMixed};
 use peridyne::law::solid::eam_like::{EamLike, Solid};
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{Influence, InterfaceRule, Release};
+use peridyne::spec::{BondMixing, Breakage, Influence};
 use std::sync::Arc;
 
 /// Everything that a few breaking steps leave behind.
@@ -47,7 +47,7 @@ fn trace_of_pairs<W: Law>(
                 Sweep::Evolve {
                     v: view(&displace(&body, case.amplitude, step + 7)),
                     steps: [0.3; 2],
-                    release: [Release::AfterForce, Release::AtOnce][step as usize % 2],
+                    breakage: [Breakage::AfterForce, Breakage::BeforeForce][step as usize % 2],
                 },
                 None,
             );
@@ -72,7 +72,7 @@ fn every_width_and_number_of_threads_gives_the_same_bits() {
         ratio: solids[0].ratio(),
     };
     let mixed = BondBasedMixed {
-        rule: InterfaceRule::Parallel,
+        rule: BondMixing::Arithmetic,
     };
     let both = |simd, threads| {
         let per = PointConstants::PerMaterial(vec![1.0, 2.0]);
@@ -141,7 +141,7 @@ fn forces_allocate_nothing_and_a_bond_takes_eight_bytes() {
         let evolve = Sweep::Evolve {
             v: view(&still),
             steps: [0.0; 2],
-            release: Release::AfterForce,
+            breakage: Breakage::AfterForce,
         };
         it.forces(&body, view(&u), view_mut(&mut f), evolve, None);
         let before = allocations();
@@ -212,7 +212,7 @@ fn a_table_of_equal_pairs_is_the_law() {
             let evolve = Sweep::Evolve {
                 v: view(&v),
                 steps: [0.3; 2],
-                release: Release::AtOnce,
+                breakage: Breakage::BeforeForce,
             };
             let mut f = (zeros(body.len()), zeros(body.len()));
             let a = plain.forces(&body, view(&u), view_mut(&mut f.0), evolve, None);

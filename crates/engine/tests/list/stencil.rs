@@ -13,7 +13,7 @@ use peridyne::law::influence::influence;
 use peridyne::law::solid::bond_based::{BondBased, BondBasedMixed};
 use peridyne::law::solid::eam_like::EamLike;
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{CrackKind, Influence, InterfaceRule, Release};
+use peridyne::spec::{BondMixing, Breakage, CrackKind, Influence};
 use std::collections::BTreeSet;
 
 /// Bonds as pairs of ids, and whether they are whole.
@@ -83,7 +83,10 @@ fn same_as_stencil<const D: usize, W: Law>(
     let mut list = case.list(&cloud, law, constants, Simd::detect());
     assert_eq!(stencil.directed_bonds(), list.directed_bonds());
     // a crack that ends inside, its tip absent, the rest broken
-    for (kind, from, to) in [(CrackKind::Absent, 2.2, 3.2), (CrackKind::Broken, 0.5, 2.2)] {
+    for (kind, from, to) in [
+        (CrackKind::Excluded, 2.2, 3.2),
+        (CrackKind::Broken, 0.5, 2.2),
+    ] {
         let crosses = |a: [f64; D], b: [f64; D]| {
             let x = (0.13 + 0.5 * case.cells[0] as f64) * H;
             let last = 0.5 * (a[D - 1] + b[D - 1]) / H;
@@ -94,7 +97,7 @@ fn same_as_stencil<const D: usize, W: Law>(
         let cut = list.cut(&cloud, kind, &crosses);
         assert_eq!(stencil.cut(&body, kind, &crosses), cut);
         assert!(cut > 0 || (D == 1 && kind == CrackKind::Broken));
-        let absent = (kind == CrackKind::Absent) as u64 * cut;
+        let absent = (kind == CrackKind::Excluded) as u64 * cut;
         assert_eq!(list.directed_bonds(), before - absent);
     }
     stencil.prepare(&body);
@@ -103,7 +106,7 @@ fn same_as_stencil<const D: usize, W: Law>(
     let mut f = (zeros(body.len()), zeros(cloud.len()));
     for step in 0..4 {
         let amplitude = case.amplitude * (1.0 + 0.5 * step as f64);
-        let release = [Release::AtOnce, Release::AfterForce][step as usize % 2];
+        let breakage = [Breakage::BeforeForce, Breakage::AfterForce][step as usize % 2];
         let u = (
             displace(&body, amplitude, step),
             displace(&cloud, amplitude, step),
@@ -117,7 +120,7 @@ fn same_as_stencil<const D: usize, W: Law>(
             Sweep::Evolve {
                 v: view(&displace(&body, case.amplitude, step + 7)),
                 steps: [0.3; 2],
-                release,
+                breakage,
             },
             None,
         );
@@ -128,7 +131,7 @@ fn same_as_stencil<const D: usize, W: Law>(
             Sweep::Evolve {
                 v: view(&displace(&cloud, case.amplitude, step + 7)),
                 steps: [0.3; 2],
-                release,
+                breakage,
             },
             None,
         );
@@ -213,7 +216,7 @@ fn same_as_stencil<const D: usize, W: Law>(
 fn all_laws<const D: usize>(case: Case<D>) {
     let [soft, hard] = lps(D);
     let series = BondBasedMixed {
-        rule: InterfaceRule::Series,
+        rule: BondMixing::Harmonic,
     };
     let solid = EamLike {
         ratio: soft.ratio(),
@@ -284,7 +287,7 @@ fn list_is_stencil_in_three_dimensions() {
 /// These vanish at the horizon, where round-off would decide alone about points with no other bonds left: intact only.
 #[test]
 fn list_is_stencil_with_fading_influence() {
-    for influence in [Influence::Conical, Influence::CubicSpline] {
+    for influence in [Influence::Linear, Influence::CubicSpline] {
         let case = Case {
             influence,
             ..Case::new(LatticeKind::Cubic, 3, [8, 6, 7])

@@ -258,8 +258,8 @@ fn folds_are_those_of_the_column() {
 #[test]
 fn probes_of_what_is_not_there_are_refused() {
     let part = |name: &str| Part::Component(name.into());
-    let contour = |low, high| {
-        Measure::Contour(ContourSpec {
+    let j_integral = |low, high| {
+        Measure::JIntegral(JIntegralSpec {
             low,
             high,
             direction: [1.0, 0.0],
@@ -298,7 +298,7 @@ fn probes_of_what_is_not_there_are_refused() {
         ),
         (
             "all",
-            contour([1.0, 1.0], [2.0, 2.0]),
+            j_integral([1.0, 1.0], [2.0, 2.0]),
             "probes[1]",
             "needs equilibrium",
         ),

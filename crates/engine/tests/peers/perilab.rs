@@ -300,7 +300,7 @@ fn two_blocks(at: &[Point], dimension: usize, laws: [LawSpec; 2]) -> Spec {
     let mut spec = cells(at, VOLUME, 2.7e-9, HORIZON, laws[0].clone());
     spec.space.dimension = dimension;
     // each end of a bond answers for itself
-    spec.interactions.interface = InterfaceRule::Parallel;
+    spec.interactions.interface = BondMixing::Arithmetic;
     set(&mut spec, "soft", at, |x| !(x[0] > 0.0 && x[1] > 0.5));
     set(&mut spec, "stiff", at, |x| x[0] > 0.0 && x[1] > 0.5);
     spec.materials = { ["soft", "stiff"].into_iter().zip(laws) }
@@ -418,7 +418,7 @@ fn four() -> Vec<Off> {
 fn damage(moved: f64, criteria: [Criterion; 2], stored: f64) -> Vec<Off> {
     let at = [[-1.5, 0.0, 0.0], [0.5, 0.0, 0.0]];
     let mut spec = cells(&at, VOLUME, 2.7e-9, HORIZON, lps()[0].clone());
-    spec.interactions.interface = InterfaceRule::Parallel;
+    spec.interactions.interface = BondMixing::Arithmetic;
     set(&mut spec, "soft", &at, |x| x[0] < 0.0);
     set(&mut spec, "stiff", &at, |x| x[0] > 0.0);
     spec.materials = { ["soft", "stiff"].into_iter().zip(lps()).zip(criteria) }

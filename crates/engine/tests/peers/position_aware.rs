@@ -6,7 +6,7 @@ use peridyne::space::Point;
 use peridyne::spec::*;
 
 fn law(numbers: &[(&str, f64)]) -> LawSpec {
-    LawSpec::named("position_aware", Parameters::numbers(numbers))
+    LawSpec::named("pals", Parameters::numbers(numbers))
 }
 
 /// The peer's trial functions are 1, not what is right in a full family.

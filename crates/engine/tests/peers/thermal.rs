@@ -6,23 +6,23 @@ use peridyne::space::Point;
 use peridyne::spec::*;
 
 /// Temperatures as told, an expansion of 1e-5 per degree from the first one on.
-fn heated(reference: f64, value: &str) -> TransferSpec {
+fn heated(reference: f64, value: &str) -> DiffusionSpec {
     let text = Expression::parse(value, &[]).unwrap();
-    TransferSpec {
+    DiffusionSpec {
         quantity: Quantity::Heat,
-        method: TransferMethod::Explicit { safety: 0.9 },
+        method: DiffusionMethod::Explicit { safety: 0.9 },
         reference,
         across_broken: false,
         deformation: false,
-        materials: vec![TransferMaterial {
+        materials: vec![DiffusionMaterial {
             conductivity: 1e-9,
             capacity: 1.0,
             expansion: 1e-5,
         }],
         initial: vec![("all".into(), text.clone())],
-        conditions: vec![TransferCondition {
+        conditions: vec![DiffusionCondition {
             set: "all".into(),
-            kind: TransferKind::Value(text),
+            kind: DiffusionKind::Value(text),
         }],
     }
 }
@@ -39,7 +39,7 @@ pub fn cube() -> Vec<Off> {
     hold(&mut spec, "along x", ["", "0", "0"]);
     hold(&mut spec, "along y", ["0", "", "0"]);
     hold(&mut spec, "along z", ["0", "0", ""]);
-    spec.interactions.transfers = vec![heated(273.0, "273 + 1000*t")];
+    spec.interactions.diffusions = vec![heated(273.0, "273 + 1000*t")];
     spec.run.schedule.stepper = Stepper::Statics(Statics {
         method: Method::Newton,
         tolerance: 1e-12,
@@ -85,7 +85,7 @@ pub fn bonds_that_fail() -> Vec<Off> {
     hold(&mut spec, "held", ["0", "0", "0"]);
     hold(&mut spec, "gliding", ["0", "", "0"]);
     let value = "10000 - 10000*0.5*(cos(3.14159265359 + t*3.14159265359/0.1) + 1)";
-    spec.interactions.transfers = vec![heated(10_000.0, value)];
+    spec.interactions.diffusions = vec![heated(10_000.0, value)];
     spec.run.schedule.time_step = TimeStep::Fixed(1e-5);
     let mut sim = model(&spec);
     sim.start(true);

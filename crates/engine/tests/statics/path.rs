@@ -47,7 +47,7 @@ fn chains(rows: usize, increments: u64, opening: f64) -> Spec {
     hold(&mut spec, "low", [number(0.0), None, None]);
     hold(&mut spec, "high", [text("t"), None, None]);
     spec.run.schedule.steps = increments;
-    followed(&mut spec, Control::Opening(opening), 1e-12);
+    followed(&mut spec, Control::IndirectDisplacement(opening), 1e-12);
     spec
 }
 
@@ -166,7 +166,7 @@ fn a_path_does_not_see_periodic_faces() {
         }
         hold(&mut spec, "low", [number(0.0), number(0.0), None]);
         hold(&mut spec, "high", [text("t"), number(0.0), None]);
-        followed(&mut spec, Control::Opening(5e-4), 1e-9);
+        followed(&mut spec, Control::IndirectDisplacement(5e-4), 1e-9);
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);
         let path = (0..8).map(|_| {
@@ -262,7 +262,7 @@ fn slender(opening: f64, increments: u64) -> Spec {
     let mut spec = super::sequence::slender();
     spec.materials = vec![softening(0.01)];
     spec.run.schedule.steps = increments;
-    followed(&mut spec, Control::Opening(opening), 1e-9);
+    followed(&mut spec, Control::IndirectDisplacement(opening), 1e-9);
     spec
 }
 
@@ -311,7 +311,7 @@ fn what_has_no_path_is_refused() {
     };
     let method = said(&|spec| {
         spec.run.schedule.stepper = Stepper::Statics(Statics {
-            control: Control::Opening(1e-3),
+            control: Control::IndirectDisplacement(1e-3),
             ..Statics::default()
         });
     });
@@ -319,7 +319,7 @@ fn what_has_no_path_is_refused() {
     let solver = said(&|spec| {
         spec.run.schedule.stepper = Stepper::Statics(Statics {
             method: Method::Newton,
-            control: Control::Opening(1e-3),
+            control: Control::IndirectDisplacement(1e-3),
             solver: Solver::ConjugateGradients,
             ..Statics::default()
         });

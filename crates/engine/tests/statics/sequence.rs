@@ -6,7 +6,7 @@ fn breaking(spec: &mut Spec, critical: f64, equilibria: u64) {
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(critical)));
     spec.run.schedule.steps = equilibria;
     spec.run.schedule.stepper = Stepper::Statics(Statics {
-        control: Control::Breaking,
+        control: Control::SequentiallyLinear,
         ..Statics::default()
     });
 }
@@ -76,7 +76,7 @@ fn a_bar_of_bonds_that_break_by_stress_closes_its_ledger() {
         for n in 1..=8 {
             sim.step().unwrap();
             let l = sim.ledger().unwrap();
-            let off = l.residual().abs() / l.work_conditions.abs().max(l.strain);
+            let off = l.residual().abs() / l.work_boundary_conditions.abs().max(l.strain);
             assert!(off < 1e-9, "{n}: {off:e} {l:?}");
             assert_eq!(sim.broken() > 0, n > 1);
             times.push(sim.time());
@@ -130,7 +130,7 @@ fn a_bar_of_bonds_that_break_by_work_closes_its_ledger() {
             for n in 1..=6 {
                 sim.step().unwrap();
                 let l = sim.ledger().unwrap();
-                let off = l.residual().abs() / l.work_conditions.abs().max(l.strain);
+                let off = l.residual().abs() / l.work_boundary_conditions.abs().max(l.strain);
                 assert!(off < bound, "{law:?} {n}: {off:e} {l:?}");
                 assert_eq!(sim.broken() > 0, n > 1);
                 times.push(sim.time());
@@ -172,7 +172,7 @@ fn a_slender_bar_snaps_back_and_its_ledger_closes() {
     for n in 1..=12 {
         sim.step().unwrap();
         let l = sim.ledger().unwrap();
-        let off = l.residual().abs() / l.work_conditions.abs().max(l.strain);
+        let off = l.residual().abs() / l.work_boundary_conditions.abs().max(l.strain);
         println!("{n}: t {} {l:?}, broken {}", sim.time(), sim.broken());
         assert!(off < 1e-9, "{n}: {off:e} {l:?}");
         // ½ P Δ of a linear body
@@ -227,7 +227,7 @@ fn what_has_no_factor_is_refused() {
     };
     let newton = said(&|spec| {
         spec.run.schedule.stepper = Stepper::Statics(Statics {
-            control: Control::Breaking,
+            control: Control::SequentiallyLinear,
             method: Method::Newton,
             ..Statics::default()
         });
@@ -265,7 +265,7 @@ fn bonds_through_periodic_faces_break_in_turn() {
         hold(&mut spec, "high", [text("t"), number(0.0), None]);
         breaking(&mut spec, 0.01, 6);
         spec.run.schedule.stepper = Stepper::Statics(Statics {
-            control: Control::Breaking,
+            control: Control::SequentiallyLinear,
             solver: Solver::Direct,
             ..Statics::default()
         });

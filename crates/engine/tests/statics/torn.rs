@@ -67,7 +67,7 @@ fn points_that_have_lost_their_bonds_rest_where_they_are() {
         for (is, expected) in [
             (ledger.released, 8.0 * spring),
             (ledger.dissipated, 2.0 * spring),
-            (ledger.work_conditions, 10.0 * spring),
+            (ledger.work_boundary_conditions, 10.0 * spring),
         ] {
             let off = is / expected - 1.0;
             assert!(off.abs() < bound, "{case}: {off:e} {ledger:?}");
@@ -154,7 +154,7 @@ fn linear_increments_see_what_broke() {
         for ledger in [one, other] {
             let residual = ledger.residual().abs();
             assert!(
-                residual <= 1e-8 * ledger.work_conditions.abs(),
+                residual <= 1e-8 * ledger.work_boundary_conditions.abs(),
                 "{residual:e} {ledger:?}"
             );
         }

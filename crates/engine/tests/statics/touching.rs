@@ -59,15 +59,15 @@ fn forces_rubbed(
         number(0.0).unwrap(),
     ];
     let shape = RigidShape::Sphere { radius };
-    let mut disk = IndenterSpec::new(stiffness, shape, IndenterMotion::Kinematic(center));
+    let mut disk = RigidBodySpec::new(stiffness, shape, RigidBodyMotion::Kinematic(center));
     disk.name = "disk".into();
     disk.friction = friction;
-    spec.loading.indenters = vec![disk];
+    spec.loading.rigid_bodies = vec![disk];
     spec.run.probes = vec![ProbeSpec {
         name: "disk".into(),
         set: "all".into(),
-        measure: Measure::Indenter {
-            indenter: "disk".into(),
+        measure: Measure::RigidBody {
+            rigid_body: "disk".into(),
             of: Some(RigidQuantity::Force),
         },
     }];
@@ -177,7 +177,7 @@ fn faces_of_a_crack_are_pressed_together() {
             let l = sim.ledger().unwrap();
             all.push([
                 -sim.measure()[1],
-                l.residual() / l.work_conditions,
+                l.residual() / l.work_boundary_conditions,
                 l.contact,
             ]);
         }

@@ -5,7 +5,7 @@ use peridyne::run::{Options, build};
 use peridyne::spec::*;
 
 /// A plate of two materials, moved at random or not.
-fn plate(method: TransferMethod, cloud: bool) -> Spec {
+fn plate(method: DiffusionMethod, cloud: bool) -> Spec {
     let mut body = cells(2, 0.1, [0.0; 3], [2.0, 1.0, 0.0]);
     if let (BodySpec::Lattice { perturb, .. }, true) = (&mut body, cloud) {
         *perturb = Some(Perturbation {
@@ -14,7 +14,7 @@ fn plate(method: TransferMethod, cloud: bool) -> Spec {
         });
     }
     let mut heat = heat(method);
-    heat.materials.push(TransferMaterial {
+    heat.materials.push(DiffusionMaterial {
         conductivity: 10.0,
         capacity: 0.3,
         expansion: 0.0,
@@ -41,7 +41,7 @@ fn a_free_body_keeps_its_heat() {
         for cloud in [false, true] {
             let mut sim = built(&plate(method, cloud));
             run(&mut *sim, 50);
-            let account = sim.transfers()[0].1;
+            let account = sim.diffusions()[0].1;
             let off = account.content / account.initial - 1.0;
             assert!(off.abs() < 1e-13, "{method:?}, cloud {cloud}: {off:e}");
             let t = temperature(&mut *sim);
@@ -62,21 +62,21 @@ fn what_comes_in_is_what_is_there() {
             spec.sets.push(beyond("low", 0.2, -1.0));
             spec.sets.push(beyond("high", 1.8, 1.0));
             let value = text("5*y");
-            spec.interactions.transfers[0].conditions = vec![
-                on("all", TransferKind::Source(text("x*y*t"))),
-                on("high", TransferKind::Flux { value, area: None }),
+            spec.interactions.diffusions[0].conditions = vec![
+                on("all", DiffusionKind::Source(text("x*y*t"))),
+                on("high", DiffusionKind::Flux { value, area: None }),
                 on(
                     "first",
-                    TransferKind::Exchange {
+                    DiffusionKind::Exchange {
                         law,
                         area: Some(2.0),
                     },
                 ),
-                on("low", TransferKind::Value(text("1 - t"))),
+                on("low", DiffusionKind::Value(text("1 - t"))),
             ];
             let mut sim = built(&spec);
             run(&mut *sim, 50);
-            let a = sim.transfers()[0].1;
+            let a = sim.diffusions()[0].1;
             let parts = [a.supplied, a.exchanged, a.held];
             assert!(parts.iter().all(|p| p.abs() > 1e-3), "{a:?}");
             let off = a.residual() / a.initial;
@@ -88,17 +88,17 @@ fn what_comes_in_is_what_is_there() {
 /// Heat of a condition is that of its area: a flux over a layer of points, over the area that is said, and as a source.
 #[test]
 fn areas_are_those_of_the_surface() {
-    let supplied = |kind: TransferKind| {
+    let supplied = |kind: DiffusionKind| {
         let mut spec = plate(EXPLICIT, false);
         spec.space.section = 0.25;
         spec.sets.push(beyond("skin", 1.9, 1.0));
-        spec.interactions.transfers[0].conditions = vec![on("skin", kind)];
+        spec.interactions.diffusions[0].conditions = vec![on("skin", kind)];
         let mut sim = built(&spec);
         run(&mut *sim, 10);
-        sim.transfers()[0].1.supplied
+        sim.diffusions()[0].1.supplied
     };
     let value = text("3");
-    let flux = |area| TransferKind::Flux {
+    let flux = |area| DiffusionKind::Flux {
         value: value.clone(),
         area,
     };
@@ -107,7 +107,7 @@ fn areas_are_those_of_the_surface() {
     near(supplied(flux(None)), 3.0 * 0.25 * 0.02);
     near(supplied(flux(Some(0.5))), 3.0 * 0.5 * 0.02);
     near(
-        supplied(TransferKind::Source(value.clone())),
+        supplied(DiffusionKind::Source(value.clone())),
         3.0 * 0.1 * 0.25 * 0.02,
     );
 }
@@ -117,9 +117,9 @@ fn areas_are_those_of_the_surface() {
 fn broken_bonds_do_not_conduct() {
     for (kind, law) in [
         (CrackKind::Broken, SPRINGS),
-        (CrackKind::Absent, SPRINGS),
+        (CrackKind::Excluded, SPRINGS),
         (
-            CrackKind::Absent,
+            CrackKind::Excluded,
             LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 1.0)])),
         ),
     ] {
@@ -134,12 +134,12 @@ fn broken_bonds_do_not_conduct() {
         }];
         spec.materials[0].law = law;
         let mut sim = built(&spec);
-        let alone = sim.info().transfers[0].stable_step;
+        let alone = sim.info().diffusions[0].stable_step;
         run(&mut *sim, 10);
         let t = temperature(&mut *sim);
         assert!(t.iter().all(|t| *t == 1.0 || *t == 3.0), "{kind:?}: {t:?}");
         let half = still(1, cells(1, 0.1, [0.0; 3], [1.0; 3]), 3, 0.1, heat_of(&spec));
-        let half = built(&half).info().transfers[0].stable_step;
+        let half = built(&half).info().diffusions[0].stable_step;
         assert!(
             (half / alone - 1.0).abs() < 1e-12,
             "{kind:?}: {half} {alone}"
@@ -148,10 +148,10 @@ fn broken_bonds_do_not_conduct() {
 }
 
 /// The same quantity without what is done to sets.
-fn heat_of(spec: &Spec) -> TransferSpec {
-    TransferSpec {
+fn heat_of(spec: &Spec) -> DiffusionSpec {
+    DiffusionSpec {
         initial: vec![],
-        ..spec.interactions.transfers[0].clone()
+        ..spec.interactions.diffusions[0].clone()
     }
 }
 
@@ -219,7 +219,7 @@ fn faces_that_open_conduct_like_those_that_were_cut() {
     moving.run.schedule.stepper = Stepper::Verlet;
     moving.run.schedule.time_step = TimeStep::Fixed(0.01);
     moving.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(1e-2)));
-    moving.interactions.transfers[0].initial = spec.interactions.transfers[0].initial.clone();
+    moving.interactions.diffusions[0].initial = spec.interactions.diffusions[0].initial.clone();
     let mut opened = build(&moving, Options::default()).unwrap();
     let x = opened.vectors("reference");
     let apart: Vec<_> = { x.iter() }
@@ -308,22 +308,22 @@ fn what_cannot_be_is_said() {
     let of = |path: &str, part: &str, found: (String, String)| {
         assert!(found.0 == path && found.1.contains(part), "{found:?}");
     };
-    let steady = |spec: &mut Spec| spec.interactions.transfers[0].method = STEADY;
+    let steady = |spec: &mut Spec| spec.interactions.diffusions[0].method = STEADY;
     of("heat", "nothing there holds it", refused(&steady));
     let auto = |spec: &mut Spec| {
-        spec.interactions.transfers[0].method = EULER;
+        spec.interactions.diffusions[0].method = EULER;
         spec.run.schedule.time_step = TimeStep::Auto;
     };
     of("schedule.time_step", "must be said", refused(&auto));
-    let nothing = |spec: &mut Spec| spec.interactions.transfers.clear();
+    let nothing = |spec: &mut Spec| spec.interactions.diffusions.clear();
     of("schedule.integrator", "nothing spreads", refused(&nothing));
     let twice = |spec: &mut Spec| {
         spec.interactions
-            .transfers
-            .push(spec.interactions.transfers[0].clone())
+            .diffusions
+            .push(spec.interactions.diffusions[0].clone())
     };
     of("heat", "heat twice", refused(&twice));
-    let hot = |spec: &mut Spec| spec.interactions.transfers[0].initial[0].1 = text("1/(x - x)");
+    let hot = |spec: &mut Spec| spec.interactions.diffusions[0].initial[0].1 = text("1/(x - x)");
     of("heat", "the temperature at the start is", refused(&hot));
     let moved = |spec: &mut Spec| {
         spec.loading.conditions = vec![ConditionSpec {

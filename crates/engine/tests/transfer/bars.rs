@@ -25,10 +25,10 @@ fn a_bar_cools_as_fourier_says() {
         let h = 1.0 / n as f64;
         let wide = 6.0 * h;
         // steps so short that the spacing alone shows
-        let mut heat = heat(TransferMethod::Explicit { safety: 0.1 });
+        let mut heat = heat(DiffusionMethod::Explicit { safety: 0.1 });
         heat.initial = vec![("all".into(), of_time.clone())];
         heat.conditions = ["left", "right"]
-            .map(|set| on(set, TransferKind::Value(of_time.clone())))
+            .map(|set| on(set, DiffusionKind::Value(of_time.clone())))
             .to_vec();
         let body = cells(1, h, [-wide; 3], [1.0 + wide; 3]);
         let steps = 4;
@@ -77,7 +77,7 @@ fn linear_profiles_are_steady() {
     for d in 1..=3 {
         let mut heat = heat(STEADY);
         heat.conditions = ["left", "right"]
-            .map(|set| on(set, TransferKind::Value(text("5 - 3*x"))))
+            .map(|set| on(set, DiffusionKind::Value(text("5 - 3*x"))))
             .to_vec();
         let body = cells(d, 0.1, [-0.6, 0.0, 0.0], [1.6, 0.5, 0.4]);
         let mut spec = still(d, body, 3, 1.0, heat);
@@ -95,15 +95,15 @@ fn a_flux_makes_its_slope() {
     // of the distance to ends and faces 38 spacings, the profile feels nothing any more
     for method in [STEADY, EULER] {
         let mut heat = heat(method);
-        heat.materials.push(TransferMaterial {
+        heat.materials.push(DiffusionMaterial {
             conductivity: 4.0,
             capacity: 1.0,
             expansion: 0.0,
         });
         let value = text("7");
         heat.conditions = vec![
-            on("in", TransferKind::Flux { value, area: None }),
-            on("out", TransferKind::Value(text("0"))),
+            on("in", DiffusionKind::Flux { value, area: None }),
+            on("out", DiffusionKind::Value(text("0"))),
         ];
         let mut spec = still(1, cells(1, 0.025, [0.0; 3], [4.0; 3]), 3, 1e7, heat);
         spec.space.section = 0.3;
@@ -167,7 +167,7 @@ fn a_slab_cools_by_convection_as_biot_says() {
             coefficient: text(&format!("{biot}")),
             ambient: text("0"),
         };
-        heat.conditions = vec![on("skin", TransferKind::Exchange { law, area: None })];
+        heat.conditions = vec![on("skin", DiffusionKind::Exchange { law, area: None })];
         let mut spec = still(1, cells(1, h, [-1.0; 3], [1.0; 3]), 3, 0.4 / 400.0, heat);
         spec.sets = vec![SetSpec {
             name: "skin".into(),
@@ -186,7 +186,7 @@ fn a_slab_cools_by_convection_as_biot_says() {
 /// A small body that radiates into nothing: `dT/dt = −κ T⁴`, `T = T0 (1 + 3 κ T0³ t)^(−1/3)` with `κ = c A/(ρ c V)`.
 #[test]
 fn a_small_body_radiates_as_stefan_says() {
-    let error = |method: TransferMethod, steps: u32| {
+    let error = |method: DiffusionMethod, steps: u32| {
         let mut heat = heat(method);
         heat.initial = vec![("all".into(), text("2"))];
         let law = Exchange::Radiation {
@@ -195,7 +195,7 @@ fn a_small_body_radiates_as_stefan_says() {
         };
         heat.conditions = vec![on(
             "all",
-            TransferKind::Exchange {
+            DiffusionKind::Exchange {
                 law,
                 area: Some(3.0),
             },
@@ -226,13 +226,13 @@ fn a_small_body_radiates_as_stefan_says() {
 /// Every method against steps so short that they no longer matter.
 #[test]
 fn implicit_steps_have_their_order() {
-    let case = |method: TransferMethod, steps: u32| {
+    let case = |method: DiffusionMethod, steps: u32| {
         let mut heat = heat(method);
         heat.initial = vec![("all".into(), text("cos(pi*x)"))];
         let source = text("sin(5*t)*(1 + x)");
         heat.conditions = vec![
-            on("all", TransferKind::Source(source)),
-            on("left", TransferKind::Value(text("1 + t^2"))),
+            on("all", DiffusionKind::Source(source)),
+            on("left", DiffusionKind::Value(text("1 + t^2"))),
         ];
         let body = cells(1, 0.05, [0.0; 3], [1.0; 3]);
         let mut spec = still(1, body, 3, 0.5 / f64::from(steps), heat);
@@ -258,22 +258,22 @@ fn implicit_steps_have_their_order() {
 fn of_horizons(
     (spacing, end): (f64, f64),
     (longest, own): (f64, Option<&str>),
-    heat: TransferSpec,
+    heat: DiffusionSpec,
     dt: f64,
 ) -> Spec {
     let mut spec = still(1, cells(1, spacing, [0.0; 3], [end; 3]), 1, dt, heat);
     spec.bonds.horizon = Horizon::Length(longest);
     spec.bonds.family = FamilyChoice::List;
     spec.bonds.calibration = Calibration::Continuum;
-    spec.bonds.volume_scaling = true;
-    spec.bonds.own_horizon = own.map(text);
+    spec.bonds.partial_volume_correction = true;
+    spec.bonds.variable_horizon = own.map(text);
     spec
 }
 
 /// Points conduct within their own horizons: as a body of that one where all have it; and where horizons are graded, the profile of a steady bar
 /// is off from Fourier's by what `g_ij = k ω (1/m_i + 1/m_j) V_i V_j`, ω the mean of both ends' and m its moment, comes to in NumPy.
 #[test]
-fn points_conduct_within_their_own_horizons() {
+fn points_conduct_within_their_variable_horizons() {
     let mut warm = heat(EXPLICIT);
     warm.initial = vec![("all".into(), text("sin(0.3*x) + 0.1*x"))];
     let after = |longest: f64, own: Option<&str>| {
@@ -289,7 +289,7 @@ fn points_conduct_within_their_own_horizons() {
     }
     let mut held = heat(STEADY);
     held.conditions = ["cold", "hot"]
-        .map(|set| on(set, TransferKind::Value(text("x/40"))))
+        .map(|set| on(set, DiffusionKind::Value(text("x/40"))))
         .to_vec();
     for (grown, expected) in [(1.0, 3.12628e-3), (0.5, 1.33560e-3)] {
         let graded = format!("2.3 + {grown}*clamp((x - 12)/14, 0, 1)");

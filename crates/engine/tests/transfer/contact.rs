@@ -18,7 +18,7 @@ struct Two {
     shift: f64,
     conductivity: [f64; 2],
     conductance: f64,
-    method: TransferMethod,
+    method: DiffusionMethod,
     dt: f64,
 }
 
@@ -80,7 +80,7 @@ impl Two {
         });
         let mut heat = heat(self.method);
         heat.materials = (self.conductivity)
-            .map(|conductivity| TransferMaterial {
+            .map(|conductivity| DiffusionMaterial {
                 conductivity,
                 ..heat.materials[0]
             })
@@ -124,7 +124,7 @@ impl Two {
 }
 
 fn crossed(sim: &dyn Simulation) -> f64 {
-    sim.transfers()[0].1.through_contact.unwrap()
+    sim.diffusions()[0].1.through_contact.unwrap()
 }
 
 /// Means of the lower and the upper body.
@@ -276,8 +276,8 @@ fn a_foil_has_two_sides() {
     });
     spec.materials.truncate(1);
     spec.materials[0].set = "all".into();
-    spec.interactions.transfers[0].materials.truncate(1);
-    spec.interactions.transfers[0]
+    spec.interactions.diffusions[0].materials.truncate(1);
+    spec.interactions.diffusions[0]
         .initial
         .push(("below".into(), text("1")));
     let mut sim = built(&spec);
@@ -298,7 +298,7 @@ fn small_bodies_even_out_exponentially() {
         assert!(exact < 0.7);
         let off = (upper - lower) / exact - 1.0;
         assert!(off.abs() < 1e-3, "{}-D {:?}: {off:e}", two.d, two.spacing);
-        let account = sim.transfers()[0].1;
+        let account = sim.diffusions()[0].1;
         assert!(account.residual().abs() < 1e-11 * account.initial);
         let lost = (1.0 - upper) * two.area() * two.length[1];
         assert!((crossed(&*sim) / lost - 1.0).abs() < 1e-10);
@@ -336,9 +336,9 @@ fn bars_in_series_resist_one_after_the_other() {
         // lines of the exact slope, which stand for what is beyond the ends
         let cold = format!("{:e} * (x - {low:e})", exact / k[0]);
         let hot = format!("1 + {:e} * (x - {high:e})", exact / k[1]);
-        spec.interactions.transfers[0].conditions = vec![
-            on("cold", TransferKind::Value(text(&cold))),
-            on("hot", TransferKind::Value(text(&hot))),
+        spec.interactions.diffusions[0].conditions = vec![
+            on("cold", DiffusionKind::Value(text(&cold))),
+            on("hot", DiffusionKind::Value(text(&hot))),
         ];
         let mut sim = built(&spec);
         run(&mut *sim, 2);
@@ -369,7 +369,7 @@ fn steps_know_the_contact() {
     (two.conductance, two.dt) = (1e3, 1e-2);
     let spec = two.spec();
     let mut sim = built(&spec);
-    let told = sim.info().transfers[0].stable_step;
+    let told = sim.info().diffusions[0].stable_step;
     assert!(told < 1e-4, "{told:e}");
     for _ in 0..20 {
         run(&mut *sim, 1);
@@ -380,7 +380,7 @@ fn steps_know_the_contact() {
 }
 
 /// A block that flies against a plate and back.
-fn thrown(method: TransferMethod) -> Spec {
+fn thrown(method: DiffusionMethod) -> Spec {
     let mut two = Two::blocks(2).on_a_plate();
     (two.apart, two.method) = (0.2, method);
     (two.conductivity, two.conductance) = ([1.0; 2], 50.0);
@@ -407,7 +407,7 @@ fn heat_is_kept_while_a_block_comes_and_goes() {
         while sim.time() < 12.0 {
             run(&mut *sim, 1);
             history.push(crossed(&*sim));
-            let account = sim.transfers()[0].1;
+            let account = sim.diffusions()[0].1;
             let off = account.content / account.initial - 1.0;
             assert!(off.abs() < bound, "{method:?} at {}: {off:e}", sim.time());
         }
@@ -473,12 +473,12 @@ fn what_is_apart_exchanges_nothing() {
     spec.interactions.contact.as_mut().unwrap().conductance = None;
     let mut without = built(&spec);
     run(&mut *without, 3);
-    assert_eq!(without.transfers()[0].1.through_contact, None);
+    assert_eq!(without.diffusions()[0].1.through_contact, None);
     let bits = |sim: &mut dyn Simulation| -> Vec<u64> {
         temperature(sim).iter().map(|t| t.to_bits()).collect()
     };
     assert!(bits(&mut *sim) == bits(&mut *without));
-    let told = |sim: &dyn Simulation| sim.info().transfers[0].stable_step;
+    let told = |sim: &dyn Simulation| sim.info().diffusions[0].stable_step;
     assert_eq!(told(&*sim), told(&*without));
 }
 
@@ -487,7 +487,7 @@ fn what_is_apart_exchanges_nothing() {
 fn faces_of_a_crack_exchange_nothing() {
     for (family, kind) in [FamilyChoice::Stencil, FamilyChoice::List]
         .into_iter()
-        .flat_map(|f| [(f, CrackKind::Absent), (f, CrackKind::Broken)])
+        .flat_map(|f| [(f, CrackKind::Excluded), (f, CrackKind::Broken)])
     {
         let mut heat = heat(EXPLICIT);
         heat.initial = vec![("right".into(), text("1"))];

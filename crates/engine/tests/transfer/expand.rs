@@ -19,7 +19,7 @@ fn laws() -> Vec<LawSpec> {
             young: 1.0,
             poisson: 0.3,
         }),
-        law("position_aware", &solid),
+        law("pals", &solid),
         law(
             "elastic_plastic",
             &[solid[0], solid[1], ("yield_stress", 1e6)],
@@ -29,16 +29,16 @@ fn laws() -> Vec<LawSpec> {
 }
 
 /// Expansion of `alpha` per degree, temperatures as told.
-fn told(alpha: f64, value: &str) -> TransferSpec {
+fn told(alpha: f64, value: &str) -> DiffusionSpec {
     let mut heat = heat(EXPLICIT);
     heat.reference = 20.0;
     heat.materials[0].expansion = alpha;
     heat.initial = vec![("all".into(), text(value))];
-    heat.conditions = vec![on("all", TransferKind::Value(text(value)))];
+    heat.conditions = vec![on("all", DiffusionKind::Value(text(value)))];
     heat
 }
 
-fn block(d: usize, law: LawSpec, cloud: bool, heat: TransferSpec) -> Spec {
+fn block(d: usize, law: LawSpec, cloud: bool, heat: DiffusionSpec) -> Spec {
     let mut body = cells(d, 1.0, [0.0; 3], [6.0, 5.0, 4.0]);
     if let (BodySpec::Lattice { perturb, .. }, true) = (&mut body, cloud) {
         *perturb = Some(Perturbation {
@@ -68,7 +68,7 @@ fn statics(spec: &mut Spec) {
 #[test]
 fn a_free_body_expands_without_stress() {
     let typed = [
-        LawSpec::LpsAsTyped {
+        LawSpec::Lps3d {
             bulk: 1.0,
             shear: 0.5,
         },
@@ -164,7 +164,7 @@ fn a_held_bar_is_under_pressure() {
 }
 
 /// Two materials along x that meet at `x`, the second three times as stiff.
-fn of_two(spec: &mut Spec, x: f64, rule: InterfaceRule) {
+fn of_two(spec: &mut Spec, x: f64, rule: BondMixing) {
     spec.interactions.interface = rule;
     spec.materials.push(spec.materials[0].clone());
     spec.sets
@@ -177,15 +177,15 @@ fn of_two(spec: &mut Spec, x: f64, rule: InterfaceRule) {
         m.set = set.into();
         m.law = LawSpec::Pmb(PmbStiffness::Young(young));
     }
-    for transfer in &mut spec.interactions.transfers {
-        transfer.materials.push(transfer.materials[0]);
+    for diffusion in &mut spec.interactions.diffusions {
+        diffusion.materials.push(diffusion.materials[0]);
     }
 }
 
-const RULES: [InterfaceRule; 3] = [
-    InterfaceRule::Series,
-    InterfaceRule::Parallel,
-    InterfaceRule::Minimum,
+const RULES: [BondMixing; 3] = [
+    BondMixing::Harmonic,
+    BondMixing::Arithmetic,
+    BondMixing::Minimum,
 ];
 
 /// At the temperature of reference two materials are what they are without one, on lattices and clouds.
@@ -196,7 +196,7 @@ fn materials_that_may_expand_meet_as_those_that_do_not() {
         let mut warm = block(d, SPRINGS, cloud, told(1e-3, "20"));
         of_two(&mut warm, 2.9, rule);
         let mut plain = warm.clone();
-        plain.interactions.transfers.clear();
+        plain.interactions.diffusions.clear();
         // and nothing spreads
         plain.run.schedule.stepper = Stepper::Verlet;
         plain.run.schedule.time_step = TimeStep::Fraction(0.5);
@@ -241,7 +241,7 @@ fn a_warm_bar_of_two_halves_between_walls() {
             told(0.0, "20 + 60*t"),
         );
         of_two(&mut spec, 10.0, rule);
-        let expands = &mut spec.interactions.transfers[0].materials;
+        let expands = &mut spec.interactions.diffusions[0].materials;
         for (m, grown) in expands.iter_mut().zip(grown) {
             m.expansion = grown / 60.0;
         }
@@ -325,7 +325,7 @@ fn tangents_know_the_temperature() {
 }
 
 /// The point in the middle of a block that follows these displacements, warm in plane strain or in space: stress, energy, temperature.
-fn strained(d: usize, law: LawSpec, u: [&str; 2], heat: TransferSpec) -> [f64; 5] {
+fn strained(d: usize, law: LawSpec, u: [&str; 2], heat: DiffusionSpec) -> [f64; 5] {
     let mut spec = still(d, cells(d, 1.0, [0.0; 3], [9.0; 3]), 2, 0.5, heat);
     spec.space.plane = Plane::Strain;
     spec.bonds.influence = Influence::Inverse;
@@ -355,8 +355,8 @@ fn strained(d: usize, law: LawSpec, u: [&str; 2], heat: TransferSpec) -> [f64; 5
     [xx, yy, xy, energy, temperature(&mut *sim)[middle]]
 }
 
-/// Laws on the shelf, and how far families of a lattice are from round ones.
-fn shelf() -> Vec<(LawSpec, f64)> {
+/// Laws on the registry, and how far families of a lattice are from round ones.
+fn registry() -> Vec<(LawSpec, f64)> {
     let solid = [("young", 1.0), ("poisson", 0.3)];
     let lattice = 0.06;
     let written = |energy: &str| {
@@ -399,7 +399,7 @@ fn shelf() -> Vec<(LawSpec, f64)> {
             }),
             lattice,
         ),
-        (of("position_aware", &[]), 1e-3),
+        (of("pals", &[]), 1e-3),
         (
             law("bond_rotation", &[("young", 1.0), ("poisson", 0.2)]),
             lattice,
@@ -452,7 +452,7 @@ fn a_warm_slice_is_one_of_the_solid() {
         "min(t/10, 1)*(2e-4*x - 7e-4*y)",
     ];
     let mut wrong = vec![];
-    for (law, apart) in shelf() {
+    for (law, apart) in registry() {
         let of = |d: usize| strained(d, law.clone(), u, told(2e-5, "20 + 5*min(t, 12)"));
         let (slice, solid) = (of(2), of(3));
         let size = solid[..3].iter().fold(0.0f64, |m, x| m.max(x.abs()));
@@ -499,7 +499,7 @@ fn a_slice_cools_as_the_solid_does() {
     heat.materials[0].conductivity = 1e-9;
     heat.initial = vec![("all".into(), text("300"))];
     let u = ["1e-5*x*min(t, 1)", "1e-5*y*min(t, 1)"];
-    for (law, apart) in shelf() {
+    for (law, apart) in registry() {
         // the stress across neither follows from that in the plane: they are refused
         let told = format!("{law:?}");
         let flows = told.contains("hypoelastic_plastic") && told.contains("bond");
@@ -520,7 +520,7 @@ fn heating_is_work() {
     let missing = |parts: u64| {
         let mut heat = heat(EXPLICIT);
         heat.materials[0].expansion = 0.01;
-        heat.conditions = vec![on("hot", TransferKind::Source(text("sin(t)^2")))];
+        heat.conditions = vec![on("hot", DiffusionKind::Source(text("sin(t)^2")))];
         let mut spec = still(
             1,
             cells(1, 0.5, [0.0; 3], [10.0; 3]),
@@ -535,8 +535,8 @@ fn heating_is_work() {
         run(&mut *sim, 100 * parts);
         let ledger = sim.ledger().unwrap();
         assert!(ledger.kinetic > 1e-6 && ledger.strain > 1e-6, "{ledger:?}");
-        assert!(ledger.work_conditions > 1e-5, "{ledger:?}");
-        (ledger.residual() / ledger.work_conditions).abs()
+        assert!(ledger.work_boundary_conditions > 1e-5, "{ledger:?}");
+        (ledger.residual() / ledger.work_boundary_conditions).abs()
     };
     let errors = [1, 2, 4].map(missing);
     let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect();
@@ -565,7 +565,7 @@ fn what_is_stretched_cools() {
         }];
         let mut sim = built(&spec);
         run(&mut *sim, 10 * parts);
-        let account = sim.transfers()[0].1;
+        let account = sim.diffusions()[0].1;
         assert!(account.made < 0.0 && account.residual().abs() < 1e-12 * account.initial);
         temperature(&mut *sim)[20]
     };
@@ -614,7 +614,7 @@ fn implicit_steps_and_increments_cool_what_is_stretched() {
         }];
         let mut sim = built(&spec);
         run(&mut *sim, 10);
-        let account = sim.transfers()[0].1;
+        let account = sim.diffusions()[0].1;
         assert!(account.made < 0.0 && account.residual().abs() < 1e-12 * account.initial);
         let (found, cooled) = (temperature(&mut *sim)[20], 300.0 - exact);
         assert!(
@@ -718,7 +718,7 @@ fn a_bar_swells_by_what_it_soaks_up() {
         species.quantity = Quantity::Species;
         species.materials[0].expansion = swelling;
         species.initial = vec![("all".into(), text(&series))];
-        species.conditions = vec![on("beyond", TransferKind::Value(text(&series)))];
+        species.conditions = vec![on("beyond", DiffusionKind::Value(text(&series)))];
         // points on the ends themselves, and two horizons beyond them
         let body = cells(1, h, [-2.5 * h; 3], [1.0 + 2.5 * h; 3]);
         let mut spec = still(1, body, 1, (end - start) / 400.0, species);
@@ -890,7 +890,7 @@ fn heating_springs_is_work() {
     let missing = |parts: u64| {
         let mut heat = heat(EXPLICIT);
         heat.materials[0].expansion = 0.01;
-        heat.conditions = vec![on("hot", TransferKind::Source(text("sin(t)^2")))];
+        heat.conditions = vec![on("hot", DiffusionKind::Source(text("sin(t)^2")))];
         let body = cells(1, 0.5, [0.0; 3], [10.0; 3]);
         let mut spec = still(1, body, 3, 0.08 / parts as f64, heat);
         spec.run.schedule.stepper = Stepper::Verlet;
@@ -900,7 +900,7 @@ fn heating_springs_is_work() {
         run(&mut *sim, 100 * parts);
         let ledger = sim.ledger().unwrap();
         assert!(ledger.kinetic > 1e-6 && ledger.strain > 1e-6, "{ledger:?}");
-        (ledger.residual() / ledger.work_conditions).abs()
+        (ledger.residual() / ledger.work_boundary_conditions).abs()
     };
     let errors = [1, 2, 4].map(missing);
     let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect();

@@ -49,7 +49,7 @@ fn copper(gradient: &str, capacity: Option<f64>) -> LawSpec {
 }
 
 /// Heat at a temperature at first.
-fn warm(method: TransferMethod, conductivity: f64, at: &str) -> TransferSpec {
+fn warm(method: DiffusionMethod, conductivity: f64, at: &str) -> DiffusionSpec {
     let mut heat = heat(method);
     heat.reference = COLD;
     heat.materials[0].conductivity = conductivity;
@@ -59,7 +59,7 @@ fn warm(method: TransferMethod, conductivity: f64, at: &str) -> TransferSpec {
 }
 
 /// A bar, whose ends are held and pulled so that it is a hundredth longer after six steps.
-fn bar(law: LawSpec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
+fn bar(law: LawSpec, stepper: Stepper, heat: Option<DiffusionSpec>) -> Spec {
     let body = cells(3, H, [0.0; 3], [7.0 * H, 3.0 * H, 3.0 * H]);
     let mut spec = Spec::new(3, body, DENSITY, law);
     spec.bonds.horizon = Horizon::Ratio(2);
@@ -76,7 +76,7 @@ fn bar(law: LawSpec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
 }
 
 /// A block of which every point is told its strain: what F sees is all.
-fn told(law: LawSpec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
+fn told(law: LawSpec, stepper: Stepper, heat: Option<DiffusionSpec>) -> Spec {
     let body = cells(3, H, [0.0; 3], [4.0 * H; 3]);
     let mut spec = Spec::new(3, body, DENSITY, law);
     spec.bonds.horizon = Horizon::Ratio(2);
@@ -93,7 +93,7 @@ fn told(law: LawSpec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
     timed(spec, stepper, heat)
 }
 
-fn timed(mut spec: Spec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
+fn timed(mut spec: Spec, stepper: Stepper, heat: Option<DiffusionSpec>) -> Spec {
     spec.run.schedule.stepper = stepper;
     let parts = if stepper == Stepper::Verlet {
         10.0
@@ -101,7 +101,7 @@ fn timed(mut spec: Spec, stepper: Stepper, heat: Option<TransferSpec>) -> Spec {
         1.0
     };
     spec.run.schedule.time_step = TimeStep::Fixed(DT / parts);
-    spec.interactions.transfers.extend(heat);
+    spec.interactions.diffusions.extend(heat);
     spec
 }
 
@@ -202,7 +202,7 @@ fn who_holds_the_temperature_holds_the_strength() {
         for stepper in [EXPLICITLY, NEWMARK] {
             for capacity in [None, Some(CAPACITY)] {
                 let mut heat = warm(EXPLICIT, 1.0, "298");
-                heat.conditions = vec![on("all", TransferKind::Value(text("1000")))];
+                heat.conditions = vec![on("all", DiffusionKind::Value(text("1000")))];
                 let spec = told(copper(gradient, capacity), stepper(), Some(heat));
                 let TimeStep::Fixed(dt) = spec.run.schedule.time_step else {
                     unreachable!()
@@ -240,7 +240,7 @@ fn what_is_molten_bears_no_shear() {
 /// Adds `T_r` to the temperature rise of a run without [heat].
 fn adiabatic(spec: &Spec, steps: u64) -> [Vec<f64>; 3] {
     let mut alone = spec.clone();
-    alone.interactions.transfers.clear();
+    alone.interactions.diffusions.clear();
     let mut sim = built(&alone);
     run(&mut *sim, steps);
     let t = scalars(&mut *sim, "temperature_rise");
@@ -320,7 +320,7 @@ fn the_heat_of_flow_is_conducted_and_counted_once() {
         let sum = |x: Vec<f64>| volume * x.iter().sum::<f64>();
         let work = sum(scalars(&mut *sim, "plastic_work"));
         let lost = sum(scalars(&mut *sim, "control_loss"));
-        let account = sim.transfers()[0].1;
+        let account = sim.diffusions()[0].1;
         assert!(work > 0.0);
         assert!(
             (account.made / (PART * work) - 1.0).abs() < 1e-10,
@@ -338,7 +338,7 @@ fn the_heat_of_flow_is_conducted_and_counted_once() {
         );
         // to second order in the step, as without heat
         assert!(
-            ledger.residual().abs() < 1e-3 * ledger.work_conditions,
+            ledger.residual().abs() < 1e-3 * ledger.work_boundary_conditions,
             "{ledger:?}"
         );
         let spread = |t: &[f64]| {
@@ -387,8 +387,8 @@ fn bodies_have_their_own_temperatures() {
         law: LawSpec::named("correspondence", elastic),
         ..spec.materials[0].clone()
     });
-    let own = spec.interactions.transfers[0].materials[0];
-    spec.interactions.transfers[0].materials.push(own);
+    let own = spec.interactions.diffusions[0].materials[0];
+    spec.interactions.diffusions[0].materials.push(own);
     let mut sim = built(&spec);
     let found = flown(&mut *sim, 50, 0.1 * DT);
     assert_eq!(found.len(), 64);
@@ -400,7 +400,7 @@ fn bodies_have_their_own_temperatures() {
 /// Two heat capacities of one material, heat that nothing keeps, and a pressure that would have it twice.
 #[test]
 fn heat_of_flow_that_cannot_be_is_refused() {
-    let said = |law: LawSpec, heat: TransferSpec| {
+    let said = |law: LawSpec, heat: DiffusionSpec| {
         let spec = bar(law, Stepper::Verlet, Some(heat));
         let refused = build(&spec, Options::default()).err().unwrap();
         assert_eq!(refused.path, "materials[0].law", "{}", refused.message);
@@ -410,7 +410,7 @@ fn heat_of_flow_that_cannot_be_is_refused() {
     let message = said(copper("family", Some(2.0 * CAPACITY)), cold());
     assert!(message.contains("two heat capacities"), "{message}");
     let mut steady = warm(STEADY, 1.0, "298");
-    steady.conditions = vec![on("left", TransferKind::Value(text("298")))];
+    steady.conditions = vec![on("left", DiffusionKind::Value(text("298")))];
     let message = said(copper("family", Some(CAPACITY)), steady);
     assert!(message.contains("steady"), "{message}");
     let mut pressed = copper("family", Some(CAPACITY));

@@ -26,12 +26,12 @@ fn rate(d: usize, wave: f64) -> f64 {
     2.0 * d as f64 * sum / moment
 }
 
-fn wave(d: usize, method: TransferMethod, dt: f64) -> Spec {
+fn wave(d: usize, method: DiffusionMethod, dt: f64) -> Spec {
     let long = CELLS as f64 * H;
     let mut heat = heat(method);
     heat.initial = vec![("all".into(), text(&format!("3 + cos(2*pi*x/{long})")))];
     let mut spec = still(d, cells(d, H, [0.0; 3], [long; 3]), 3, dt, heat);
-    spec.bonds.volume_scaling = false;
+    spec.bonds.partial_volume_correction = false;
     for a in 0..d {
         spec.space.periodic[a] = Some(long);
     }
@@ -56,7 +56,7 @@ fn a_wave_decays_by_the_dispersion_relation() {
         for (method, factor) in steps {
             let mut sim = built(&wave(d, method, dt));
             if method == EXPLICIT {
-                assert!(dt < 0.9 * sim.info().transfers[0].stable_step, "{d}-D");
+                assert!(dt < 0.9 * sim.info().diffusions[0].stable_step, "{d}-D");
             }
             run(&mut *sim, 7);
             let exact = |x: f64| 3.0 + factor.powi(7) * (wave_number * x).cos();
@@ -81,7 +81,7 @@ fn long_waves_decay_as_in_a_continuum() {
 #[test]
 fn explicit_steps_are_divided() {
     let mut long = built(&wave(1, EXPLICIT, 1.0));
-    let stable = long.info().transfers[0].stable_step;
+    let stable = long.info().diffusions[0].stable_step;
     let parts = (1.0 / (0.9 * stable)).ceil();
     assert!(parts > 3.0, "{parts}");
     run(&mut *long, 1);
@@ -91,7 +91,7 @@ fn explicit_steps_are_divided() {
     let off = a.iter().zip(&b).map(|(a, b)| (a - b).abs());
     assert!(off.fold(0.0, f64::max) < 1e-14);
     // what jumps most stays between what it was
-    let mut heat = heat(TransferMethod::Explicit { safety: 1.0 });
+    let mut heat = heat(DiffusionMethod::Explicit { safety: 1.0 });
     heat.initial = vec![("all".into(), text("cos(4*pi*x)"))];
     let mut sim = built(&still(2, cells(2, H, [0.0; 3], [3.0; 3]), 3, 1e-2, heat));
     let mut most = temperature(&mut *sim)

@@ -4,7 +4,7 @@ use crate::sample::*;
 use peridyne::spec::*;
 
 /// Enough points for several pieces of work.
-fn block(method: TransferMethod, stepper: Stepper) -> Spec {
+fn block(method: DiffusionMethod, stepper: Stepper) -> Spec {
     let mut heat = heat(method);
     heat.initial = vec![("all".into(), text("1 + sin(7*x + 3*y) * cos(11*z)"))];
     let law = Exchange::Radiation {
@@ -12,22 +12,22 @@ fn block(method: TransferMethod, stepper: Stepper) -> Spec {
         ambient: text("2"),
     };
     heat.conditions = vec![
-        on("low", TransferKind::Exchange { law, area: None }),
-        on("high", TransferKind::Value(text("1 + t*y"))),
+        on("low", DiffusionKind::Exchange { law, area: None }),
+        on("high", DiffusionKind::Value(text("1 + t*y"))),
     ];
-    let mut species = TransferSpec {
+    let mut species = DiffusionSpec {
         quantity: Quantity::Species,
         ..heat.clone()
     };
     species.conditions.truncate(1);
     let mut spec = still(3, cells(3, 0.1, [0.0; 3], [3.0, 1.4, 1.2]), 2, 1e-3, heat);
-    spec.interactions.transfers.push(species);
+    spec.interactions.diffusions.push(species);
     spec.run.schedule.stepper = stepper;
     spec.sets = vec![beyond("low", 0.1, -1.0), beyond("high", 2.8, 1.0)];
     spec
 }
 
-const METHODS: [TransferMethod; 3] = [EXPLICIT, CRANK_NICOLSON, STEADY];
+const METHODS: [DiffusionMethod; 3] = [EXPLICIT, CRANK_NICOLSON, STEADY];
 
 #[test]
 fn threads_do_not_show() {
@@ -39,7 +39,7 @@ fn threads_do_not_show() {
                 run(&mut *sim, 5);
                 let mut bits: Vec<u64> =
                     temperature(&mut *sim).iter().map(|t| t.to_bits()).collect();
-                let accounts = sim.transfers();
+                let accounts = sim.diffusions();
                 bits.extend(accounts.iter().map(|(_, a)| a.residual().to_bits()));
                 bits
             })

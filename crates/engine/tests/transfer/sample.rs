@@ -8,13 +8,13 @@ use peridyne::space::region::Region;
 use peridyne::spec::*;
 
 pub const SPRINGS: LawSpec = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
-pub const EXPLICIT: TransferMethod = TransferMethod::Explicit { safety: 0.9 };
-pub const STEADY: TransferMethod = TransferMethod::Steady { tolerance: 1e-13 };
-pub const EULER: TransferMethod = TransferMethod::Implicit {
+pub const EXPLICIT: DiffusionMethod = DiffusionMethod::Explicit { safety: 0.9 };
+pub const STEADY: DiffusionMethod = DiffusionMethod::Steady { tolerance: 1e-13 };
+pub const EULER: DiffusionMethod = DiffusionMethod::Implicit {
     theta: 1.0,
     tolerance: 1e-13,
 };
-pub const CRANK_NICOLSON: TransferMethod = TransferMethod::Implicit {
+pub const CRANK_NICOLSON: DiffusionMethod = DiffusionMethod::Implicit {
     theta: 0.5,
     tolerance: 1e-13,
 };
@@ -39,14 +39,14 @@ pub fn cells(d: usize, h: f64, low: [f64; 3], high: [f64; 3]) -> BodySpec {
     }
 }
 
-pub fn heat(method: TransferMethod) -> TransferSpec {
-    TransferSpec {
+pub fn heat(method: DiffusionMethod) -> DiffusionSpec {
+    DiffusionSpec {
         quantity: Quantity::Heat,
         method,
         reference: 0.0,
         across_broken: false,
         deformation: false,
-        materials: vec![TransferMaterial {
+        materials: vec![DiffusionMaterial {
             conductivity: 1.0,
             capacity: 1.0,
             expansion: 0.0,
@@ -57,12 +57,12 @@ pub fn heat(method: TransferMethod) -> TransferSpec {
 }
 
 /// Nothing moves; steps of `dt`.
-pub fn still(d: usize, body: BodySpec, horizon: u32, dt: f64, heat: TransferSpec) -> Spec {
+pub fn still(d: usize, body: BodySpec, horizon: u32, dt: f64, heat: DiffusionSpec) -> Spec {
     let mut spec = Spec::new(d, body, 1.0, SPRINGS);
     spec.bonds.horizon = Horizon::Ratio(horizon);
     spec.run.schedule.stepper = Stepper::Still;
     spec.run.schedule.time_step = TimeStep::Fixed(dt);
-    spec.interactions.transfers = vec![heat];
+    spec.interactions.diffusions = vec![heat];
     spec
 }
 
@@ -77,8 +77,8 @@ pub fn beyond(name: &str, x: f64, sign: f64) -> SetSpec {
     }
 }
 
-pub fn on(set: &str, kind: TransferKind) -> TransferCondition {
-    TransferCondition {
+pub fn on(set: &str, kind: DiffusionKind) -> DiffusionCondition {
+    DiffusionCondition {
         set: set.into(),
         kind,
     }

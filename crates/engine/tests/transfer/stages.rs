@@ -21,7 +21,7 @@ fn held(set: &str, x: [Option<&str>; 2]) -> ConditionSpec {
 }
 
 /// A bar whose low end is held at a temperature, and whose high end cools.
-fn bar(method: TransferMethod) -> Spec {
+fn bar(method: DiffusionMethod) -> Spec {
     let mut heat = heat(method);
     heat.initial = vec![("all".into(), text("1 + 0.3*sin(5*x)"))];
     let law = Exchange::Convection {
@@ -29,8 +29,8 @@ fn bar(method: TransferMethod) -> Spec {
         ambient: text("0.2"),
     };
     heat.conditions = vec![
-        on("low", TransferKind::Value(text("1"))),
-        on("high", TransferKind::Exchange { law, area: None }),
+        on("low", DiffusionKind::Value(text("1"))),
+        on("high", DiffusionKind::Exchange { law, area: None }),
     ];
     let mut spec = still(1, cells(1, 0.1, [0.0; 3], [2.0; 3]), 2, 1e-3, heat);
     spec.sets = vec![beyond("low", 0.1, -1.0), beyond("high", 1.9, 1.0)];
@@ -38,7 +38,7 @@ fn bar(method: TransferMethod) -> Spec {
 }
 
 /// The same, pulled in so many increments and then let go.
-fn pulled(method: TransferMethod, increments: u64, duration: Option<f64>) -> Spec {
+fn pulled(method: DiffusionMethod, increments: u64, duration: Option<f64>) -> Spec {
     let mut spec = bar(method);
     let pull = ConditionSpec {
         set: "high".into(),
@@ -50,7 +50,7 @@ fn pulled(method: TransferMethod, increments: u64, duration: Option<f64>) -> Spe
         increments,
         duration,
         conditions: vec![low.clone(), pull],
-        indenters: vec![],
+        rigid_bodies: vec![],
         cuts: vec![],
     });
     spec.loading.conditions = vec![low];
@@ -63,7 +63,7 @@ fn after(spec: &Spec, steps: u64) -> Vec<f64> {
     let mut sim = built(spec);
     run(&mut *sim, steps);
     let mut all = temperature(&mut *sim);
-    for (_, account) in sim.transfers() {
+    for (_, account) in sim.diffusions() {
         all.extend([account.content, account.held, account.exchanged]);
         assert!(account.residual().abs() < 1e-10, "{account:?}");
     }
@@ -133,7 +133,7 @@ fn a_body_rests_that_statics_has_let_expand() {
             increments: 1,
             duration: None,
             conditions: glide.clone(),
-            indenters: vec![],
+            rigid_bodies: vec![],
             cuts: vec![],
         });
         spec.loading.conditions = glide;
@@ -158,8 +158,8 @@ fn a_body_rests_that_statics_has_let_expand() {
 #[test]
 fn a_temperature_that_changes_has_no_two_stages() {
     let mut spec = pulled(EXPLICIT, 2, Some(2e-3));
-    let conditions = &mut spec.interactions.transfers[0].conditions;
-    conditions[0] = on("low", TransferKind::Value(text("1 + t")));
+    let conditions = &mut spec.interactions.diffusions[0].conditions;
+    conditions[0] = on("low", DiffusionKind::Value(text("1 + t")));
     let error = build(&spec, Options::default()).err().unwrap();
     assert_eq!(error.path, "heat");
     assert!(error.message.contains("t begins again"), "{error}");

@@ -2,10 +2,10 @@
 //! energy as its definition has it, beside terms that differentiate by distances.
 
 use crate::sample::*;
-use peridyne::law::fan::sites::FanSites;
-use peridyne::law::fan::stillinger_weber::StillingerWeber;
-use peridyne::law::fan::tersoff::Tersoff;
-use peridyne::law::fan::{Described, Fan};
+use peridyne::law::many_body::sites::ManyBodySites;
+use peridyne::law::many_body::stillinger_weber::StillingerWeber;
+use peridyne::law::many_body::tersoff::Tersoff;
+use peridyne::law::many_body::{Described, ManyBody};
 use peridyne::law::number::{Dual, Number};
 use peridyne::law::terms::{Near, Sites};
 use peridyne::spec::{Form, Parameters};
@@ -35,24 +35,24 @@ fn xi(a: &Place, b: &Place) -> Dual<f64> {
 }
 
 /// `Σ_j h(ξ_ij, Σ_k z(ξ_ij, ξ_ik, ξ_jk))` about the first.
-fn energy<F: Fan>(fan: &F, at: &[Place]) -> Dual<f64> {
-    let row = fan.table().at([0, 0, 0]);
-    let limit = 0.5 * fan.cutoff() * fan.cutoff();
+fn energy<F: ManyBody>(many_body: &F, at: &[Place]) -> Dual<f64> {
+    let row = many_body.table().at([0, 0, 0]);
+    let limit = 0.5 * many_body.cutoff() * many_body.cutoff();
     let near: Vec<&Place> = at[1..]
         .iter()
         .filter(|x| xi(&at[0], x).value < limit)
         .collect();
     let arms: Vec<_> = near
         .iter()
-        .map(|x| fan.arm::<f64, _>(xi(&at[0], x), row))
+        .map(|x| many_body.arm::<f64, _>(xi(&at[0], x), row))
         .collect();
     let mut sum = Dual::constant(0.0);
     for (j, arm) in arms.iter().enumerate() {
         let mut zeta = Dual::constant(0.0);
         for k in (0..arms.len()).filter(|k| *k != j) {
-            zeta = zeta + fan.share::<f64, _>(arm, &arms[k], xi(near[j], near[k]), row);
+            zeta = zeta + many_body.share::<f64, _>(arm, &arms[k], xi(near[j], near[k]), row);
         }
-        sum = sum + fan.bond::<f64, _>(arm, zeta, row);
+        sum = sum + many_body.bond::<f64, _>(arm, zeta, row);
     }
     sum
 }
@@ -60,8 +60,8 @@ fn energy<F: Fan>(fan: &F, at: &[Place]) -> Dual<f64> {
 fn check<F: Described>(constants: &[(&str, f64)]) {
     let mut parameters = Parameters::numbers(constants);
     F::descriptor().check(&mut parameters).unwrap();
-    let fan = F::read(&parameters).unwrap();
-    let sites = FanSites(fan.clone());
+    let many_body = F::read(&parameters).unwrap();
+    let sites = ManyBodySites(many_body.clone());
     let mut random = Random(3);
     let mut at = vec![[0.0; 3]];
     for y in [
@@ -89,7 +89,7 @@ fn check<F: Described>(constants: &[(&str, f64)]) {
     });
     for n in 0..at.len() {
         for c in 0..3 {
-            let exact = energy(&fan, &places(&at, n, c));
+            let exact = energy(&many_body, &places(&at, n, c));
             assert!(
                 (exact.value - whole).abs() < 1e-12 * (1.0 + whole.abs()),
                 "{}",

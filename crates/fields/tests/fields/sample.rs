@@ -3,7 +3,7 @@
 use peridyne::law::number::Number;
 use peridyne::law::potential::Potential;
 use peridyne::law::terms::{Near, OfSites, Sites, Term};
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::spec::{BondedSpec, BondedTerm, Form, Parameters, PotentialSpec};
 pub use peridyne_fields::specimen::{Chiral, Cluster, Random, cluster};
 use peridyne_fields::{Cell, Frame, Kernel, Method, Shape, Targets, evaluate};
@@ -260,7 +260,7 @@ pub fn stillinger_weber() -> Box<dyn Sites> {
         parameters,
         reach: f64::INFINITY,
     };
-    Shelf::standard().sites(&spec).unwrap()
+    Registry::standard().sites(&spec).unwrap()
 }
 
 /// Two cells of a diamond lattice along each axis, with displacements of a fifth of an ångström.

@@ -122,7 +122,7 @@ function history() {
   for (const s of [xs, ys, zs]) s.addEventListener("change", draw);
   const named = (meta.history.presets ?? []).map(p => [p.title, column(p.x), column(p.y)]).filter(([, x, y]) => x && y);
   id("presets").append(...named.map(([title, x, y]) => make("button", { type: "button", onclick: () => pick(x, y) }, capital(title))));
-  const residual = column("energy residual");
+  const residual = column("energy balance error");
   const [first] = named;
   if (first) pick(first[1], first[2]);
   else pick(time, residual ?? columns.find(c => c !== time && c.name !== "step") ?? columns.at(-1));
@@ -135,8 +135,8 @@ function energy() {
   const e = run.energy;
   if (!e) return;
   const names = [
-    ["initial", "at the start", 1], ["work_conditions", "work of loads and supports", 1], ["work_indenter", "work of indenters", 1], ["made", "made by breaking bonds", 1],
-    ["kinetic", "kinetic", -1], ["strain", "strain, or potential", -1], ["contact", "contact", -1], ["released", "released by breaking bonds", -1], ["dissipated", "dissipated", -1], ["numerical", "taken by the method", -1],
+    ["initial", "at the start", 1], ["work_boundary_conditions", "work of loads and supports", 1], ["work_rigid_bodies", "work of rigid bodies", 1], ["created_by_breakage", "created by bond breakage", 1],
+    ["kinetic", "kinetic", -1], ["strain", "strain, or potential", -1], ["contact", "contact", -1], ["dissipated_by_breakage", "dissipated by bond breakage", -1], ["dissipated", "dissipated", -1], ["numerical", "taken by the method", -1],
   ].filter(([key]) => e[key]);
   if (!names.length) return;
   reveal("energy");
@@ -156,7 +156,7 @@ function energy() {
     part("What came in", 1), part("Where it is", -1),
   );
   const total = names.filter(n => n[2] === 1).reduce((sum, [key]) => sum + Math.abs(e[key]), 0) || most;
-  id("energySays").textContent = `The balance misses ${quantity(e.residual, unit)}, ${plain((100 * Math.abs(e.residual)) / total, 2)} % of what came in.`;
+  id("energySays").textContent = `Error of the balance: ${quantity(e.balance_error, unit)}, ${plain((100 * Math.abs(e.balance_error)) / total, 2)} % of what came in.`;
 }
 
 // ---- texts
@@ -195,7 +195,7 @@ function texts() {
 
 function contents() {
   const parts = [...document.querySelectorAll("main section:not([hidden])")].filter(s => s.id !== "warnings");
-  const short = { understood: "Understood", again: "Run again, cite", files: "Files", energy: "Energy", history: "History", deck: "Deck", body: "Body", pictures: "Pictures" };
+  const short = { understood: "Input summary", again: "Run again, cite", files: "Files", energy: "Energy", history: "History", deck: "Deck", body: "Body", pictures: "Pictures" };
   id("contents").append(...parts.map(s => make("li", {}, make("a", { href: `#${s.id}` }, short[s.id]))));
 }
 

@@ -1,10 +1,11 @@
 //! Continuum fields of a running model: its points as particles, its forces pair by pair.
 
 use super::plan::{FieldsSpec, Place};
+use super::potential::beyond;
 use peridyne::error::BuildError;
 use peridyne::law::terms::Sites;
 use peridyne::observe::Values;
-use peridyne::run::{Shelf, Simulation};
+use peridyne::run::{Registry, Simulation};
 use peridyne::spec::{FamilyChoice, Spec};
 use peridyne_fields::effort::{Effort, bonds_within};
 use peridyne_fields::fields::NO_TEMPERATURE;
@@ -67,7 +68,7 @@ impl Live {
         let forces = match by_sites {
             false => Forces::Bonds,
             true => {
-                let sites = Shelf::standard()
+                let sites = Registry::standard()
                     .sites_of(spec)
                     .map_err(|e: BuildError| words(e))?;
                 let count = sim.info().points as usize;
@@ -140,7 +141,7 @@ impl Live {
             Place::Points(_) => None,
         };
         let [mut low, mut high] = asked.unwrap_or(self.bounds);
-        let beyond = self.section.powf(1.0 / (3 - self.dimension).max(1) as f64);
+        let beyond = beyond(self.dimension, self.section);
         for a in 0..3 {
             if a >= self.dimension {
                 (low[a], high[a]) = (-0.5 * beyond, 0.5 * beyond);

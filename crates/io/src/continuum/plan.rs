@@ -1,5 +1,6 @@
 //! What fields a deck asks for.
 
+use crate::write::picture::animate::FilmFormat;
 use peridyne_fields::{PairForce, Partition, Quantity, Shape};
 
 /// A picture of a slice in a film (bytes).
@@ -24,8 +25,8 @@ pub struct FieldsSpec {
     pub skip: u64,
     /// Write each frame.
     pub each: bool,
-    /// Animated pictures of the slice.
-    pub film: bool,
+    /// Films of the slice.
+    pub film: Option<FilmFormat>,
     /// Write the pressure, too.
     pub pressure: bool,
     /// Make y, its flux and the angular momentum, too.
@@ -78,7 +79,11 @@ impl FieldsSpec {
     pub fn bytes(&self, steps: u64) -> f64 {
         let frames = if self.each { self.frames(steps) } else { 0 };
         // slices of stress and temperature
-        let films = if self.film { 2 * self.frames(steps) } else { 0 };
+        let films = if self.film.is_some() {
+            2 * self.frames(steps)
+        } else {
+            0
+        };
         PICTURE * films as f64 + bytes(self.place.points(), frames, self.coordinate)
     }
 }
@@ -109,7 +114,7 @@ mod tests {
             every: Some(10),
             skip: 3,
             each: false,
-            film: false,
+            film: None,
             pressure: false,
             coordinate: false,
             residuals: 0,

@@ -7,7 +7,7 @@ use crate::deck::{Deck, DeckError, Flag};
 use crate::read::text_of;
 use peridyne::law::descriptor::{Descriptor, Value};
 use peridyne::law::terms::Sites;
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::spec::BondedSpec;
 use std::path::Path;
 use std::sync::Arc;
@@ -20,6 +20,21 @@ pub struct Model {
     pub kinds: Vec<Kind>,
     /// What the deck bonds whatever moves.
     pub bonded: Option<Arc<BondedSpec>>,
+    /// Of the deck, with the thickness of its plane or the section of its line (length, length²); 3 and 1 without one.
+    pub dimension: usize,
+    pub section: f64,
+}
+
+impl Model {
+    /// [`beyond`] of the body of the deck.
+    pub fn beyond(&self) -> f64 {
+        beyond(self.dimension, self.section)
+    }
+}
+
+/// Extent of a plane or a line along each axis that it does not have, by its thickness or section (length).
+pub(super) fn beyond(dimension: usize, section: f64) -> f64 {
+    libm::pow(section, 1.0 / (3 - dimension).max(1) as f64)
 }
 
 /// What a user says of a potential.
@@ -98,8 +113,12 @@ fn stage(sets: &[String]) -> Vec<Flag> {
 /// # Errors
 /// No such potential, constants that do not fit it, a file that cannot be read, no cut-off.
 pub fn model(words: &Words, units: Units) -> Result<Model, ModelError> {
-    let shelf = Shelf::standard();
-    let potentials = || shelf.descriptors().filter(|d| shelf.is_potential(&d.name));
+    let registry = Registry::standard();
+    let potentials = || {
+        registry
+            .descriptors()
+            .filter(|d| registry.is_potential(&d.name))
+    };
     let also = ALSO.iter().find(|(other, _)| *other == words.name);
     let found = match FILES.contains(&words.name.as_str()) {
         true => potentials().find(|d| reads_tables(d)),
@@ -214,10 +233,15 @@ pub fn of_deck(path: &Path) -> Result<(Model, Units), ModelError> {
     let deck = deck.map_err(|e| ModelError::Deck(Box::new(e)))?;
     let units = Units::Deck(deck.units);
     let mut made = of_spec(&deck, &name)?;
+    if !bare {
+        let space = &deck.spec.space;
+        (made.dimension, made.section) = (space.dimension, space.section);
+    }
     for (n, (kind, mass)) in made.kinds.iter_mut().zip(deck.masses()).enumerate() {
         let name = &deck.spec.materials[n].name;
         kind.mass = mass
-            .map(|m| m / units.mass())
+            // of a plane or a line per its thickness or section
+            .map(|m| m * made.section / units.mass())
             .filter(|_| !unknown.contains(name));
     }
     Ok((made, units))
@@ -225,13 +249,13 @@ pub fn of_deck(path: &Path) -> Result<(Model, Units), ModelError> {
 
 /// What a deck without a body lacks, and the materials that do not say their mass.
 fn lacking(written: &toml::Table) -> (Vec<Flag>, Vec<String>) {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let none = toml::Table::new();
     let materials = written.get("material").and_then(|m| m.as_table());
     let materials = materials.unwrap_or(&none);
     if materials.contains_key("law") {
         let mut flags = stage(&[]);
-        return match has_mass(materials, &shelf) {
+        return match has_mass(materials, &registry) {
             true => (flags, vec![]),
             false => {
                 flags.push(flag("model", "material.mass", "1".into()));
@@ -246,7 +270,7 @@ fn lacking(written: &toml::Table) -> (Vec<Flag>, Vec<String>) {
         };
         let set = material.get("set").and_then(|s| s.as_str());
         sets.push(set.unwrap_or(name).to_string());
-        if !has_mass(material, &shelf) {
+        if !has_mass(material, &registry) {
             let key = format!("material.{name:?}.mass");
             masses.push(flag("model", &key, "1".into()));
             unknown.push(name.clone());
@@ -267,15 +291,15 @@ fn lacking(written: &toml::Table) -> (Vec<Flag>, Vec<String>) {
 }
 
 /// Does a material say its mass, or the file of its law?
-fn has_mass(material: &toml::Table, shelf: &Shelf) -> bool {
+fn has_mass(material: &toml::Table, registry: &Registry) -> bool {
     let law = material.get("law").and_then(|l| l.as_table());
     let mut names = law.into_iter().flat_map(|l| l.keys());
-    let of_file = names.any(|name| shelf.descriptor(name).is_some_and(reads_tables));
+    let of_file = names.any(|name| registry.descriptor(name).is_some_and(reads_tables));
     of_file || material.contains_key("mass") || material.contains_key("density")
 }
 
 fn of_spec(deck: &Deck, name: &str) -> Result<Model, ModelError> {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let kind = |n: usize| {
         let material = &deck.spec.materials[n];
         let mut names = vec![material.name.clone(), material.set.clone()];
@@ -298,12 +322,14 @@ fn of_spec(deck: &Deck, name: &str) -> Result<Model, ModelError> {
             .into());
         }
     }
-    let sites = shelf.sites_of(&deck.spec);
+    let sites = registry.sites_of(&deck.spec);
     let sites = sites.map_err(|e| ModelError::Deck(Box::new(deck.explain(&e))))?;
     Ok(Model {
         name: name.to_string(),
         sites,
         kinds: (0..deck.spec.materials.len()).map(kind).collect(),
         bonded: deck.spec.interactions.bonded.clone(),
+        dimension: 3,
+        section: 1.0,
     })
 }

@@ -42,7 +42,7 @@ fn kind(entry: &Entry) -> Result<(&'static str, &'static str), String> {
     match (initial, key) {
         (true, "body_force" | "force") => Err("a body force has no initial value".into()),
         (true, key) => Ok(("initial", key)),
-        (false, key) => Ok(("condition", key)),
+        (false, key) => Ok(("boundary_condition", key)),
     }
 }
 

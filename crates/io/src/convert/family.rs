@@ -73,7 +73,7 @@ pub fn horizon(
     }
 }
 
-/// Pairs of points, each counted from both ends.
+/// Pairs of points, each each counted at both ends.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 struct Differs {
     /// There alone.

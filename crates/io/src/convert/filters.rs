@@ -193,7 +193,7 @@ fn segments(
         "normal in the plane of the points",
     )?;
     // from the corner to a point of the line
-    let lift = (level - corner[2]) * normal[2] / (normal[0].hypot(normal[1]));
+    let lift = (level - corner[2]) * normal[2] / (libm::hypot(normal[0], normal[1]));
     let base = along([corner[0], corner[1], level], -lift, flat);
     let line = [-flat[1], flat[0], 0.0];
     let far = |x: &Vector| length(along(*x, -1.0, base));

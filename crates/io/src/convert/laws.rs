@@ -1,4 +1,4 @@
-//! Materials and damage models of both programs as laws of the shelf.
+//! Materials and damage models of both programs as laws of the registry.
 
 use super::program::Program;
 use super::tree::Entry;
@@ -138,7 +138,7 @@ pub fn law(material: &Entry, setting: &Setting) -> Option<Law> {
         ("pmb", _) => bond_based(material, setting, plane),
         // the formulas of a solid
         ("lps", true) => bulk_and_shear(material)
-            .map(|[k, g]| format!("{{ lps_as_typed = {{ bulk = {k:?}, shear = {g:?} }} }}")),
+            .map(|[k, g]| format!("{{ lps_3d = {{ bulk = {k:?}, shear = {g:?} }} }}")),
         (_, true) => Err("PeriLab asks for plane stress or plane strain in 2-D (Symmetry)".into()),
         // laws of a body are of one kind
         ("lps", false) if setting.yields && plane.is_none() => keys(material, named).map(|keys| {

@@ -232,10 +232,10 @@ fn head(
     out += &format!("horizon = {horizon:?}\n");
     let influence = discretization.map_or("constant", influence);
     out += &format!("influence = \"{influence}\"\n");
-    out += "volume_scaling = false\ncalibration = \"continuum\"\n";
+    out += "partial_volume_correction = false\ncalibration = \"continuum\"\n";
     if materials.bonds {
         // each end gives half of its own constant
-        out += "interface = \"parallel\"\n";
+        out += "bond_mixing = \"arithmetic\"\n";
     }
     if materials.breaks {
         out += "contact = false\n";
@@ -247,7 +247,7 @@ fn head(
 fn damped(densities: &[(String, f64)], damping: f64) -> String {
     let each = densities.iter().map(|(set, density)| {
         format!(
-            "\n[[condition]]\nset = {}\ndamping = {:?}\n",
+            "\n[[boundary_condition]]\nset = {}\ndamping = {:?}\n",
             quoted(if densities.len() == 1 { "all" } else { set }),
             density * damping
         )

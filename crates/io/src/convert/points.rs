@@ -260,7 +260,7 @@ impl Points {
     fn without_groups(&mut self, gmsh: bool) {
         let flat = gmsh && self.dimension == 2;
         if flat && self.block.iter().any(|b| *b > 1) {
-            let note = "PeriLab knows no groups of a plane gmsh mesh: all cells are block 1";
+            let note = "PeriLab has no groups of a plane gmsh mesh: all cells are block 1";
             self.notes.push(note.into());
         }
         if flat || self.block.iter().all(|b| *b == 0) {

@@ -16,7 +16,7 @@ pub fn field(there: &str) -> Result<(&'static str, Option<&'static str>), &'stat
         "strain" => ("strain", None),
         "unrotated cauchy stress" => ("unrotated_stress", None),
         "equivalent plastic strain" => ("plastic_strain", None),
-        "block id" => ("mark", None),
+        "block id" => ("block", None),
         "stored elastic energy density" | "strain energy density" => {
             ("strain_energy_density", None)
         }

@@ -93,9 +93,10 @@ fn refuse_models(solver: &Entry) {
         );
     }
     match solver.number("Maximum Damage") {
-        Some(most) if most < 1.0 => {
-            solver.refuse_entry("Maximum Damage", "a run does not end where a point is torn")
-        }
+        Some(most) if most < 1.0 => solver.refuse_entry(
+            "Maximum Damage",
+            "a run does not end where a point is damaged",
+        ),
         _ => {}
     }
     for off in [
@@ -154,7 +155,7 @@ impl All<'_> {
             (Some(part), _) if part != 0.0 => {
                 list.refuse_entry(
                     "Numerical Damping",
-                    "it is a part of the velocity in each step, and there is no Fixed dt, or it is negative: write damping in a [[condition]], density times that part / step",
+                    "it is a part of the velocity in each step, and there is no Fixed dt, or it is negative: write damping in a [[boundary_condition]], density times that part / step",
                 );
                 0.0
             }
@@ -211,7 +212,7 @@ impl All<'_> {
             _ => self.to,
         };
         remarks.push(format!(
-            "t goes from 0 to 1 in statics: conditions have ({from:?} + {:?} t) in place of t",
+            "t goes from 0 to 1 in statics: boundary conditions have ({from:?} + {:?} t) in place of t",
             to - from
         ));
         Solver {

@@ -111,8 +111,11 @@ fn failure(text: &str) -> String {
 fn deck(dir: &Path, found: &Converted) -> Deck {
     found.write_mesh(&dir.join("new.g")).unwrap();
     let path = dir.join("new.toml");
-    Deck::parse(&found.text, path.to_str().unwrap(), &[])
-        .unwrap_or_else(|e| panic!("{e}\n{}", found.text))
+    let deck = Deck::parse(&found.text, path.to_str().unwrap(), &[])
+        .unwrap_or_else(|e| panic!("{e}\n{}", found.text));
+    let old = deck.notes.iter().find(|n| n.contains("is called"));
+    assert_eq!(old, None, "{}", found.text);
+    deck
 }
 
 #[test]

@@ -5,27 +5,28 @@ use super::upscaled::{Rewritten, table};
 use toml::{Table, Value};
 
 /// What belongs to the old body and its law.
-const GONE: [&str; 15] = [
-    "bond_factor",
+const GONE: [&str; 16] = [
+    "bond_stiffness",
     "toughness",
     "healing",
     "horizon",
     "influence",
-    "volume_scaling",
+    "partial_volume_correction",
     "calibration",
     "family",
     "precrack",
     "contact",
-    "thermal",
+    "initial_velocities",
     "interface",
+    "bond_mixing",
     "periodic",
-    "indenter",
+    "rigid_body",
     "surface",
 ];
 
 /// Keys of sets that mean points of the old body, and what such a set is.
 const OF_POINTS: [(&str, &str); 3] = [
-    ("mark", "a mark of the old file"),
+    ("block", "a block of the old file"),
     ("basis", "sites of the old lattice's cell"),
     ("random", "drawn from the old points"),
 ];
@@ -71,8 +72,8 @@ fn names(value: &Value, name: &str) -> bool {
 /// What of the deck does not go with given micromoduli, in words.
 pub fn coarsened(deck: &Deck, file: &str, level: usize) -> Result<Rewritten, String> {
     let mut table = table(deck)?;
-    if table.contains_key("indenter") {
-        return Err("indenter: linear bodies have no contact".into());
+    if table.contains_key("rigid_body") {
+        return Err("rigid_body: linear bodies have no contact".into());
     }
     for key in GONE {
         table.remove(key);

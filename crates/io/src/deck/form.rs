@@ -3,7 +3,7 @@
 use super::error::DeckError;
 use super::source::{SEVERAL, Source};
 use crate::excerpt::steers;
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -14,7 +14,7 @@ const ONE: [&str; 9] = [
     "run",
     "statics",
     "output",
-    "thermal",
+    "initial_velocities",
     "heat",
     "species",
     "constants",
@@ -77,14 +77,14 @@ pub(super) fn check(source: &Source, deck: &DeTable) -> Result<(), DeckError> {
     let Some(material) = at.get_ref().as_table() else {
         return Ok(());
     };
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let inner = material.values().filter_map(|m| m.get_ref().as_table());
     for table in std::iter::once(material).chain(inner) {
         let Some(law) = table.get("law") else {
             continue;
         };
         let known = |name: &str| {
-            let found = shelf.descriptor(name).filter(|d| !d.keys.is_empty());
+            let found = registry.descriptor(name).filter(|d| !d.keys.is_empty());
             found.map(|d| (&d.name, &d.example))
         };
         if let DeValue::String(name) = law.get_ref()

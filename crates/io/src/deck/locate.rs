@@ -1,5 +1,6 @@
 //! Places of spec entries in the deck.
 
+use super::renamed;
 use super::source::Source;
 use std::ops::Range;
 use toml::Spanned;
@@ -70,20 +71,7 @@ pub(super) fn first_body<'a>(tree: &mut DeTable<'a>) {
     );
 }
 
-/// Where `[[interface]]` goes; `interface` alone is a word.
-const INTERFACES: &str = "[[interface]]";
-
-/// Puts interfaces between bodies under a key of their own.
-pub(super) fn interfaces(tree: &mut DeTable) {
-    let joins = |entry: &Spanned<DeValue>| matches!(entry.get_ref(), DeValue::Array(_));
-    if tree.get("interface").is_some_and(joins)
-        && let Some((key, value)) = tree.remove_entry("interface")
-    {
-        tree.insert(Spanned::new(key.span(), INTERFACES.into()), value);
-    }
-}
-
-/// A set that a region of the deck makes is called after its entry: `"condition 2"` is `condition[1].region`. Other
+/// A set that a region of the deck makes is called after its entry: `"boundary condition 2"` is `boundary_condition[1].region`. Other
 /// sets that the deck does not write come with the body's file.
 fn made_set(tree: &DeTable, path: &str) -> Option<String> {
     let name = path.strip_prefix("sets.")?;
@@ -91,8 +79,12 @@ fn made_set(tree: &DeTable, path: &str) -> Option<String> {
     if written.is_some_and(|sets| sets.contains_key(name)) {
         return None;
     }
-    let entry = ["condition", "initial"].into_iter().find_map(|key| {
-        let number: usize = name.strip_prefix(key)?.trim_start().parse().ok()?;
+    let tables = [
+        ("boundary condition", "boundary_condition"),
+        ("initial", "initial"),
+    ];
+    let entry = tables.into_iter().find_map(|(called, key)| {
+        let number: usize = name.strip_prefix(called)?.trim_start().parse().ok()?;
         Some(format!("{key}[{}].region", number.checked_sub(1)?))
     });
     Some(entry.unwrap_or_else(|| "body.file".into()))
@@ -103,9 +95,9 @@ fn deck_key(spec_key: &str) -> &str {
     match spec_key {
         "materials" => "material",
         "precracks" => "precrack",
-        "bonds" => "bond_factor",
-        "conditions" => "condition",
-        "indenters" => "indenter",
+        "bonds" => "bond_stiffness",
+        "conditions" => "boundary_condition",
+        "rigid_bodies" => "rigid_body",
         "probes" => "probe",
         "potentials" => "pair",
         "schedule" => "run",
@@ -118,13 +110,18 @@ pub(super) fn locate(source: &Source, path: &str) -> Option<Range<usize>> {
     let made = made_set(tree.get_ref(), path);
     let path = made.as_deref().unwrap_or(path);
     let path = path.replace('[', ".").replace(']', "");
+    let path = match path.split_once('.') {
+        Some((first, rest)) => format!("{}.{rest}", deck_key(first)),
+        None => deck_key(&path).to_string(),
+    };
+    let path = renamed::path(&path).unwrap_or(path);
     let mut segments = path.split('.').filter(|s| !s.is_empty());
     let first = segments.next()?;
     let top = match first {
         "section" => ["thickness", "area"]
             .into_iter()
             .find_map(|key| tree.get_ref().get(key)),
-        key => tree.get_ref().get(deck_key(key)),
+        key => tree.get_ref().get(key),
     }?;
     let mut here = top;
     for segment in segments {
@@ -132,7 +129,7 @@ pub(super) fn locate(source: &Source, path: &str) -> Option<Range<usize>> {
         let next = match here.get_ref() {
             DeValue::Array(items) => index.and_then(|i| items.get(i)),
             DeValue::Table(table)
-                if std::ptr::eq(here, top) && first == "materials" && is_one_material(table) =>
+                if std::ptr::eq(here, top) && first == "material" && is_one_material(table) =>
             {
                 // one unnamed material is the deck's `material` itself
                 if index == Some(0) || segment == UNNAMED {

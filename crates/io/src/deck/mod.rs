@@ -7,13 +7,15 @@ pub mod coarsened;
 pub mod conservation;
 mod describe;
 mod document;
-mod doubts;
 mod error;
 mod form;
+mod lints;
 mod locate;
 mod lower;
+mod quantity;
 mod reader;
 pub mod reference;
+mod renamed;
 mod schema;
 mod source;
 mod syntax;
@@ -25,17 +27,20 @@ mod value;
 mod tests;
 
 pub use describe::{describe, sources};
-pub use doubts::{Doubt, doubts};
 pub use error::DeckError;
+pub use lints::{Lint, lints};
 pub use lower::{OutputSpec, PictureSpec, SpaceTimeSpec};
+pub use renamed::renamed;
 pub use schema::{law_schema, schema};
 pub use source::Flag;
 pub use units::{
-    Constants, Dim, UnitSystem, clock_time, counted, example, named, rounded, unit, usual,
+    Constants, Dim, UnitSystem, clock_time, counted, each_once, example, known, named, rounded,
+    split, unit, usual,
 };
 
 use crate::continuum::plan::FieldsSpec;
 use crate::read::Cells;
+use crate::read::source::during;
 use document::Document;
 use lower::{Entries, Files};
 use peridyne::error::BuildError;
@@ -43,7 +48,7 @@ use peridyne::run::Info;
 use peridyne::spec::Spec;
 use source::Source;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A deck that was understood.
@@ -73,6 +78,8 @@ pub struct Deck {
     /// Entries of the deck that those of the spec come from.
     entries: Entries,
     source: Source,
+    /// Where the files lie that were read for it.
+    pub files: Vec<PathBuf>,
 }
 
 impl Deck {
@@ -106,13 +113,17 @@ impl Deck {
     }
 
     fn of_source(source: Source) -> Result<Deck, DeckError> {
-        let mut tree = source.tree()?;
+        let (read, files) = during(|| Self::lowered(source));
+        Ok(Deck { files, ..read? })
+    }
+
+    fn lowered(source: Source) -> Result<Deck, DeckError> {
+        let (mut tree, renames) = source.tree_and_renames()?;
         form::names(&source, tree.get_ref())?;
         form::kind(&source, tree.get_ref())?;
         form::check(&source, tree.get_ref())?;
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
-        locate::interfaces(tree.get_mut());
         let document: Document = reader::read(&source, &tree)?;
         let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));
         let units = lower::units(&document);
@@ -129,10 +140,11 @@ impl Deck {
             duration: lowered.duration,
             modes: lowered.modes,
             warnings: lowered.warnings,
-            notes: lowered.notes,
+            notes: [source.notes(&renames), lowered.notes].concat(),
             cells: Arc::new(lowered.cells),
             entries: lowered.entries,
             source,
+            files: vec![],
         })
     }
 
@@ -203,11 +215,11 @@ impl Deck {
     }
 
     /// What looks wrong once the model is built, with lines where there are any.
-    pub fn doubts(&self, info: &Info) -> Vec<String> {
-        let each = doubts(&self.spec, info, self.units).into_iter();
-        let told = each.map(|doubt| {
-            let text = self.units.tell(&doubt.text);
-            match self.locate(&doubt.path) {
+    pub fn lints(&self, info: &Info) -> Vec<String> {
+        let each = lints(&self.spec, info, self.units).into_iter();
+        let told = each.map(|lint| {
+            let text = self.units.tell(&lint.text);
+            match self.locate(&lint.path) {
                 Some(span) => self.source.remark(&span, &text),
                 None => text,
             }

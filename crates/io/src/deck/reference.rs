@@ -35,7 +35,7 @@ pub struct Key {
     pub must: bool,
     /// Where other keys matter: `one of these is given`.
     pub need: String,
-    /// When left out.
+    /// When left out: as it is written, or in words.
     pub default: String,
     /// Words that it takes, with their meaning.
     pub words: Vec<(String, String)>,
@@ -107,6 +107,52 @@ fn written(json: &Json) -> String {
         Json::Null => String::new(),
         Json::String(word) => format!("\"{word}\""),
         other => other.to_string(),
+    }
+}
+
+/// What a key is, and what it is by default, where its description says so: `Range; 2 by default.` is `Range.` and `2`.
+fn split_default(doc: &str) -> (String, String) {
+    const MARK: &str = " by default";
+    /// What is longer is an explanation.
+    const LONGEST: usize = 70;
+    let Some((before, after)) = doc.split_once(MARK) else {
+        return (doc.into(), String::new());
+    };
+    let begin = ["; ", ". ", ": "]
+        .iter()
+        .filter_map(|end| before.rfind(end).map(|at| at + end.len()));
+    let begin = begin.max().unwrap_or(0);
+    let default = &before[begin..];
+    // `; by default, …` is said after it
+    let ends = after.is_empty() || after.starts_with(['.', ';', ',', ':']);
+    if default.is_empty() || default.ends_with(';') || default.len() > LONGEST || !ends {
+        return (doc.into(), String::new());
+    }
+    let kept = before[..begin].trim_end_matches([' ', ';']);
+    // what is said of the default, or of all of it, stays with it
+    let alone = !kept.ends_with(':') && !after.starts_with([',', ':']);
+    let rest = match after.strip_prefix(';') {
+        Some(rest) => sentence(rest.trim_start()),
+        None => after.trim_start_matches(['.', ' ']).to_string(),
+    };
+    let doc = match (alone, kept.is_empty(), rest.is_empty()) {
+        (false, ..) | (true, true, true) => doc.into(),
+        (true, true, false) => rest,
+        (true, false, true) => format!("{}.", kept.trim_end_matches('.')),
+        (true, false, false) => format!("{}. {}", kept.trim_end_matches('.'), rest),
+    };
+    (doc, default.into())
+}
+
+/// With a great letter, where it does not begin with a word of decks.
+fn sentence(text: &str) -> String {
+    let word = text.split(' ').next().unwrap_or_default();
+    let mut letters = text.chars();
+    match letters.next() {
+        Some(first) if word.chars().all(|c| c.is_ascii_lowercase()) => {
+            first.to_uppercase().chain(letters).collect()
+        }
+        _ => text.into(),
     }
 }
 
@@ -182,16 +228,18 @@ impl Reader {
     }
 
     fn key(&mut self, path: &str, name: &str, value: &Json) -> Key {
+        let (doc, said) = split_default(&text(&value["description"]));
+        let default = match &value["default"] {
+            Json::Object(_) | Json::Array(_) | Json::Null => said,
+            other => written(other),
+        };
         let mut key = Key {
             name: name.into(),
-            doc: text(&value["description"]),
-            dimension: text(&value["dimension"]),
-            bounds: text(&value["bounds"]),
+            doc,
+            dimension: of_numbers(value, "dimension"),
+            bounds: of_numbers(value, "bounds"),
             need: text(&value["need"]),
-            default: match &value["default"] {
-                Json::Object(_) | Json::Array(_) => String::new(),
-                other => written(other),
-            },
+            default,
             ..Key::default()
         };
         if let Some(words) = value["words"].as_array() {
@@ -209,6 +257,7 @@ impl Reader {
         let mut takes = vec![];
         self.takes(&place, value, &mut key, &mut takes);
         takes.dedup();
+        key.tables.dedup();
         key.takes = takes.join(", or ");
         if key.bounds.is_empty() && value["maximum"].is_number() {
             key.bounds = format!("{} to {}", value["minimum"], value["maximum"]);
@@ -325,6 +374,17 @@ impl Reader {
     }
 }
 
+/// What a schema says of its numbers, which may be those of a list or one of several forms.
+fn of_numbers(schema: &Json, what: &str) -> String {
+    let forms = schema["anyOf"].as_array().map_or(&[][..], Vec::as_slice);
+    let mut each = forms.iter().chain(schema.get("items"));
+    match &schema[what] {
+        Json::String(said) => said.clone(),
+        _ => (each.find_map(|form| Some(of_numbers(form, what)).filter(|s| !s.is_empty())))
+            .unwrap_or_default(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -358,6 +418,48 @@ mod tests {
             }
         }
         assert!(keys > 250, "{keys}");
+    }
+
+    #[test]
+    fn defaults_are_told_apart() {
+        let is = |doc: &str, key: &str, default: &str| {
+            assert_eq!(split_default(doc), (key.into(), default.into()), "{doc}");
+        };
+        is(
+            "Range in spacings; 1.35 by default.",
+            "Range in spacings.",
+            "1.35",
+        );
+        is("Range.", "Range.", "");
+        is("constant by default.", "constant by default.", "constant");
+        let doc = "All cores by default; results do not depend on it.";
+        is(doc, "Results do not depend on it.", "All cores");
+        let doc = "verlet by default. newmark and hht are implicit. still: nothing.";
+        is(
+            doc,
+            "newmark and hht are implicit. still: nothing.",
+            "verlet",
+        );
+        let doc = "newmark: 1/2 by default; more damps.";
+        is(doc, doc, "1/2");
+        let doc = "auto by default, factors of small systems.";
+        is(doc, doc, "auto");
+        let doc = "Its file; by default, that of the deck.";
+        is(doc, doc, "");
+        let doc = "The unit; the deck's by default. Densities are in it.";
+        is(doc, "The unit. Densities are in it.", "the deck's");
+    }
+
+    /// Every table says what it is: a page without a sentence is a riddle.
+    #[test]
+    fn every_table_is_explained() {
+        for schema in [schema(), law_schema()] {
+            let silent: Vec<String> = { pages(&schema).into_iter() }
+                .filter(|page| page.doc.is_empty())
+                .map(|page| page.path)
+                .collect();
+            assert_eq!(silent, Vec::<String>::new());
+        }
     }
 
     /// What a key of a deck is on its page.
@@ -416,5 +518,121 @@ mod tests {
             }
         }
         assert!(met > 1000, "{met}");
+    }
+
+    /// A key that a table of a deck leaves out: its page, its name, its dotted path and its default as TOML.
+    struct LeftOut {
+        page: String,
+        name: String,
+        path: String,
+        default: String,
+    }
+
+    /// The default of a key that could be written in a deck: a number, a switch, a word of those that it takes.
+    fn literal(key: &Key) -> Option<String> {
+        let default = &key.default;
+        let plain = default.trim_matches('"').replace(',', "");
+        let word = |c: char| c.is_ascii_lowercase() || c == '_';
+        match (plain.parse::<f64>(), &*plain) {
+            (Ok(_), _) | (_, "true" | "false") => Some(plain),
+            // what takes any text has its default in prose
+            _ if key.takes != "a text" && !plain.is_empty() && plain.chars().all(word) => {
+                Some(format!("{plain:?}"))
+            }
+            _ => None,
+        }
+    }
+
+    /// All keys with such defaults that a table leaves out, and those of its tables.
+    fn left_out(table: &toml::Table, (page, path): (&str, &str), pages: &[Page]) -> Vec<LeftOut> {
+        let Some(page) = pages.iter().find(|p| p.path == page) else {
+            return vec![];
+        };
+        let dotted = |name: &str| match path {
+            "" => name.to_string(),
+            path => format!("{path}.{name}"),
+        };
+        let mut all = vec![];
+        for key in &page.keys {
+            // a law is handed what the deck has, and has the defaults in its descriptor
+            if matches!(&*key.name, "law" | "force") {
+                continue;
+            }
+            match (table.get(&key.name), literal(key)) {
+                (None, Some(default)) => all.push(LeftOut {
+                    page: page.path.clone(),
+                    name: key.name.clone(),
+                    path: dotted(&key.name),
+                    default,
+                }),
+                (Some(toml::Value::Table(inner)), _) => {
+                    for inside in &key.tables {
+                        let there = dotted(&key.name);
+                        all.extend(left_out(inner, (inside, &there), pages));
+                    }
+                }
+                (Some(toml::Value::Array(each)), _) => {
+                    let inside = each.iter().filter_map(toml::Value::as_table).enumerate();
+                    for (n, inner) in inside {
+                        let there = dotted(&format!("{}.{n}", key.name));
+                        for page in &key.tables {
+                            all.extend(left_out(inner, (page, &there), pages));
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        all
+    }
+
+    /// A key that is written with its default is as one that is left out.
+    #[test]
+    fn defaults_are_true() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good");
+        let pages = pages(&schema());
+        let said = |deck: &crate::deck::Deck| {
+            format!(
+                "{:?}",
+                (
+                    &deck.spec,
+                    &deck.output,
+                    &deck.fields,
+                    deck.threads,
+                    deck.duration
+                )
+            )
+        };
+        let (mut met, mut wrong) = (std::collections::BTreeSet::new(), vec![]);
+        let mut decks: Vec<_> = { std::fs::read_dir(folder).unwrap() }
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+            .collect();
+        decks.sort();
+        for path in decks {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let name = path.display().to_string();
+            let table: toml::Table = text.parse().unwrap();
+            let mut plain = None;
+            for key in left_out(&table, ("", ""), &pages) {
+                if met.contains(&(key.page.clone(), key.name.clone())) {
+                    continue;
+                }
+                let set = [(key.path.clone(), key.default.clone())];
+                // a key of another method, or prose that looks like a word
+                let Ok(with) = crate::deck::Deck::parse(&text, &name, &set) else {
+                    continue;
+                };
+                let plain = plain.get_or_insert_with(|| {
+                    said(&crate::deck::Deck::parse(&text, &name, &[]).unwrap())
+                });
+                if said(&with) != *plain {
+                    wrong.push(format!("{name}: {} = {}", key.path, key.default));
+                }
+                met.insert((key.page, key.name));
+            }
+        }
+        assert!(wrong.is_empty(), "{wrong:#?}");
+        assert!(met.len() > 40, "{met:?}");
     }
 }

@@ -69,7 +69,6 @@ mod tests {
         let mut tree = source.tree().unwrap();
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
-        locate::interfaces(tree.get_mut());
         reader::read::<Document>(&source, &tree).is_ok()
     }
 

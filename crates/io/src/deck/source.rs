@@ -4,6 +4,7 @@
 //! end, so one number tells the place in all of them.
 
 use super::error::DeckError;
+use super::renamed::Renames;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
@@ -12,11 +13,11 @@ use toml::de::{DeArray, DeString, DeTable, DeValue};
 pub(super) const SEVERAL: [&str; 8] = [
     "probe",
     "fields",
-    "condition",
+    "boundary_condition",
     "initial",
     "precrack",
-    "indenter",
-    "bond_factor",
+    "rigid_body",
+    "bond_stiffness",
     "toughness",
 ];
 
@@ -117,6 +118,14 @@ impl Source {
         format!("{}{line}: {text}", place.file)
     }
 
+    /// What a user should know of keys by older names.
+    pub(super) fn notes(&self, renames: &Renames) -> Vec<String> {
+        let mut all: Vec<_> = renames.all().collect();
+        all.sort_by_key(|(span, _)| span.start);
+        let each = all.into_iter();
+        each.map(|(span, text)| self.remark(span, text)).collect()
+    }
+
     /// The text at a span.
     pub(super) fn slice(&self, span: &Range<usize>) -> &str {
         let (_, text, start) = self.part(span.start);
@@ -124,18 +133,43 @@ impl Source {
             .unwrap_or("")
     }
 
-    /// Parses everything and lays the overrides over the deck.
+    /// The key whose value begins at this place: what stands before the last `=`.
+    pub(super) fn key(&self, at: usize) -> Option<&str> {
+        let (_, text, start) = self.part(at);
+        let before = text.get(..at.checked_sub(start)?)?.rsplit_once('=')?.0;
+        let word = |c: char| !(c.is_alphanumeric() || c == '_' || c == '-');
+        before.trim_end().rsplit(word).next()
+    }
+
+    /// Parses everything and lays the overrides over the deck, all by the names that keys have today.
     pub(super) fn tree(&self) -> Result<Tree<'_>, DeckError> {
+        self.tree_and_renames().map(|(tree, _)| tree)
+    }
+
+    /// The same, and what was written by an older name.
+    pub(super) fn tree_and_renames(&self) -> Result<(Tree<'_>, Renames), DeckError> {
+        let mut renames = Renames::default();
+        let mut today = |tree: &mut Tree| {
+            renames.give(tree.get_mut()).map_err(|twice| {
+                let (old, new) = (twice.old, twice.new);
+                let message = format!("`{old}` is an older name of `{new}`, which is there, too");
+                let help = format!("write {new} everywhere");
+                self.error(Some(twice.span), message, Some(help))
+            })
+        };
         let mut tree =
             DeTable::parse(&self.text).map_err(|e| self.error(e.span(), e.message(), None))?;
+        today(&mut tree)?;
         for over in &self.overrides {
             let help = || Some("an override is written KEY.PATH=VALUE".to_string());
-            let top = DeTable::parse(&over.padded)
+            let mut top = DeTable::parse(&over.padded)
                 .map_err(|e| self.error(e.span(), e.message(), help()))?;
-            merge(tree.get_mut(), top.into_inner(), "the deck")
+            today(&mut top)?;
+            let whole = |at: &Range<usize>| over.padded[at.clone()].starts_with('{');
+            merge(tree.get_mut(), top.into_inner(), "the deck", &whole)
                 .map_err(|lost| self.error(Some(lost.span), lost.message, Some(lost.help)))?;
         }
-        Ok(tree)
+        Ok((tree, renames))
     }
 }
 
@@ -151,13 +185,22 @@ fn number(key: &Spanned<DeString>) -> Option<usize> {
     AsRef::<str>::as_ref(key.get_ref()).parse().ok()
 }
 
+/// Is what stands here a value that takes the place of another (`{ … }`), and no key on the way to one?
+type Whole<'f> = &'f dyn Fn(&Range<usize>) -> bool;
+
 /// Lays `over` over a table that is called `name`; a table of numbered keys goes over the entries of a list.
-fn merge<'a>(into: &mut DeTable<'a>, over: DeTable<'a>, name: &str) -> Result<(), Lost> {
+fn merge<'a>(
+    into: &mut DeTable<'a>,
+    over: DeTable<'a>,
+    name: &str,
+    whole: Whole,
+) -> Result<(), Lost> {
     for (key, value) in over {
         let called = key.get_ref().to_string();
+        let on = !whole(&value.span());
         match (into.get_mut(&key).map(Spanned::get_mut), value.get_ref()) {
-            (Some(old @ (DeValue::Table(_) | DeValue::Array(_))), DeValue::Table(_)) => {
-                merge_value(old, value, &called)?;
+            (Some(old @ (DeValue::Table(_) | DeValue::Array(_))), DeValue::Table(_)) if on => {
+                merge_value(old, value, &called, whole)?;
             }
             (None, DeValue::Table(over))
                 if SEVERAL.contains(&&*called) && over.keys().any(|key| number(key).is_some()) =>
@@ -182,12 +225,13 @@ fn merge_value<'a>(
     old: &mut DeValue<'a>,
     value: Spanned<DeValue<'a>>,
     name: &str,
+    whole: Whole,
 ) -> Result<(), Lost> {
     match (old, value.into_inner()) {
-        (DeValue::Table(table), DeValue::Table(over)) => merge(table, over, name),
+        (DeValue::Table(table), DeValue::Table(over)) => merge(table, over, name, whole),
         (DeValue::Array(items), DeValue::Table(over)) => over
             .into_iter()
-            .try_for_each(|(key, value)| merge_entry(items, key, value, name)),
+            .try_for_each(|(key, value)| merge_entry(items, key, value, name, whole)),
         (old, value) => {
             *old = value;
             Ok(())
@@ -201,6 +245,7 @@ fn merge_entry<'a>(
     key: Spanned<DeString<'a>>,
     value: Spanned<DeValue<'a>>,
     name: &str,
+    whole: Whole,
 ) -> Result<(), Lost> {
     let count = items.len();
     let lost = |message: String| {
@@ -227,8 +272,8 @@ fn merge_entry<'a>(
         ));
     };
     match (item.get_ref(), value.get_ref()) {
-        (DeValue::Table(_) | DeValue::Array(_), DeValue::Table(_)) => {
-            merge_value(item.get_mut(), value, name)
+        (DeValue::Table(_) | DeValue::Array(_), DeValue::Table(_)) if !whole(&value.span()) => {
+            merge_value(item.get_mut(), value, name, whole)
         }
         _ => {
             *item = value;

@@ -1,3 +1,4 @@
+mod celsius;
 mod reader;
 
 use super::*;
@@ -20,7 +21,7 @@ law = { pmb = { bulk = "14.9 GPa" } }
 fracture = { critical_stretch = 0.0005, alpha = 0.25 }
 [[initial]]
 velocity = { y = "x > 2*R ? v : 0" }
-[[indenter]]
+[[rigid_body]]
 stiffness = "1e17 N/m^5"
 radius = "R"
 center = [0, "2.5 mm", 0]
@@ -73,11 +74,11 @@ fn a_deck_becomes_a_spec() {
     let velocity = spec.loading.initial[0].velocity[1].as_ref().unwrap();
     assert_eq!(velocity.eval(&[0.02, 0.0, 0.0], 0.0), -100.0);
     assert!(spec.loading.initial[0].velocity[0].is_none());
-    let RigidShape::Sphere { radius } = spec.loading.indenters[0].shape else {
+    let RigidShape::Sphere { radius } = spec.loading.rigid_bodies[0].shape else {
         panic!()
     };
     assert_eq!(radius, 0.005);
-    let IndenterMotion::Kinematic(center) = &spec.loading.indenters[0].motion else {
+    let RigidBodyMotion::Kinematic(center) = &spec.loading.rigid_bodies[0].motion else {
         panic!()
     };
     assert!((center[1].eval(&[0.0; 3], 1e-5) - 0.0015).abs() < 1e-15);
@@ -107,7 +108,7 @@ fn overrides_lie_over_the_deck_and_are_blamed_for_their_mistakes() {
         with("horizon", "{ m_ratio = 4 }").is_ok_and(|d| d.spec.bonds.horizon == Horizon::Ratio(4))
     );
     for (key, value, message) in [
-        ("body.spacing", "-1 mm", "the spacing must be positive"),
+        ("body.spacing", "-1 mm", "`spacing` must be positive"),
         ("body.spacin", "1 mm", "unknown key `spacin`"),
         (
             "run.steps",
@@ -132,7 +133,7 @@ fn an_error_of_the_engine_finds_its_line() {
         ("materials.material.law", "{ pmb"),
         ("schedule.time_step", "\"100 ns\""),
         ("conditions.0", ""),
-        ("indenters[0].radius", "\"R\""),
+        ("rigid_bodies[0].radius", "\"R\""),
         ("horizon", "{ m_ratio"),
     ] {
         let found = deck.locate(path).map_or("", |span| &IMPACT[span]);
@@ -200,7 +201,7 @@ fn a_periodic_body_is_one_period_long() {
 
 #[test]
 fn metal_units_are_made_consistent() {
-    let text = "units = \"metal\"\nhorizon = 9\n[body]\nlattice = \"fcc\"\nspacing = \"0.4 nm\"\nregion = { block = { low = [0,0,0], high = [40,40,40] } }\n[material]\ndensity = 2.7\nlaw = { pmb = { bulk = \"76 GPa\" } }\n[run]\nduration = 1\n[[condition]]\ntraction = { x = \"1e4*t\" }\n";
+    let text = "units = \"metal\"\nhorizon = 9\n[body]\nlattice = \"fcc\"\nspacing = \"0.4 nm\"\nregion = { block = { low = [0,0,0], high = [40,40,40] } }\n[material]\ndensity = 2.7\nlaw = { pmb = { bulk = \"76 GPa\" } }\n[run]\nduration = 1\n[[boundary_condition]]\ntraction = { x = \"1e4*t\" }\n";
     let deck = parse(text);
     assert!(
         matches!(deck.spec.body, BodySpec::Lattice { spacing, .. } if (spacing - 4.0).abs() < 1e-12)
@@ -241,7 +242,7 @@ fn the_schema_knows_every_table() {
         "material",
         "horizon",
         "run",
-        "condition",
+        "boundary_condition",
         "precrack",
     ] {
         assert!(schema["properties"][key].is_object(), "{key}");
@@ -312,7 +313,7 @@ fn value(key: &str, text: &str, statics: bool) -> Result<f64, (String, String)> 
     };
     let deck = format!(
         "{}L = \"50 mm\"\nw = \"2*R\"\nc = \"sqrt(14 GPa/(2200 kg/m^3))\"\nT = \"L/c\"\nn = 3\np = \"12 MPa\"\n{}\
-         [[condition]]\n{key} = {{ x = '{text}' }}\n{schedule}",
+         [[boundary_condition]]\n{key} = {{ x = '{text}' }}\n{schedule}",
         &IMPACT[..IMPACT.find("[body]").unwrap()],
         &IMPACT[IMPACT.find("[body]").unwrap()..run],
     );
@@ -560,7 +561,7 @@ fn what_does_not_fit_together_is_refused_with_its_place() {
 
 #[test]
 fn expressions_in_metal_units_are_computed_in_those() {
-    let text = "units = \"metal\"\nhorizon = 9\n[constants]\nK = \"76 GPa\"\n[body]\nlattice = \"fcc\"\nspacing = \"0.4 nm\"\nregion = { block = { low = [0,0,0], high = [40,40,40] } }\n[material]\ndensity = \"2*1.35 g/cm^3\"\nlaw = { pmb = { bulk = \"0.5*K\" } }\n[run]\nduration = 1\n[[condition]]\ntraction = { x = \"TEXT\" }\n";
+    let text = "units = \"metal\"\nhorizon = 9\n[constants]\nK = \"76 GPa\"\n[body]\nlattice = \"fcc\"\nspacing = \"0.4 nm\"\nregion = { block = { low = [0,0,0], high = [40,40,40] } }\n[material]\ndensity = \"2*1.35 g/cm^3\"\nlaw = { pmb = { bulk = \"0.5*K\" } }\n[run]\nduration = 1\n[[boundary_condition]]\ntraction = { x = \"TEXT\" }\n";
     let traction = |t: &str| {
         let deck = Deck::parse(&text.replace("TEXT", t), "f", &[])?;
         let ConditionKind::Traction { value, .. } = &deck.spec.loading.conditions[0].kind else {
@@ -593,4 +594,193 @@ fn expressions_in_metal_units_are_computed_in_those() {
             .contains("a pressure and a number without unit"),
         "{error}"
     );
+}
+
+const OLD: &str = r#"own_horizon = "3 mm"
+influence = "conical"
+interface = "parallel"
+volume_scaling = false
+contact = { bonded = 0.8, free = 1.2 }
+horizon = "3 mm"
+[body]
+file = "cloud.txt"
+[sets]
+left = { mark = 2 }
+[material.a]
+density = 1
+law = { position_aware = { young = 1, poisson = 0.2 } }
+fracture = { critical_stretch = 0.1, release = "at_once" }
+[material.b]
+density = 1
+set = "left"
+law = { lps_as_typed = { bulk = 1, shear = 1 } }
+[[condition]]
+set = "left"
+stage = "motion"
+traction = { x = 1 }
+[[condition]]
+set = "all"
+traction = { y = 1 }
+[[indenter]]
+name = "ball"
+radius = 1
+center = [0, 0, 0]
+mass = 1
+spin = [0, 0, 1]
+[[bond_factor]]
+value = 0.5
+[[toughness]]
+stretch_factor = 2
+[[precrack]]
+kind = "absent"
+point = 1
+[thermal]
+temperature = 1
+seed = 1
+[[probe]]
+name = "turning"
+measure = "indenter"
+indenter = "ball"
+of = "spin"
+[run]
+integrator = "still"
+[statics]
+control = "breaking"
+[output]
+fields = ["velocity", "mark"]
+"#;
+const TODAY: &str = r#"variable_horizon = "3 mm"
+influence = "linear"
+bond_mixing = "arithmetic"
+partial_volume_correction = false
+contact = { reference_fraction = 0.8, spacing_multiple = 1.2 }
+horizon = "3 mm"
+[body]
+file = "cloud.txt"
+[sets]
+left = { block = 2 }
+[material.a]
+density = 1
+law = { pals = { young = 1, poisson = 0.2 } }
+fracture = { critical_stretch = 0.1, breakage = "before_force" }
+[material.b]
+density = 1
+set = "left"
+law = { lps_3d = { bulk = 1, shear = 1 } }
+[[boundary_condition]]
+set = "left"
+stage = "dynamics"
+traction = { x = 1 }
+[[boundary_condition]]
+set = "all"
+traction = { y = 1 }
+[[rigid_body]]
+name = "ball"
+radius = 1
+center = [0, 0, 0]
+mass = 1
+angular_velocity = [0, 0, 1]
+[[bond_stiffness]]
+factor = 0.5
+[[toughness]]
+critical_stretch_factor = 2
+[[precrack]]
+kind = "excluded"
+point = 1
+[initial_velocities]
+temperature = 1
+seed = 1
+[[probe]]
+name = "turning"
+measure = "rigid_body"
+rigid_body = "ball"
+of = "angular_velocity"
+[run]
+integrator = "none"
+[statics]
+control = "sequentially_linear"
+[output]
+fields = ["velocity", "block"]
+"#;
+
+/// A deck by the names of version 0.1 is the deck of today, with a note for each name.
+#[test]
+fn old_names_are_read_with_a_note() {
+    let plain = |text: &str| {
+        let source = source::Source::new(text, "old.toml", &[]);
+        let (tree, renames) = source.tree_and_renames().unwrap();
+        let table: toml::Table =
+            serde::Deserialize::deserialize(toml::de::Deserializer::from(tree)).unwrap();
+        (table, source.notes(&renames))
+    };
+    let ((old, said), (new, nothing)) = (plain(OLD), plain(TODAY));
+    assert_eq!(old, new);
+    assert_eq!(nothing, Vec::<String>::new());
+    assert_eq!(said.len(), 23, "{said:#?}");
+    assert_eq!(
+        said[0],
+        "old.toml:1: `own_horizon` is called `variable_horizon` now"
+    );
+}
+
+#[test]
+fn old_names_are_those_of_overrides_and_of_spec_paths_too() {
+    let set = |key: &str, value: &str| with(key, value);
+    let deck = set("indenter.0.radius", "7 mm").unwrap();
+    let RigidShape::Sphere { radius } = deck.spec.loading.rigid_bodies[0].shape else {
+        panic!()
+    };
+    assert_eq!(radius, 0.007);
+    assert_eq!(deck.notes.len(), 1, "{:?}", deck.notes);
+    assert!(deck.notes[0].contains("`indenter` is called `rigid_body` now"));
+    let both = format!("{IMPACT}[[indenter]]\nradius = 1\n");
+    let error = Deck::parse(&both, "impact.toml", &[]).unwrap_err();
+    assert_eq!(
+        error.message,
+        "`indenter` is an older name of `rigid_body`, which is there, too"
+    );
+    assert_eq!(error.line, Some(24));
+    let source = source::Source::new(IMPACT, "impact.toml", &[]);
+    for path in ["rigid_bodies[0].radius", "rigid_bodies[0]"] {
+        let at = locate::locate(&source, path).unwrap();
+        assert!(at.start >= IMPACT.find("[[rigid_body]]").unwrap(), "{path}");
+    }
+    assert_eq!(
+        renamed("condition.stage").unwrap(),
+        "boundary_condition.stage"
+    );
+    assert_eq!(
+        renamed("stretch_factor").unwrap(),
+        "critical_stretch_factor"
+    );
+    assert_eq!(renamed("run.steps"), None);
+}
+
+/// A table that is written takes the place of the one before; keys on the way to a value do not.
+#[test]
+fn an_override_replaces_what_it_writes() {
+    let law = |set: &[(&str, &str)]| {
+        let set: Vec<(String, String)> = { set.iter() }
+            .map(|(key, value)| (key.to_string(), value.to_string()))
+            .collect();
+        Deck::parse(IMPACT, "impact.toml", &set)
+            .unwrap()
+            .spec
+            .materials
+            .remove(0)
+    };
+    let springs = law(&[("material.law", "{ lps = { bulk = 2, shear = 1 } }")]);
+    assert!(matches!(springs.law, LawSpec::Lps(_)), "{:?}", springs.law);
+    // alpha of the deck is gone with its table, and stays where one key is set
+    let whole = law(&[("material.fracture", "{ critical_stretch = 0.1 }")]);
+    assert_eq!(whole.fracture.unwrap().alpha, 0.0);
+    let one = law(&[("material.fracture.critical_stretch", "0.1")]);
+    assert_eq!(one.fracture.unwrap().alpha, 0.25);
+    let deck = with(
+        "rigid_body.0",
+        "{ radius = 1, center = [0, 0, 0], stiffness = 1 }",
+    )
+    .unwrap();
+    assert_eq!(deck.spec.loading.rigid_bodies[0].stiffness, 1.0);
+    assert!(with("material.law.pmb", "{ young = 1 }").is_ok());
 }

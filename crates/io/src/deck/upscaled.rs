@@ -1,8 +1,8 @@
 //! The deck of an upscaled model: the old deck with the numbers of the new specification.
 
 use super::{Deck, Dim};
-use peridyne::law::fan::FILE;
-use peridyne::run::Shelf;
+use peridyne::law::many_body::FILE;
+use peridyne::run::Registry;
 use peridyne::spec::{BodySpec, FamilyChoice, Horizon, PotentialSpec, Spec, TimeStep};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -58,10 +58,10 @@ fn beside(deck: &Deck, table: &mut Table) -> Vec<(PathBuf, String)> {
         }
     };
     place(inner(table, "body").and_then(|b| b.get_mut("file")));
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     for material in materials(table).into_iter().flatten() {
         for (name, constants) in inner(material, "law").into_iter().flatten() {
-            let keys = shelf.descriptor(name).into_iter().flat_map(|d| &d.keys);
+            let keys = registry.descriptor(name).into_iter().flat_map(|d| &d.keys);
             for key in keys.filter(|k| k.value.is_file()) {
                 place(constants.get_mut(key.name));
             }
@@ -117,9 +117,10 @@ pub fn upscaled(
         Horizon::Length(d) => plain(deck, d, Dim::LENGTH),
     };
     table.insert("horizon".into(), horizon);
-    if table.remove("thermal").is_some() {
+    if table.remove("initial_velocities").is_some() {
         notes.push(
-            "Temperature was left out: the coarse model has no thermal motion of its own.".into(),
+            "Temperature is not transferred: the coarse model has no thermal motion of its own."
+                .into(),
         );
     }
     if coarse.potential().is_some() {
@@ -261,9 +262,9 @@ fn law_numbers(
     fine: &PotentialSpec,
     coarse: &PotentialSpec,
 ) -> Result<(), String> {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let (Some(descriptor), Some((_, Value::Table(inside)))) =
-        (shelf.descriptor(&coarse.name), law.iter_mut().next())
+        (registry.descriptor(&coarse.name), law.iter_mut().next())
     else {
         return Ok(());
     };

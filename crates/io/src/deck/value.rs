@@ -1,6 +1,8 @@
 //! Values of a deck that remember where they stand.
 
+use super::quantity::{Measure, Pure};
 use super::reader::{AT, OR};
+use peridyne::law::descriptor::Bounds;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -14,6 +16,11 @@ use std::ops::Range;
 pub struct At<T> {
     pub value: T,
     pub span: Range<usize>,
+}
+
+/// Where something stands that may be left out.
+pub fn span<T>(at: &Option<At<T>>) -> Option<Range<usize>> {
+    at.as_ref().map(|at| at.span.clone())
 }
 
 /// The next of what a reader tells.
@@ -103,8 +110,80 @@ impl JsonSchema for Written {
     }
 }
 
+/// A number as written, of a measure.
+#[derive(Debug)]
+pub struct Measured<K> {
+    pub written: Written,
+    measure: PhantomData<K>,
+}
+
+impl<K> Clone for Measured<K> {
+    fn clone(&self) -> Self {
+        Measured {
+            written: self.written.clone(),
+            measure: PhantomData,
+        }
+    }
+}
+
+/// A number of a measure, and its place.
+pub type Quantity<K = Pure> = At<Measured<K>>;
+
+impl<K> Quantity<K> {
+    /// The number alone.
+    pub fn number(&self) -> Number {
+        At {
+            value: self.value.written.clone(),
+            span: self.span.clone(),
+        }
+    }
+}
+
+impl<K> From<Number> for Quantity<K> {
+    fn from(number: Number) -> Self {
+        let value = Measured {
+            written: number.value,
+            measure: PhantomData,
+        };
+        At {
+            value,
+            span: number.span,
+        }
+    }
+}
+
+impl<'de, K> Deserialize<'de> for Measured<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Ok(Measured {
+            written: Written::deserialize(deserializer)?,
+            measure: PhantomData,
+        })
+    }
+}
+
+/// The schema of a form whose numbers are of a measure.
+fn of<K: Measure>(mut form: Schema) -> Schema {
+    form.insert("dimension".into(), K::DIM.to_string().into());
+    if K::BOUNDS != Bounds::ANY {
+        form.insert("bounds".into(), K::BOUNDS.words().into());
+    }
+    form
+}
+
+impl<K: Measure> JsonSchema for Measured<K> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "Measured".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        of::<K>(generator.subschema_for::<Written>())
+    }
+}
+
 /// One to three components.
-fn list<'de, A: SeqAccess<'de>>(mut seq: A) -> Result<Vec<Number>, A::Error> {
+fn list<'de, K, A: SeqAccess<'de>>(mut seq: A) -> Result<Vec<Quantity<K>>, A::Error> {
     let mut items = Vec::new();
     while let Some(item) = seq.next_element()? {
         items.push(item);
@@ -116,77 +195,100 @@ fn list<'de, A: SeqAccess<'de>>(mut seq: A) -> Result<Vec<Number>, A::Error> {
 }
 
 /// A vector: a list of numbers, or one number in 1-D.
-pub type Vector = At<Numbers>;
+pub type Vector<K = Pure> = At<Numbers<K>>;
 
 #[derive(Debug, Clone)]
-pub struct Numbers(pub Vec<Number>);
+pub struct Numbers<K>(pub Vec<Quantity<K>>);
 
-impl<'de> Deserialize<'de> for Numbers {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NumbersVisitor;
-        impl<'de> Visitor<'de> for NumbersVisitor {
-            type Value = Numbers;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a list of numbers such as [0, \"0.5 mm\"]")
-            }
-            fn visit_i64<E: Error>(self, v: i64) -> Result<Numbers, E> {
-                Ok(Numbers(vec![At {
-                    value: Written::Plain(v as f64),
-                    span: 0..0,
-                }]))
-            }
-            fn visit_f64<E: Error>(self, v: f64) -> Result<Numbers, E> {
-                Ok(Numbers(vec![At {
-                    value: Written::Plain(v),
-                    span: 0..0,
-                }]))
-            }
-            fn visit_str<E: Error>(self, v: &str) -> Result<Numbers, E> {
-                Ok(Numbers(vec![At {
-                    value: Written::Text(v.to_string()),
-                    span: 0..0,
-                }]))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Numbers, A::Error> {
-                list(seq).map(Numbers)
-            }
-        }
-        deserializer.deserialize_any(NumbersVisitor)
+impl<K> Numbers<K> {
+    /// Of one component; where it stands is where the vector does.
+    fn one(written: Written) -> Self {
+        let value = Measured {
+            written,
+            measure: PhantomData,
+        };
+        Numbers(vec![At { value, span: 0..0 }])
     }
 }
 
-impl JsonSchema for Numbers {
+impl<'de, K> Deserialize<'de> for Numbers<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumbersVisitor<K>(PhantomData<K>);
+        impl<'de, K> Visitor<'de> for NumbersVisitor<K> {
+            type Value = Numbers<K>;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a list of numbers such as [0, \"0.5 mm\"]")
+            }
+            fn visit_i64<E: Error>(self, v: i64) -> Result<Self::Value, E> {
+                Ok(Numbers::one(Written::Plain(v as f64)))
+            }
+            fn visit_f64<E: Error>(self, v: f64) -> Result<Self::Value, E> {
+                Ok(Numbers::one(Written::Plain(v)))
+            }
+            fn visit_str<E: Error>(self, v: &str) -> Result<Self::Value, E> {
+                Ok(Numbers::one(Written::Text(v.to_string())))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
+                list(seq).map(Numbers)
+            }
+        }
+        deserializer.deserialize_any(NumbersVisitor(PhantomData))
+    }
+}
+
+/// The schema of a list of components, or of another form.
+fn components(generator: &mut SchemaGenerator, other: Schema) -> Schema {
+    let number = generator.subschema_for::<Written>();
+    json_schema!({ "anyOf": [other, { "type": "array", "items": number, "minItems": 1, "maxItems": 3 }] })
+}
+
+/// A number in 1-D, or a list of components.
+struct VectorForm;
+
+impl JsonSchema for VectorForm {
     fn schema_name() -> Cow<'static, str> {
         "Vector".into()
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let number = generator.subschema_for::<Written>();
-        json_schema!({ "anyOf": [number, { "type": "array", "items": number, "minItems": 1, "maxItems": 3 }] })
+        components(generator, number)
+    }
+}
+
+impl<K: Measure> JsonSchema for Numbers<K> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "Numbers".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        of::<K>(generator.subschema_for::<VectorForm>())
     }
 }
 
 /// Components: a list as long as the dimension (`"free"` leaves one alone), or a table of some of x, y, z.
-pub type Components = At<ComponentsWritten>;
+pub type Components<K> = At<ComponentsWritten<K>>;
 
 #[derive(Debug, Clone)]
-pub enum ComponentsWritten {
-    List(Vec<Number>),
-    Axes([Option<Number>; 3]),
+pub enum ComponentsWritten<K> {
+    List(Vec<Quantity<K>>),
+    Axes([Option<Quantity<K>>; 3]),
 }
 
-#[derive(Debug, serde::Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct Axes {
-    x: Option<Number>,
-    y: Option<Number>,
-    z: Option<Number>,
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, bound = "")]
+struct Axes<K> {
+    x: Option<Quantity<K>>,
+    y: Option<Quantity<K>>,
+    z: Option<Quantity<K>>,
 }
 
-impl<'de> Deserialize<'de> for ComponentsWritten {
+impl<'de, K> Deserialize<'de> for ComponentsWritten<K> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ComponentsVisitor;
-        impl<'de> Visitor<'de> for ComponentsVisitor {
-            type Value = ComponentsWritten;
+        struct ComponentsVisitor<K>(PhantomData<K>);
+        impl<'de, K> Visitor<'de> for ComponentsVisitor<K> {
+            type Value = ComponentsWritten<K>;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 f.write_str("components such as { x = \"1 mm\" } or [\"1 mm\", \"free\"]")
             }
@@ -198,18 +300,37 @@ impl<'de> Deserialize<'de> for ComponentsWritten {
                 Ok(ComponentsWritten::Axes([axes.x, axes.y, axes.z]))
             }
         }
-        deserializer.deserialize_any(ComponentsVisitor)
+        deserializer.deserialize_any(ComponentsVisitor(PhantomData))
     }
 }
 
-impl JsonSchema for ComponentsWritten {
+/// A table of axes, or a list of components.
+struct ComponentsForm;
+
+impl JsonSchema for ComponentsForm {
     fn schema_name() -> Cow<'static, str> {
         "Components".into()
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let number = generator.subschema_for::<Written>();
-        let axes = generator.subschema_for::<Axes>();
-        json_schema!({ "anyOf": [axes, { "type": "array", "items": number, "minItems": 1, "maxItems": 3 }] })
+        let axes = json_schema!({
+            "type": "object",
+            "properties": { "x": number, "y": number, "z": number },
+            "additionalProperties": false
+        });
+        components(generator, axes)
+    }
+}
+
+impl<K: Measure> JsonSchema for ComponentsWritten<K> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "ComponentsWritten".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        of::<K>(generator.subschema_for::<ComponentsForm>())
     }
 }
 

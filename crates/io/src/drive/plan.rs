@@ -83,7 +83,7 @@ impl Plan {
                 Some(field) => vec![field.as_str()],
                 // what a run is about is known in the end
                 None => {
-                    let spread = { sim.transfers().into_iter() }.map(|(q, _)| q.column());
+                    let spread = { sim.diffusions().into_iter() }.map(|(q, _)| q.column());
                     let others = [About::Fracture.field(), About::Motion.field()];
                     spread.chain(others).collect()
                 }
@@ -127,11 +127,23 @@ impl Plan {
 
 /// Listens to a run.
 pub trait Progress {
+    /// Gives the model of a run what its deck does not have, before its first step or, where it `goes_on`, before it has its state; answers what that is, in words.
+    /// `None`: that went wrong, and [`Progress::ended`] says how.
+    fn prepare(&mut self, _sim: &mut dyn Simulation, _goes_on: bool) -> Option<Vec<String>> {
+        Some(vec![])
+    }
+    /// Makes the next step; false: it was not made, and [`Progress::ended`] says why.
+    ///
+    /// # Errors
+    /// As for [`Simulation::step`](peridyne::run::Simulation).
+    fn advance(&mut self, sim: &mut dyn Simulation) -> Result<bool, RunError> {
+        sim.step().map(|()| true)
+    }
     /// Called often; `stepping` is the time spent in steps alone.
     fn step(&mut self, done: u64, total: u64, stepping: Duration);
     /// The model after a step; nothing of it may be changed.
     fn look(&mut self, _sim: &mut dyn Simulation, _step: u64) {}
-    /// A row of the history.
+    /// A row of the history, `broken` bonds each counted once.
     fn row(&mut self, step: u64, time: f64, ledger: &Ledger, broken: u64);
     /// Something else than steps begins: fields, pictures, the report.
     fn phase(&mut self, _what: &str) {}

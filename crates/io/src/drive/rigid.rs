@@ -1,11 +1,11 @@
 //! Rigid bodies of a run: where they are in a frame, and their paths for the report.
 
 use crate::write::picture::rigid::{Form, Placed};
-use peridyne::condition::rigid::Rigid;
+use peridyne::boundary_condition::rigid::Rigid;
 use peridyne::run::Simulation;
 use peridyne::space::length;
 use peridyne::space::rotation::Quaternion;
-use peridyne::spec::{IndenterMotion, IndenterSpec, Measure, ProbeSpec, RigidQuantity, Spec};
+use peridyne::spec::{Measure, ProbeSpec, RigidBodyMotion, RigidBodySpec, RigidQuantity, Spec};
 use std::borrow::Cow;
 
 /// Those of statics before motion, and those of the run.
@@ -20,7 +20,7 @@ pub struct RigidBodies {
 
 #[derive(Debug, Clone)]
 struct Tracked {
-    spec: IndenterSpec,
+    spec: RigidBodySpec,
     form: Form,
     /// Which of these probes has its rotation.
     probe: Option<usize>,
@@ -33,31 +33,31 @@ impl RigidBodies {
             dimension: spec.space.dimension,
             ..RigidBodies::default()
         };
-        let form = |i: &IndenterSpec| Form::of(&i.shape, spec.space.dimension);
-        let tracked = |i: &IndenterSpec| Tracked {
+        let form = |i: &RigidBodySpec| Form::of(&i.shape, spec.space.dimension);
+        let tracked = |i: &RigidBodySpec| Tracked {
             spec: i.clone(),
             form: form(i),
             probe: None,
         };
-        let before = spec.run.preload.iter().flat_map(|p| &p.indenters);
+        let before = spec.run.preload.iter().flat_map(|p| &p.rigid_bodies);
         bodies.statics = before.map(tracked).collect();
-        bodies.motion = spec.loading.indenters.iter().map(tracked).collect();
+        bodies.motion = spec.loading.rigid_bodies.iter().map(tracked).collect();
         let mut whole = Cow::Borrowed(spec);
         for (n, body) in bodies.motion.iter_mut().enumerate() {
-            let free = matches!(body.spec.motion, IndenterMotion::Free(_));
+            let free = matches!(body.spec.motion, RigidBodyMotion::Free(_));
             // nobody sees a ball turn
             if !free || !matches!(body.form, Form::Surface(_)) || spec.space.dimension < 2 {
                 continue;
             }
             let whole = whole.to_mut();
-            if whole.loading.indenters[n].name.is_empty() {
-                whole.loading.indenters[n].name = format!("indenter {}", n + 1);
+            if whole.loading.rigid_bodies[n].name.is_empty() {
+                whole.loading.rigid_bodies[n].name = format!("rigid body {}", n + 1);
             }
             whole.run.probes.push(ProbeSpec {
-                name: format!("rotation of indenter {}", n + 1),
+                name: format!("rotation of rigid body {}", n + 1),
                 set: "all".into(),
-                measure: Measure::Indenter {
-                    indenter: whole.loading.indenters[n].name.clone(),
+                measure: Measure::RigidBody {
+                    rigid_body: whole.loading.rigid_bodies[n].name.clone(),
                     of: Some(RigidQuantity::Turn),
                 },
             });
@@ -89,7 +89,7 @@ impl RigidBodies {
             false => vec![],
         };
         let own = &measured[measured.len().saturating_sub(self.columns())..];
-        let centers = sim.indenters();
+        let centers = sim.rigid_bodies();
         let each = all.iter().zip(centers);
         each.map(|(body, center)| {
             let mut rigid = Rigid::<3>::new(&body.spec);

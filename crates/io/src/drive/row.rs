@@ -7,9 +7,9 @@ use peridyne::spec::Stepper;
 use peridyne::state::{Archive, Owner};
 
 use super::plan::Plan;
-use crate::deck::UnitSystem;
+use crate::deck::{UnitSystem, each_once};
 use crate::write::history::{
-    Column, ledger_columns, ledger_values, transfer_columns, transfer_values,
+    Column, diffusion_columns, diffusion_values, ledger_columns, ledger_values,
 };
 
 /// Does the method take energy of its own?
@@ -25,7 +25,7 @@ impl Plan {
         if is_implicit(sim) {
             columns.push(Column::new("numerical dissipation", &self.energy_unit));
         }
-        columns.push(Column::new("broken_directed_bonds", ""));
+        columns.push(Column::new("broken_bonds", ""));
         if sim.solved().is_some() {
             columns.push(Column::new("iterations", ""));
             columns.push(Column::new("solver_residual", ""));
@@ -33,8 +33,8 @@ impl Plan {
         if sim.cycles().is_some() {
             columns.push(Column::new("cycles", ""));
         }
-        for (quantity, account) in sim.transfers() {
-            columns.extend(transfer_columns(quantity, &account, &self.energy_unit));
+        for (quantity, account) in sim.diffusions() {
+            columns.extend(diffusion_columns(quantity, &account, &self.energy_unit));
         }
         if let Some(atoms) = &self.atoms {
             columns.push(Column::new("temperature", &atoms.temperature_unit));
@@ -132,13 +132,13 @@ pub(super) fn row(
     if is_implicit(sim) {
         row.push(ledger.numerical);
     }
-    row.push(sim.broken() as f64);
+    row.push(each_once(sim.broken()) as f64);
     if let Some(solved) = sim.solved() {
         row.extend([solved.iterations as f64, solved.residual]);
     }
     row.extend(sim.cycles());
-    for (_, account) in sim.transfers() {
-        row.extend(transfer_values(&account));
+    for (_, account) in sim.diffusions() {
+        row.extend(diffusion_values(&account));
     }
     if let Some(atoms) = &plan.atoms {
         row.extend(atoms.thermo(sim, ledger.kinetic));

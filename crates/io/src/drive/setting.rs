@@ -11,7 +11,7 @@ impl Plan {
         &self,
         sim: &mut dyn Simulation,
         pictures: &[String],
-        indenters: Vec<RigidNote>,
+        rigid_bodies: Vec<RigidNote>,
     ) -> Setting {
         let series = &self.series;
         let mut files = vec!["history.csv".to_string()];
@@ -58,7 +58,7 @@ impl Plan {
                 energy: self.energy_unit.clone(),
             },
             fields: fields.collect(),
-            indenters,
+            rigid_bodies,
             marks: self.marks.clone(),
             slices: vec![],
             dumps: vec![],

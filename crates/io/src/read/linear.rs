@@ -5,7 +5,7 @@ use super::body::Points;
 use super::error::ReadError;
 use super::npz::Npz;
 use ndarray::{Array1, Array2, Array3};
-use peridyne::spec::{AnyLinearBody, Carriers, Cloud, LinearBody, MassMatrix};
+use peridyne::spec::{AnyLinearBody, Cloud, LinearBody, LoadMap, MassMatrix};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -157,8 +157,8 @@ impl Loads {
         }
     }
 
-    fn carriers<const D: usize>(&self) -> Carriers<D> {
-        Carriers {
+    fn load_map<const D: usize>(&self) -> LoadMap<D> {
+        LoadMap {
             position: (self.position.outer_iter())
                 .map(|x| std::array::from_fn(|a| x[a]))
                 .collect(),
@@ -280,7 +280,7 @@ impl Arrays {
             start: self.start.iter().map(|s| *s as usize).collect(),
             partner: self.partner.iter().map(|p| *p as u32).collect(),
             block: blocks(&self.block),
-            carriers: self.loads.as_ref().map(Loads::carriers),
+            load_map: self.loads.as_ref().map(Loads::load_map),
             mass: self.masses.as_ref().map(Masses::matrix),
         };
         if let Some(mass) = &body.mass {
@@ -316,7 +316,7 @@ mod tests {
             start: vec![0, 1, 3, 4],
             partner: vec![1, 0, 2, 1],
             block: [1.0, 0.5, 1.0, 2.0].map(|c| [[c]]).to_vec(),
-            carriers: None,
+            load_map: None,
             mass: None,
         }
     }
@@ -340,7 +340,7 @@ mod tests {
         let path = dir.path().join("body.npz");
         let mut body = chain();
         body.block[0][0][0] = 1.5;
-        body.carriers = Some(Carriers {
+        body.load_map = Some(LoadMap {
             position: vec![[0.0], [0.5], [1.0]],
             volume: vec![0.5; 3],
             spacing: 0.5,
@@ -355,8 +355,8 @@ mod tests {
         let points = read(&path).unwrap();
         let found = Arc::unwrap_or_clone(points.micromoduli.unwrap()).of::<1>();
         assert_eq!(found.unwrap(), body);
-        if let Some(carriers) = &mut body.carriers {
-            carriers.target[2] = 3;
+        if let Some(load_map) = &mut body.load_map {
+            load_map.target[2] = 3;
         }
         write_linear(&path, &body).unwrap();
         let said = read(&path).unwrap_err().to_string();

@@ -306,7 +306,7 @@ impl Mesh {
             false => format!("sets of the mesh: {}", sets.join(", ")),
         };
         notes.push(format!(
-            "skipped are {}, which are no {dimension}-D cells; {sets}",
+            "ignored {}, as the body is {dimension}-D; {sets}",
             parts.join(", ")
         ));
     }

@@ -27,7 +27,7 @@ mod measure;
 pub mod measured;
 mod mesh;
 pub mod molecules;
-pub(crate) mod npz;
+pub mod npz;
 pub mod number;
 pub(crate) mod plane;
 pub mod source;

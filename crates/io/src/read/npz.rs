@@ -1,7 +1,7 @@
 //! Arrays of NumPy archives (`.npz`), whose headers are not trusted with memory: what they promise must be there.
 
 use super::source::{self, room};
-use ndarray::{ArrayBase, Dimension, OwnedRepr};
+use ndarray::{ArrayBase, Dimension, IxDyn, OwnedRepr};
 use ndarray_npy::{ReadNpyExt, ReadableElement};
 use peridyne::error::size;
 use std::fs::File;
@@ -58,6 +58,20 @@ impl Npz {
         let whole = Cursor::new(head).chain(member);
         ArrayBase::read_npy(whole).map_err(|e| wrong(&e))
     }
+}
+
+/// Numbers of arrays of a file that [`write_npz`](crate::write::npz::write_npz) wrote, the last index fastest.
+///
+/// # Errors
+/// As for reading the file and each of its arrays.
+pub fn read_npz<const N: usize>(path: &Path, names: [&str; N]) -> Result<[Vec<f64>; N], String> {
+    let mut file = Npz::open(path)?;
+    let mut all = [const { vec![] }; N];
+    for (numbers, name) in all.iter_mut().zip(names) {
+        let array = file.array::<f64, IxDyn>(name)?;
+        numbers.extend(array.iter());
+    }
+    Ok(all)
 }
 
 /// The header with what stands before it.

@@ -168,10 +168,21 @@ pub fn read_inside(dir: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Files that were read, each with the CRC-32 of its bytes as they are now, in order of their places. What cannot be read any more is
-/// left out.
+/// What was done, and where the files lie that were read meanwhile.
+pub fn during<T>(work: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
+    let before = known().places.len();
+    let done = work();
+    (done, known().places[before..].to_vec())
+}
+
+/// Files that were read, as [`sums_of`] has them.
 pub fn sums() -> Vec<(PathBuf, u32)> {
-    let mut places = known().places.clone();
+    let places = known().places.clone();
+    sums_of(places)
+}
+
+/// Files, each with the CRC-32 of its bytes as they are now, in order of their places. What cannot be read any more is left out.
+pub fn sums_of(mut places: Vec<PathBuf>) -> Vec<(PathBuf, u32)> {
     places.sort();
     places.dedup();
     let sum = |path: &PathBuf| -> io::Result<u32> {

@@ -30,7 +30,7 @@ impl<'a> Spacing<'a> {
         let square = |x: &[f64; 3]| (0..3).map(|a| (x[a] - own[a]).powi(2)).sum::<f64>();
         let all = self.position.iter().map(square).filter(|s| *s > 0.0);
         let next = all.fold(f64::INFINITY, f64::min);
-        next.powf(0.5 * self.dimension() as f64)
+        libm::pow(next, 0.5 * self.dimension() as f64)
     }
 
     /// The logarithm of how many times too large `volume` is for the distance to the next point: the middle one of some points of each kind,
@@ -54,7 +54,9 @@ impl<'a> Spacing<'a> {
         let each = groups.iter().map(|points| {
             let step = points.len().div_ceil(LOOKED_AT).max(1);
             let some = points.iter().step_by(step);
-            let mut logs: Vec<f64> = some.map(|i| (volume[*i] / self.volume(*i)).ln()).collect();
+            let mut logs: Vec<f64> = some
+                .map(|i| libm::log(volume[*i] / self.volume(*i)))
+                .collect();
             logs.sort_by(f64::total_cmp);
             logs.get(logs.len() / 2).copied().unwrap_or(0.0)
         });

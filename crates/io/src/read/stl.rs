@@ -31,7 +31,7 @@ pub fn stl(path: &Path, unit: f64) -> Result<Triangles, ReadError> {
                 let holds = bytes.len().saturating_sub(HEADER + 4) / TRIANGLE;
                 return Err(fail(match told {
                     Some(told) if holds < told => format!(
-                        "the file is truncated, or no STL: as a binary STL it has {told} triangles, of which {holds} are there"
+                        "the file is truncated, or no STL: as a binary STL it has {told} triangles, of which {holds} are in the file"
                     ),
                     _ => "this is no STL: it begins neither with `solid` nor with a binary header and the number of triangles".into(),
                 }));
@@ -196,7 +196,7 @@ mod tests {
         assert!(said(b"{}").contains("no STL"));
         assert!(said(b"solid nothing\nendsolid\n").contains("no triangles"));
         let binary = bytes(b"b", &TWO);
-        assert!(said(&binary[..150]).contains("has 2 triangles, of which 1 are there"));
+        assert!(said(&binary[..150]).contains("has 2 triangles, of which 1 are in the file"));
         let infinite = TWO.map(|x| x.map(|c| c / 0.0));
         assert!(said(&bytes(b"b", &infinite)).contains("has the coordinate"));
     }

@@ -110,7 +110,7 @@ fn both_gmsh_formats_say_the_same() {
     assert_eq!(
         old.notes,
         [
-            "skipped are 1 lines, which are no 2-D cells; sets of the mesh: glass plate (2 points), edge (1 points)"
+            "ignored 1 lines, as the body is 2-D; sets of the mesh: glass plate (2 points), edge (1 points)"
         ]
     );
 }
@@ -282,7 +282,7 @@ fn what_is_wrong_is_said_with_its_line() {
         (
             "0 0 0 1\n1 0 0",
             "txt",
-            "f:2: expected `x y z volume [mark]`, found 3 columns",
+            "f:2: expected `x y z volume [block_id]`, found 3 columns",
         ),
         (
             "0 0 0 1 3\n1 0 0 1",
@@ -292,7 +292,7 @@ fn what_is_wrong_is_said_with_its_line() {
         (
             "0 0 0 1 steel",
             "txt",
-            "f:1: expected a whole number as mark, found `steel`",
+            "f:1: expected a whole number as block id, found `steel`",
         ),
         (
             "0 0 0 1\n1 0 0 1\n-0 0 0 1",

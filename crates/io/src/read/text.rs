@@ -1,4 +1,4 @@
-//! Plain text: `x y z volume [mark]` per line, `#` starts a comment; a first line of names puts the columns into another order.
+//! Plain text: `x y z volume [block_id]` per line, `#` starts a comment; a first line of names puts the columns into another order.
 
 use super::Cells;
 use super::body::Sourced;
@@ -58,7 +58,7 @@ fn fields(line: &str) -> Vec<&str> {
 }
 
 /// How to say which column is which.
-const SAY: &str = "name the columns in the first line if they are others, in their order: `# x y z volume mark` (id: one that says nothing)";
+const SAY: &str = "name the columns in the first line if they are others, in their order: `# x y z volume block_id` (id: one that says nothing)";
 
 #[derive(Default)]
 struct Reader {
@@ -89,7 +89,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         if columns.is_none() && words.iter().all(|f| number(f).is_none()) && comma(line).is_empty()
         {
             return Err(lines.error(format!(
-                "expected `x y z volume [mark]` as numbers, found the words `{}`: a header begins with #, write `# {}`",
+                "expected `x y z volume [block_id]` as numbers, found the words `{}`: a header begins with #, write `# {}`",
                 line.trim(),
                 line.trim()
             )));
@@ -102,7 +102,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         }
         if !told && !(4..=5).contains(&words.len()) {
             return Err(lines.error(format!(
-                "expected `x y z volume [mark]`, found {} columns; {SAY}",
+                "expected `x y z volume [block_id]`, found {} columns; {SAY}",
                 words.len()
             )));
         }
@@ -123,8 +123,8 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
             message: "the file has no points".into(),
         });
     }
-    if !told && let Some(doubt) = reader.doubt() {
-        return Err(lines.error_at(reader.sources[0], format!("{doubt}; {SAY}")));
+    if !told && let Some(lint) = reader.lint() {
+        return Err(lines.error_at(reader.sources[0], format!("{lint}; {SAY}")));
     }
     Ok(Sourced {
         atoms: None,
@@ -148,7 +148,7 @@ impl Reader {
         let mut x = [0.0; 3];
         let say = match told {
             true => String::new(),
-            false => format!("; the columns are taken as x y z volume [mark]: {SAY}"),
+            false => format!("; the columns are taken as x y z volume [block_id]: {SAY}"),
         };
         for (column, word) in columns.iter().zip(words) {
             match column {
@@ -164,7 +164,7 @@ impl Reader {
                     self.cloud.volume.push(volume);
                 }
                 Column::Mark => {
-                    let what = "a whole number as mark";
+                    let what = "a whole number as block id";
                     // programs that write every number alike write 1.0
                     let mark = number(word).filter(|m| m.fract() == 0.0 && m.abs() < 2e9);
                     let mark = mark.ok_or_else(|| {
@@ -181,8 +181,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Why the columns are likely others than `x y z volume [mark]`.
-    fn doubt(&self) -> Option<String> {
+    /// Why the columns are likely others than `x y z volume [block_id]`.
+    fn lint(&self) -> Option<String> {
         let Cloud {
             position, volume, ..
         } = &self.cloud;
@@ -194,8 +194,8 @@ impl Reader {
                 position[0][0], position[1][0]
             ));
         }
-        if let Some(doubt) = self.doubtful_z() {
-            return Some(doubt);
+        if let Some(lint) = self.doubtful_z() {
+            return Some(lint);
         }
         let whole = |v: &f64| v.fract() == 0.0;
         let least = volume.iter().copied().fold(f64::INFINITY, f64::min);

@@ -257,13 +257,13 @@ mod tests {
         let s = small();
         assert_eq!(all("displacement"), s.displacement().concat());
         assert_eq!(all("damage"), s.damage());
-        assert_eq!(all("mark"), [-1.0, 0.0, 4.0]);
+        assert_eq!(all("block"), [-1.0, 0.0, 4.0]);
         assert_eq!(all("fragment"), [0.0, 0.0, 1.0]);
         assert_eq!(all("id"), [1.0, 2.0, 3.0]);
         assert_eq!(all("stress")[..6], [1.0, 2.0, 3.0, 4.0, 6.0, 5.0]);
         let stress = frame.array("stress").unwrap();
         assert_eq!(stress.names, ["xx", "yy", "zz", "xy", "yz", "xz"]);
-        assert!(frame.array("mark").unwrap().kind.is_whole());
+        assert!(frame.array("block").unwrap().kind.is_whole());
         assert!(frame.array("connectivity").is_none());
     }
 

@@ -70,7 +70,7 @@ impl Energies {
 const INFLUENCES: [(Influence, &str); 5] = [
     (Influence::Constant, "constant"),
     (Influence::Inverse, "inverse"),
-    (Influence::Conical, "conical"),
+    (Influence::Linear, "linear"),
     (Influence::Gaussian, "gaussian"),
     (Influence::CubicSpline, "cubic_spline"),
 ];

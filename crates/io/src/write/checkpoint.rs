@@ -15,7 +15,7 @@ use super::atomic::{WriteError, create_directory, write_file};
 use super::folder::{CHECKPOINT, WAITING};
 
 /// What files begin with; the number is that of the format.
-const MAGIC: &[u8; 24] = b"peridyne checkpoint 010\n";
+const MAGIC: &[u8; 24] = b"peridyne checkpoint 011\n";
 /// Bytes of a block.
 const BLOCK: usize = 1 << 20;
 /// What names of states begin and end with.
@@ -53,6 +53,8 @@ pub struct Asked {
     pub set: Vec<(String, String)>,
     /// Other files that were read, with their checksums.
     pub files: Vec<(PathBuf, u32)>,
+    /// What the program that led the run gave it beside the deck, in words: no state has it, and who goes on gives it again.
+    pub given: Vec<String>,
     /// Steps done, and of how many.
     pub step: u64,
     pub steps: u64,
@@ -79,6 +81,10 @@ impl Owner for Asked {
             *path = name.into();
             archive.one("checksum", sum);
         });
+        let given = &mut self.given;
+        archive.items("given", given, String::new, |text, archive| {
+            archive.text("what", text);
+        });
         archive.one("step", &mut self.step);
         archive.one("steps", &mut self.steps);
     }
@@ -103,11 +109,12 @@ pub enum ResumeError {
 }
 
 fn why_none(dir: &Path) -> &'static str {
-    match dir.join("run.json").is_file() {
-        true => {
-            ": the run has ended, or it was too short to write one (output.checkpoint says how often)"
-        }
-        false => {
+    let record = std::fs::read(dir.join("run.json")).ok();
+    let record = record.map(|text| serde_json::from_slice::<serde_json::Value>(&text));
+    match record {
+        Some(Ok(run)) if run["status"] == "done" => ": the run is done",
+        Some(_) => ": the run was too short to write one (output.checkpoint says how often)",
+        None => {
             ": give the folder of the results of a run that was ended early, or that wrote states (output.checkpoint)"
         }
     }

@@ -51,7 +51,7 @@ pub fn write_frame<W: Write>(w: &mut W, s: &Snapshot, cell: &DumpBox) -> io::Res
         }
     }
     writeln!(w)?;
-    let mark: &[i32] = match s.column("mark").map(|c| &c.values) {
+    let mark: &[i32] = match s.column("block").map(|c| &c.values) {
         Some(Values::Integers(mark)) => mark,
         _ => &[],
     };
@@ -184,7 +184,7 @@ mod tests {
         );
         assert_eq!(lines[4], "ITEM: BOX BOUNDS ss ss ss");
         assert_eq!(lines[5], "-0.25 0.75");
-        let columns = "vx vy vz damage energy_density dilatation mark body fragment";
+        let columns = "vx vy vz damage energy_density dilatation block body fragment";
         assert_eq!(lines[8], format!("ITEM: ATOMS id type x y z {columns}"));
         let rows: Vec<Vec<f64>> = lines[9..]
             .iter()

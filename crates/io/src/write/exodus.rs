@@ -243,7 +243,7 @@ impl Start {
         self.mark("elem_type", "SPHERE");
         let pair = |p: &u32| {
             let volume = volume[*p as usize];
-            [(0.75 * volume / PI).cbrt(), volume]
+            [libm::cbrt(0.75 * volume / PI), volume]
         };
         let values = points.iter().flat_map(pair).collect();
         self.doubles(&format!("attrib{n}"), &[length, attributes], values);

@@ -150,7 +150,7 @@ pub(crate) mod tests {
             ("damage", Values::Scalars(vec![0.0, 0.25, 1.0])),
             ("energy_density", Values::Scalars(vec![10.0, 20.0, 30.0])),
             ("dilatation", Values::Scalars(vec![0.01, -0.02, 0.03])),
-            ("mark", Values::Integers(vec![-1, 0, 4])),
+            ("block", Values::Integers(vec![-1, 0, 4])),
             ("body", Values::Counts(vec![0, 1, 1])),
             ("fragment", Values::Counts(vec![0, 0, 1])),
         ];

@@ -5,10 +5,10 @@
 
 use std::path::Path;
 
+use peridyne::diffusion::DiffusionAccount;
 use peridyne::observe::Ledger;
 use peridyne::spec::Quantity;
 use peridyne::state::{Archive, Owner};
-use peridyne::transfer::TransferAccount;
 
 use super::Grown;
 use super::atomic::WriteError;
@@ -119,14 +119,30 @@ pub fn ledger_columns(unit: &str) -> Vec<Column> {
         "kinetic energy",
         "strain energy",
         "contact energy",
-        "released energy",
-        "energy made by breaking",
+        "energy dissipated by bond breakage",
+        "energy created by bond breakage",
         "dissipated energy",
-        "work of conditions",
-        "work of indenters",
-        "energy residual",
+        "work of boundary conditions",
+        "work of rigid bodies",
+        "energy balance error",
     ];
     names.map(|name| Column::new(name, unit)).to_vec()
+}
+
+/// Columns that had another name in version 0.1: as they were, as they are.
+const RENAMED: [(&str, &str); 5] = [
+    ("released energy", "energy dissipated by bond breakage"),
+    ("energy made by breaking", "energy created by bond breakage"),
+    ("work of conditions", "work of boundary conditions"),
+    ("work of indenters", "work of rigid bodies"),
+    ("energy residual", "energy balance error"),
+];
+
+/// The name of today of a column.
+#[must_use]
+pub fn today(name: &str) -> &str {
+    let found = RENAMED.iter().find(|(old, _)| *old == name);
+    found.map_or(name, |(_, new)| new)
 }
 
 /// The ledger as a row: its entries without the constant `initial`, and what the balance misses.
@@ -138,28 +154,32 @@ pub fn ledger_values(l: &Ledger) -> [f64; 9] {
         l.released,
         l.made,
         l.dissipated,
-        l.work_conditions,
-        l.work_indenter,
+        l.work_boundary_conditions,
+        l.work_rigid_bodies,
         l.residual(),
     ]
 }
 
-/// Columns of the account of what spreads, in the order of [`transfer_values`]; amounts of a species are plain numbers.
-pub fn transfer_columns(quantity: Quantity, a: &TransferAccount, energy_unit: &str) -> Vec<Column> {
+/// Columns of the account of what spreads, in the order of [`diffusion_values`]; amounts of a species are plain numbers.
+pub fn diffusion_columns(
+    quantity: Quantity,
+    a: &DiffusionAccount,
+    energy_unit: &str,
+) -> Vec<Column> {
     let unit = match quantity {
         Quantity::Heat => energy_unit,
         Quantity::Species => "",
     };
     let name = |(n, _): (&str, f64)| Column::new(format!("{} {n}", quantity.name()), unit);
-    transfer_entries(a).map(name).collect()
+    diffusion_entries(a).map(name).collect()
 }
 
 /// The account as a row: its entries without the constant `initial`, and what the balance misses.
-pub fn transfer_values(a: &TransferAccount) -> Vec<f64> {
-    transfer_entries(a).map(|(_, value)| value).collect()
+pub fn diffusion_values(a: &DiffusionAccount) -> Vec<f64> {
+    diffusion_entries(a).map(|(_, value)| value).collect()
 }
 
-fn transfer_entries(a: &TransferAccount) -> impl Iterator<Item = (&'static str, f64)> {
+fn diffusion_entries(a: &DiffusionAccount) -> impl Iterator<Item = (&'static str, f64)> {
     [
         ("content", a.content),
         ("supplied", a.supplied),

@@ -92,23 +92,23 @@ fn archive<const D: usize>(body: &LinearBody<D>) -> Result<Vec<u8>, Error> {
         let block = Array3::from_shape_vec((mass.partner.len(), D, D), block).map_err(shape)?;
         file.add_array("mass_block", &block).map_err(bad)?;
     }
-    if let Some(carriers) = &body.carriers {
-        let m = carriers.points();
-        let position = carriers.position.iter().flatten().copied().collect();
+    if let Some(load_map) = &body.load_map {
+        let m = load_map.points();
+        let position = load_map.position.iter().flatten().copied().collect();
         let position = Array2::from_shape_vec((m, D), position).map_err(shape)?;
         file.add_array("load_position", &position).map_err(bad)?;
-        file.add_array("load_volume", &column(&carriers.volume))
+        file.add_array("load_volume", &column(&load_map.volume))
             .map_err(bad)?;
-        file.add_array("load_spacing", &column(&[carriers.spacing]))
+        file.add_array("load_spacing", &column(&[load_map.spacing]))
             .map_err(bad)?;
-        let start: Vec<i64> = carriers.start.iter().map(|s| *s as i64).collect();
+        let start: Vec<i64> = load_map.start.iter().map(|s| *s as i64).collect();
         file.add_array("load_start", &Array1::from_vec(start))
             .map_err(bad)?;
-        let target: Vec<i32> = carriers.target.iter().map(|p| *p as i32).collect();
+        let target: Vec<i32> = load_map.target.iter().map(|p| *p as i32).collect();
         file.add_array("load_target", &Array1::from_vec(target))
             .map_err(bad)?;
-        let block = carriers.block.iter().flatten().flatten().copied().collect();
-        let block = Array3::from_shape_vec((carriers.target.len(), D, D), block).map_err(shape)?;
+        let block = load_map.block.iter().flatten().flatten().copied().collect();
+        let block = Array3::from_shape_vec((load_map.target.len(), D, D), block).map_err(shape)?;
         file.add_array("load_block", &block).map_err(bad)?;
     }
     Ok(file.finish().map_err(bad)?.into_inner())

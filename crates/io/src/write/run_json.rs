@@ -7,12 +7,13 @@ use peridyne::observe::{Ledger, StateHash};
 use peridyne::state::{Archive, Owner};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use super::atomic::{WriteError, write_file};
 use super::picture::marks::{Mark, Marks};
 use super::picture::rigid::{Form, Placed};
-use crate::deck::UnitSystem;
+use crate::deck::{UnitSystem, each_once};
 
 /// Everything `run.json` holds. Numbers are in the units of the run; a number that is not finite reads `null`.
 #[derive(Debug, Clone, Serialize)]
@@ -28,8 +29,8 @@ pub struct RunReport {
     /// The signal that ended the run early, where one did.
     pub ended_by: Option<String>,
     pub particles: u64,
-    /// Bonds counted from both ends, at the start.
-    pub directed_bonds: u64,
+    /// Bonds at the start.
+    pub bonds: u64,
     /// Steps done.
     pub steps: u64,
     pub time_step: f64,
@@ -43,7 +44,7 @@ pub struct RunReport {
     pub ns_per_bond_step: Option<f64>,
     /// [`peak_memory_bytes`].
     pub peak_memory_bytes: Option<u64>,
-    pub broken_directed_bonds: u64,
+    pub broken_bonds: u64,
     /// Connected components, when they were counted.
     pub fragments: Option<u64>,
     /// Of the last state, as `state_hash` and `ledger_hash`.
@@ -144,7 +145,7 @@ pub struct Setting {
     pub atoms: bool,
     pub units: UnitNames,
     pub fields: Vec<FieldNote>,
-    pub indenters: Vec<RigidNote>,
+    pub rigid_bodies: Vec<RigidNote>,
     pub marks: MarkNotes,
     /// Pictures of continuum fields, in the folder.
     pub slices: Vec<String>,
@@ -311,18 +312,16 @@ pub struct EnergyReport {
     pub kinetic: f64,
     pub strain: f64,
     pub contact: f64,
-    pub released: f64,
+    pub dissipated_by_breakage: f64,
     /// What points hold more without the bonds that broke.
-    #[serde(default)]
-    pub made: f64,
+    pub created_by_breakage: f64,
     pub dissipated: f64,
     /// Taken by an implicit method.
-    #[serde(default)]
     pub numerical: f64,
-    pub work_conditions: f64,
-    pub work_indenter: f64,
+    pub work_boundary_conditions: f64,
+    pub work_rigid_bodies: f64,
     pub initial: f64,
-    pub residual: f64,
+    pub balance_error: f64,
 }
 
 impl From<&Ledger> for EnergyReport {
@@ -331,14 +330,14 @@ impl From<&Ledger> for EnergyReport {
             kinetic: l.kinetic,
             strain: l.strain,
             contact: l.contact,
-            released: l.released,
-            made: l.made,
+            dissipated_by_breakage: l.released,
+            created_by_breakage: l.made,
             dissipated: l.dissipated,
             numerical: l.numerical,
-            work_conditions: l.work_conditions,
-            work_indenter: l.work_indenter,
+            work_boundary_conditions: l.work_boundary_conditions,
+            work_rigid_bodies: l.work_rigid_bodies,
             initial: l.initial,
-            residual: l.residual(),
+            balance_error: l.residual(),
         }
     }
 }
@@ -367,6 +366,37 @@ impl RunReport {
             serde_json::to_writer_pretty(&mut *w, self)?;
             std::io::Write::write_all(w, b"\n")
         })
+    }
+}
+
+/// Keys of `energy` that had another name in version 0.1: as they were, as they are.
+const RENAMED: [(&str, &str); 5] = [
+    ("released", "dissipated_by_breakage"),
+    ("made", "created_by_breakage"),
+    ("work_conditions", "work_boundary_conditions"),
+    ("work_indenter", "work_rigid_bodies"),
+    ("residual", "balance_error"),
+];
+
+/// A file of version 0.1 in the keys of today, with each bond once.
+pub fn today(run: &mut Value) {
+    if let Some(energy) = run.get_mut("energy").and_then(Value::as_object_mut) {
+        for (old, new) in RENAMED {
+            if let Some(value) = energy.remove(old) {
+                energy.insert(new.into(), value);
+            }
+        }
+    }
+    let Some(run) = run.as_object_mut() else {
+        return;
+    };
+    for (old, new) in [
+        ("directed_bonds", "bonds"),
+        ("broken_directed_bonds", "broken_bonds"),
+    ] {
+        if let Some(directed) = run.remove(old).as_ref().and_then(Value::as_u64) {
+            run.insert(new.into(), each_once(directed).into());
+        }
     }
 }
 
@@ -402,7 +432,7 @@ fn high_water_mark(status: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::{Value, json};
+    use serde_json::json;
 
     fn report() -> RunReport {
         RunReport {
@@ -413,7 +443,7 @@ mod tests {
             status: Status::Done,
             ended_by: None,
             particles: 103_110,
-            directed_bonds: 10_009_800,
+            bonds: 5_004_900,
             steps: 2000,
             time_step: 1e-7,
             parts_of_a_step: 1,
@@ -421,7 +451,7 @@ mod tests {
             seconds: Spent::default(),
             ns_per_bond_step: ns_per_bond_step(10.5, 10_009_800, 2000),
             peak_memory_bytes: None,
-            broken_directed_bonds: 12,
+            broken_bonds: 6,
             fragments: Some(3),
             hash: StateHash {
                 state: 0xab,
@@ -449,18 +479,31 @@ mod tests {
     }
 
     #[test]
+    fn files_of_version_0_1_are_read_by_their_names_of_today() {
+        let mut old = json!({"directed_bonds": 101, "broken_directed_bonds": 12,
+            "energy": {"released": 1.0, "made": 2.0, "work_conditions": 3.0, "work_indenter": 4.0, "residual": 5.0, "kinetic": 6.0}});
+        today(&mut old);
+        let now = json!({"bonds": 51, "broken_bonds": 6,
+            "energy": {"dissipated_by_breakage": 1.0, "created_by_breakage": 2.0, "work_boundary_conditions": 3.0, "work_rigid_bodies": 4.0,
+                "balance_error": 5.0, "kinetic": 6.0}});
+        assert_eq!(old, now);
+        today(&mut old);
+        assert_eq!(old, now);
+    }
+
+    #[test]
     fn all_keys_are_there() {
         let json = written(&report());
         for (key, value) in [
             ("version", json!("0.1.0")),
             ("particles", json!(103_110)),
-            ("directed_bonds", json!(10_009_800)),
+            ("bonds", json!(5_004_900)),
             ("steps", json!(2000)),
             ("time_step", json!(1e-7)),
             ("seconds_stepping", json!(10.5)),
             ("ns_per_bond_step", json!(10.5e9 / 20_019_600_000.0)),
             ("peak_memory_bytes", Value::Null),
-            ("broken_directed_bonds", json!(12)),
+            ("broken_bonds", json!(6)),
             ("fragments", json!(3)),
             ("state_hash", json!("00000000000000ab")),
             ("ledger_hash", Value::Null),
@@ -473,7 +516,7 @@ mod tests {
             assert_eq!(json[key], value, "{key}");
         }
         assert_eq!(json["energy"]["kinetic"], 1.5);
-        assert_eq!(json["energy"]["residual"], 0.5);
+        assert_eq!(json["energy"]["balance_error"], 0.5);
     }
 
     #[test]

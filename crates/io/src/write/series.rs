@@ -128,7 +128,7 @@ impl Series {
         };
         let films = options.pictures.iter().enumerate().map(|(n, p)| {
             let waiting = dir.join(CHECKPOINT).join(format!("film_{n}.{WAITING}"));
-            p.film.then(|| film(&waiting)).transpose()
+            p.film.map(|_| film(&waiting)).transpose()
         });
         Ok(Series {
             hurried: false,
@@ -273,15 +273,16 @@ impl Series {
             let each = begun.elapsed().max(Duration::from_millis(1));
             let most = (HURRY / films).as_secs_f64() / each.as_secs_f64();
             paths.push(path);
-            if let Some(film) = film {
-                let name = format!("{}_film.png", options.stem(About::Motion));
+            if let (Some(film), Some(format)) = (film, options.film) {
+                let stem = options.stem(About::Motion);
+                let name = format!("{stem}_film.{}", format.ending());
                 let path = self.dir.join(name);
                 film.finish(
                     &path,
                     options.field(About::Motion),
                     options,
                     options.scale_of(last, about),
-                    self.hurried.then_some(most as usize),
+                    (format, self.hurried.then_some(most as usize)),
                 )?;
                 paths.push(path);
             }

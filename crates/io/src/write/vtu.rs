@@ -522,7 +522,7 @@ pub(super) mod tests {
             assert_eq!(floats(&file, name), s.scalars(name).unwrap());
         }
         assert_eq!(
-            appended(&file, "mark"),
+            appended(&file, "block"),
             [[255; 4], [0; 4], [4, 0, 0, 0]].concat()
         );
         assert_eq!(
@@ -602,7 +602,7 @@ pub(super) mod tests {
             attribute(&header, "displacement", "NumberOfComponents"),
             "3"
         );
-        assert_eq!(attribute(&header, "mark", "type"), "Int32");
+        assert_eq!(attribute(&header, "block", "type"), "Int32");
     }
 
     #[test]

@@ -22,7 +22,7 @@ fn moves(case: &Case, deck: &Deck) -> Answer {
 /// Twice as stiff bonds have twice the force.
 pub fn bond_factor(case: &Case) -> Answer {
     let mut deck = case.deck();
-    deck.tables += "[[bond_factor]]\nvalue = 2\n";
+    deck.tables += "[[bond_stiffness]]\nfactor = 2\n";
     let doubled = forces(case, &deck)?;
     let off = apart(&forces(case, &case.deck())?, 2.0, &doubled);
     hold(off < 1e-12, || {
@@ -131,13 +131,13 @@ pub fn interface(case: &Case) -> Answer {
 }
 
 /// Horizons of points from two thirds of that of the body on are another body, which keeps what it must.
-pub fn own_horizon(case: &Case) -> Answer {
+pub fn variable_horizon(case: &Case) -> Answer {
     let mut deck = case.deck();
     deck.top += "calibration = \"continuum\"\n";
     let plain = deck.clone();
     let place = &case.law.place;
     deck.top += &format!(
-        "own_horizon = \"{0}*(1.4 + 0.6*x/{1})\"\n",
+        "variable_horizon = \"{0}*(1.4 + 0.6*x/{1})\"\n",
         place.near, place.length
     );
     let own = forces(case, &deck)?;

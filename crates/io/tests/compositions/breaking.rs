@@ -113,7 +113,8 @@ pub fn toughness_of_places(case: &Case) -> Answer {
     let weak = by_stretch(case);
     let middle = 0.5 * case.law.place.length;
     let mut strong = weak.clone();
-    strong.tables += &format!("[[toughness]]\nstretch_factor = \"x < {middle} ? 2 : 1.5\"\n");
+    strong.tables +=
+        &format!("[[toughness]]\ncritical_stretch_factor = \"x < {middle} ? 2 : 1.5\"\n");
     fewer(case, "", &weak, &strong)
 }
 

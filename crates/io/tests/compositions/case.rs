@@ -101,8 +101,8 @@ impl Case {
         let across = ["", ", y = 0", ", y = 0, z = 0"][self.law.place.dimension - 1];
         format!(
             "[sets.left]\nwhere = \"x < {0}\"\n[sets.right]\nwhere = \"x > {1}\"\n\
-             [[condition]]\nset = \"left\"\n{stage}displacement = {{ x = 0{across} }}\n\
-             [[condition]]\nset = \"right\"\n{stage}displacement = {{ x = \"{right}\"{across} }}\n\
+             [[boundary_condition]]\nset = \"left\"\n{stage}displacement = {{ x = 0{across} }}\n\
+             [[boundary_condition]]\nset = \"right\"\n{stage}displacement = {{ x = \"{right}\"{across} }}\n\
              [[probe]]\nname = \"left\"\nset = \"left\"\nmeasure = \"reaction\"\n\
              [[probe]]\nname = \"right\"\nset = \"right\"\nmeasure = \"reaction\"\n",
             0.15 * length,
@@ -210,14 +210,14 @@ pub fn go(sim: &mut dyn Simulation, time: f64, keeps: Keeps, [share, jump]: [f64
 /// Energy that has come and gone.
 pub fn moved(first: &Ledger, l: &Ledger) -> f64 {
     let stored = (l.strain - first.strain).abs() + l.kinetic + l.contact;
-    stored + l.released + l.dissipated.abs() + l.work_conditions.abs()
+    stored + l.released + l.dissipated.abs() + l.work_boundary_conditions.abs()
 }
 
 pub fn balanced(l: &Ledger, bound: f64) -> Answer {
     let off = l.residual().abs();
     // of nothing, round-off
     hold(off <= bound + 1e-15, || {
-        format!("the energy balance misses {off:e}, bound {bound:e}: {l:?}")
+        format!("the energy balance error is {off:e}, bound {bound:e}: {l:?}")
     })
 }
 

@@ -126,7 +126,7 @@ const fn crystal(place: Place, part: f64, name: &'static str, keys: &'static str
     }
 }
 
-/// Laws of the shelf that have no line: the blocks of a file, and a potential without forces.
+/// Laws of the registry that have no line: the blocks of a file, and a potential without forces.
 pub const LEFT_OUT: &[&str] = &["micromoduli", "no_potential"];
 
 const ELASTIC: &str = "young = 1, poisson = 0.25";
@@ -135,7 +135,7 @@ pub const LAWS: &[Law] = &[
     solid("pmb", "young = 1"),
     solid("springs", "young = 1"),
     solid("lps", ELASTIC),
-    solid("lps_as_typed", "bulk = 0.7, shear = 0.4"),
+    solid("lps_3d", "bulk = 0.7, shear = 0.4"),
     solid("eam_like", "pair = 2, volume = 0.1"),
     solid(
         "embedded_solid",
@@ -156,7 +156,7 @@ pub const LAWS: &[Law] = &[
         )
     },
     solid("bond_rotation", "young = 1, poisson = 0.1"),
-    solid("position_aware", ELASTIC),
+    solid("pals", ELASTIC),
     solid(
         "elastic_plastic",
         "young = 1, poisson = 0.25, yield_stress = 0.01, hardening = 0.1",

@@ -175,7 +175,7 @@ fn in_turn(case: &Case, statics: &str, tables: &str) -> Result<Box<dyn Simulatio
 pub fn breaking(case: &Case) -> Answer {
     let sim = in_turn(
         case,
-        "method = \"linear\"\ncontrol = \"breaking\"\nincrements = 3\n",
+        "method = \"linear\"\ncontrol = \"sequentially_linear\"\nincrements = 3\n",
         "",
     )?;
     hold(sim.broken() > 0, || "no bond broke".into())
@@ -188,12 +188,12 @@ pub fn opening(case: &Case) -> Answer {
     let mut sim = in_turn(
         case,
         &format!(
-            "method = \"newton\"\ncontrol = \"opening\"\nopening = {open:e}\nincrements = 3\n"
+            "method = \"newton\"\ncontrol = \"indirect_displacement\"\nopening = {open:e}\nincrements = 3\n"
         ),
         &cut(case, 0.5),
     )?;
     let Ledger {
-        work_conditions: work,
+        work_boundary_conditions: work,
         dissipated: lost,
         ..
     } = sim.ledger().map_err(wrong)?;
@@ -229,7 +229,7 @@ pub fn heat(case: &Case) -> Answer {
         [f64::INFINITY, 0.0],
     )?;
     let after = spread(&mut *sim);
-    let [(_, account)] = &sim.transfers()[..] else {
+    let [(_, account)] = &sim.diffusions()[..] else {
         return Err(Stop::Wrong("heat has no account".into()));
     };
     let off = (account.content / account.initial - 1.0).abs();
@@ -246,7 +246,7 @@ pub fn expansion(case: &Case) -> Answer {
     let mut deck = warm(case, alpha, "10");
     let place = &case.law.place;
     let slowest = std::f64::consts::PI * place.near / (place.time * place.length);
-    deck.tables += &format!("[[condition]]\ndamping = {:e}\n", 2.0 * slowest);
+    deck.tables += &format!("[[boundary_condition]]\ndamping = {:e}\n", 2.0 * slowest);
     deck.run = "[run]\nsteps = 10\ntime_step = { safety = 0.3 }\n".into();
     let mut sim = deck.model()?;
     go(

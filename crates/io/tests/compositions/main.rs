@@ -9,7 +9,7 @@ mod loads;
 
 use case::{Answer, Case, Stop};
 use laws::{LAWS, LEFT_OUT, Law};
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use rayon::prelude::*;
 use std::fmt::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -60,7 +60,7 @@ const BODIES: &[Feature] = &[
     feature("two materials", bodies::two_materials),
     feature("bodies in contact", bodies::contact),
     feature("interface of bonds", bodies::interface),
-    feature("`own_horizon`", bodies::own_horizon),
+    feature("`variable_horizon`", bodies::variable_horizon),
     feature("directed influence", bodies::directed),
     feature("periodic", bodies::periodic),
 ];
@@ -191,9 +191,9 @@ fn guide() -> PathBuf {
 
 #[test]
 fn every_law_is_in_the_table() {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let listed = |name: &str| LAWS.iter().any(|law| law.name == name);
-    for name in shelf.descriptors().map(|d| &*d.name) {
+    for name in registry.descriptors().map(|d| &*d.name) {
         assert!(
             listed(name) != LEFT_OUT.contains(&name),
             "`{name}` has no line in tests/compositions/laws.rs"

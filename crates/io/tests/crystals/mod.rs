@@ -75,7 +75,7 @@ pub fn hexane(law: &str, more: &str) -> String {
 }
 
 pub fn heat(kelvin: f64) -> String {
-    format!("thermal = {{ temperature = {kelvin}, seed = 3 }}\n")
+    format!("initial_velocities = {{ temperature = {kelvin}, seed = 3 }}\n")
 }
 
 /// Positions after so many steps.

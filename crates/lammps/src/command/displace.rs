@@ -98,7 +98,7 @@ impl Session<'_> {
                     return Err(Problem::new("in two dimensions the axis of rotation is z"));
                 }
                 let axis = axis.map(|c| c / length);
-                let (sin, cos) = angle.sin_cos();
+                let (sin, cos) = libm::sincos(angle);
                 for &i in &mine {
                     let d = [0, 1, 2].map(|a| x[i][a] - point[a]);
                     let along: f64 = (0..3).map(|a| d[a] * axis[a]).sum();

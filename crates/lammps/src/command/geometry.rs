@@ -30,7 +30,7 @@ impl Session<'_> {
         let mut constant = args.positive("the lattice constant")?;
         let sites = style.as_str() != "none";
         if self.space.units == Units::Lj && sites {
-            constant = (1.0 / constant).powf(1.0 / dimension as f64); // a reduced density
+            constant = libm::pow(1.0 / constant, 1.0 / dimension as f64); // a reduced density
         }
         let mut origin = [0.0; 3];
         while let Some(word) = args.optional() {

@@ -211,7 +211,7 @@ impl Session<'_> {
                 steps: plan.steps,
                 time_step: self.progress.time_step,
                 moving: self.moving(),
-                carried: self.carried(),
+                kinematic: self.kinematic(),
                 domain: *self.space.domain()?,
             };
             let atoms = self.population.count();

@@ -4,7 +4,7 @@ use super::FixKind;
 use super::input::Input;
 use super::path::{Path, Start};
 use crate::error::Result;
-use crate::host::{Carry, Motion, Quantity};
+use crate::host::{Kinematics, Motion, Quantity};
 use crate::session::Session;
 use crate::vector::cross;
 use std::f64::consts::TAU;
@@ -25,7 +25,7 @@ impl Session<'_> {
     }
 
     /// Atoms that are carried in the coming run.
-    pub fn carried(&self) -> Vec<u32> {
+    pub fn kinematic(&self) -> Vec<u32> {
         let n = self.population.count() as u32;
         let mut all = Vec::new();
         for fix in &self.fixes.all {
@@ -80,7 +80,7 @@ impl Session<'_> {
                         Path::Linear(v) => v[a].map(|v| (x0[a] + v * elapsed, v)),
                         Path::Wiggle(amplitude, period) => amplitude[a].map(|amplitude| {
                             let omega = TAU / period;
-                            let (sin, cos) = (omega * elapsed).sin_cos();
+                            let (sin, cos) = libm::sincos(omega * elapsed);
                             (x0[a] + amplitude * sin, amplitude * omega * cos)
                         }),
                         Path::Rotate {
@@ -103,7 +103,7 @@ impl Session<'_> {
                             (None, None) => None,
                         },
                     };
-                    *motion = next.map(|(x, velocity)| Carry {
+                    *motion = next.map(|(x, velocity)| Kinematics {
                         displacement: x - reference[a][i],
                         velocity,
                     });
@@ -128,7 +128,7 @@ fn turned(
     let foot = axis.map(|n| along * n);
     let arm = [0, 1, 2].map(|a| d[a] - foot[a]);
     let side = cross(axis, arm);
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = libm::sincos(angle);
     let place = [0, 1, 2].map(|a| point[a] + foot[a] + cos * arm[a] + sin * side[a]);
     let velocity = [0, 1, 2].map(|a| omega * (cos * side[a] - sin * arm[a]));
     (place, velocity)

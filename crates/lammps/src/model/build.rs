@@ -90,8 +90,8 @@ impl ModelHost {
     pub fn prepare(&self, setup: &Setup) -> Result<Option<Prepared>, HostError> {
         let style = setup.pair.style();
         let types = Types::new(&setup.pair, &setup.atoms)?;
-        let shelved = matches!(style, Style::Ves | Style::Eps);
-        if shelved && setup.dimension == 2 {
+        let registered = matches!(style, Style::Ves | Style::Eps);
+        if registered && setup.dimension == 2 {
             let name = style.name();
             return Err(HostError::new(format!(
                 "`{name}` in two dimensions: LAMMPS has the moduli and yield surface of space there, which are those of no plane"
@@ -129,7 +129,7 @@ impl ModelHost {
 }
 
 /// What LAMMPS's `peri/ves` and `peri/eps` do to bonds (observed: with nothing that relaxes or yields they are not its `peri/lps`).
-const OWN_ENDS: &str = "here the two ends of a bond answer with the dilatation of their own each (Mitchell 2011); LAMMPS's `peri/ves` and `peri/eps` compute the force on an atom with its own dilatation for both ends, so that forces between two atoms whose dilatations differ are not opposite, momentum is not conserved, and without relaxation or yield they are not its `peri/lps`; results are LAMMPS's as long as the dilatations of all partners are equal and no bond is broken (in torn families deviators are those of what is left here, of the whole family there)";
+const OWN_ENDS: &str = "here the two ends of a bond answer with the dilatation of their own each (Mitchell 2011); LAMMPS's `peri/ves` and `peri/eps` compute the force on an atom with its own dilatation for both ends, so that forces between two atoms whose dilatations differ are not opposite, momentum is not conserved, and without relaxation or yield they are not its `peri/lps`; results are LAMMPS's as long as the dilatations of all partners are equal and no bond is broken (in damaged families deviators are those of what is left here, of the whole family there)";
 
 /// And `peri/ves` in time.
 const SET_UPS: &str = "LAMMPS's `peri/ves` lets bonds relax for one more time step in the set-up of each `run`; here time stands still there";

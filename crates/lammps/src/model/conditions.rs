@@ -1,6 +1,6 @@
 //! A script's conditions as the engine takes them.
 
-use peridyne::condition::driven::Drive;
+use peridyne::boundary_condition::driven::Drive;
 
 use crate::atoms::Members;
 use crate::host::Condition;

@@ -7,7 +7,7 @@ use crate::host::{
     Style, Wall,
 };
 use crate::units::Units;
-use peridyne::condition::driven::Drive;
+use peridyne::boundary_condition::driven::Drive;
 use peridyne::error::RunError;
 use peridyne::observe::Observed;
 use peridyne::observe::Snapshot;
@@ -164,7 +164,7 @@ impl ModelEngine {
             .filter(|i| !run.moving.as_ref().is_some_and(|m| m.contains(*i as usize)))
             .collect();
         sim.prescribe(Prescription::Still, &still);
-        sim.prescribe(Prescription::Carried, &run.carried);
+        sim.prescribe(Prescription::KinematicPoints, &run.kinematic);
         let mut driven: Vec<(Drive, Option<Vec<u32>>)> = Vec::new();
         self.driven.clear();
         for condition in conditions {
@@ -350,10 +350,10 @@ impl Engine for ModelEngine {
         Ok(())
     }
 
-    fn depart(&mut self, carried: &[Motion]) -> Result<f64, HostError> {
+    fn depart(&mut self, kinematic: &[Motion]) -> Result<f64, HostError> {
         self.changed();
         let sim = self.sim.get_mut();
-        let departed = sim.depart(carried);
+        let departed = sim.depart(kinematic);
         departed.map_err(|e| self.explained(&e))
     }
 
@@ -423,7 +423,7 @@ impl Engine for ModelEngine {
         Some(
             self.sim
                 .get_mut()
-                .snapshot(&["velocity", "damage", "mark", "body"], false),
+                .snapshot(&["velocity", "damage", "block", "body"], false),
         )
     }
 

@@ -3,9 +3,9 @@
 use peridyne::family::stencil::Stencil;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
-    BodySpec, BondsSpec, Calibration, Cloud, ContactSpec, Criterion, DamageSpec, FractureSpec,
-    Horizon, Influence, InteractionsSpec, LoadingSpec, MaterialSpec, Members, Release, RunSpec,
-    Schedule, SetSpec, SpaceSpec, Spec, Stepper, TimeStep,
+    BodySpec, BondsSpec, Breakage, Calibration, Cloud, ContactSpec, Criterion, DamageSpec,
+    FractureSpec, Horizon, Influence, InteractionsSpec, LoadingSpec, MaterialSpec, Members,
+    RunSpec, Schedule, SetSpec, SpaceSpec, Spec, Stepper, TimeStep,
 };
 
 use super::engine::in_plane;
@@ -71,7 +71,7 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         materials: types.materials().iter().map(material).collect(),
         bonds: BondsSpec {
             horizon: Horizon::Length(types.horizon()),
-            volume_scaling: true,
+            partial_volume_correction: true,
             calibration: Calibration::Continuum,
             influence,
             ..BondsSpec::default()
@@ -90,7 +90,7 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
             ..InteractionsSpec::default()
         },
         damage: DamageSpec {
-            release: Release::AfterForce,
+            breakage: Breakage::AfterForce,
             ..DamageSpec::default()
         },
         loading: LoadingSpec::default(),

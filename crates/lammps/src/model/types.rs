@@ -35,7 +35,7 @@ impl From<PmbCoefficients> for Coefficients {
 impl From<LpsCoefficients> for Coefficients {
     fn from(c: LpsCoefficients) -> Self {
         Coefficients {
-            law: LawSpec::LpsAsTyped {
+            law: LawSpec::Lps3d {
                 bulk: c.bulk,
                 shear: c.shear,
             },
@@ -47,7 +47,7 @@ impl From<LpsCoefficients> for Coefficients {
 }
 
 impl LpsCoefficients {
-    /// The same with a law of the shelf, which has these moduli and more.
+    /// The same with a law of the registry, which has these moduli and more.
     fn named(self, name: &str, more: (&str, Parameter)) -> Coefficients {
         let moduli = Parameters::numbers(&[("bulk", self.bulk), ("shear", self.shear)]);
         Coefficients {
@@ -162,7 +162,7 @@ impl<'a> Types<'a> {
                 let c = self.get(i, j);
                 // moduli are those of the point's own type
                 let law = match c.law {
-                    LawSpec::LpsAsTyped { .. } => self.get(i, i).law,
+                    LawSpec::Lps3d { .. } => self.get(i, i).law,
                     law => law,
                 };
                 PairSpec {

@@ -345,7 +345,7 @@ impl Session<'_> {
             steps: self.progress.end - self.progress.begin,
             time_step: self.progress.time_step,
             moving: self.moving(),
-            carried: self.carried(),
+            kinematic: self.kinematic(),
             domain: *self.space.domain()?,
         };
         Ok(self.population.engine()?.await_state(&start, &conditions)?)

@@ -75,7 +75,7 @@ impl Op {
             Op::Div => a / b,
             Op::Rem => a % b,
             Op::Pow if a == 0.0 && b < 0.0 => return Err("0 to a negative power"),
-            Op::Pow => a.powf(b),
+            Op::Pow => libm::pow(a, b),
         })
     }
 }

@@ -88,12 +88,12 @@ pub fn apply(name: &str, a: &[f64], clock: &Clock) -> Result<f64, String> {
     Ok(match (name, a) {
         ("sqrt", [x]) if *x < 0.0 => return wrong("is the root of a negative number"),
         ("sqrt", [x]) => x.sqrt(),
-        ("exp", [x]) => x.exp(),
+        ("exp", [x]) => libm::exp(*x),
         ("ln" | "log", [x]) if *x <= 0.0 => {
             return wrong("is the logarithm of a number that is not positive");
         }
-        ("ln", [x]) => x.ln(),
-        ("log", [x]) => x.log10(),
+        ("ln", [x]) => libm::log(*x),
+        ("log", [x]) => libm::log10(*x),
         ("abs", [x]) => x.abs(),
         ("sign", [x]) => {
             if *x >= 0.0 {
@@ -102,16 +102,16 @@ pub fn apply(name: &str, a: &[f64], clock: &Clock) -> Result<f64, String> {
                 -1.0
             }
         }
-        ("sin", [x]) => x.sin(),
-        ("cos", [x]) => x.cos(),
-        ("tan", [x]) => x.tan(),
+        ("sin", [x]) => libm::sin(*x),
+        ("cos", [x]) => libm::cos(*x),
+        ("tan", [x]) => libm::tan(*x),
         ("asin" | "acos", [x]) if !(-1.0..=1.0).contains(x) => {
             return wrong("needs an argument from -1 to 1");
         }
-        ("asin", [x]) => x.asin(),
-        ("acos", [x]) => x.acos(),
-        ("atan", [x]) => x.atan(),
-        ("atan2", [y, x]) => y.atan2(*x),
+        ("asin", [x]) => libm::asin(*x),
+        ("acos", [x]) => libm::acos(*x),
+        ("atan", [x]) => libm::atan(*x),
+        ("atan2", [y, x]) => libm::atan2(*y, *x),
         ("ceil", [x]) => x.ceil(),
         ("floor", [x]) => x.floor(),
         // halves go up, also below zero
@@ -146,10 +146,10 @@ pub fn apply(name: &str, a: &[f64], clock: &Clock) -> Result<f64, String> {
             return wrong("needs a period other than 0");
         }
         ("swiggle", [x, amplitude, period]) => {
-            x + amplitude * (TAU / period * clock.done() * clock.time_step).sin()
+            x + amplitude * libm::sin(TAU / period * clock.done() * clock.time_step)
         }
         ("cwiggle", [x, amplitude, period]) => {
-            x + amplitude * (1.0 - (TAU / period * clock.done() * clock.time_step).cos())
+            x + amplitude * (1.0 - libm::cos(TAU / period * clock.done() * clock.time_step))
         }
         _ => match next_step(name, &a.iter().map(|x| *x as i64).collect::<Vec<_>>(), step) {
             Some(next) => next as f64,
@@ -238,7 +238,7 @@ fn next_step(name: &str, a: &[i64], step: i64) -> Option<i64> {
             if step < x {
                 return Some(x);
             }
-            let factor = (y as f64 / x as f64).powf(1.0 / (n - 1) as f64);
+            let factor = libm::pow(y as f64 / x as f64, 1.0 / (n - 1) as f64);
             let mut value = x as f64;
             while value.ceil() as i64 <= step && (value as i64) < y {
                 value *= factor;

@@ -117,7 +117,7 @@ fn lines_and_files() {
 
 /// The centre follows the formula at the end of each step, and the reaction opposes the force on the atoms.
 #[test]
-fn an_indenter_pushes() {
+fn a_rigid_body_pushes() {
     let script = "units si
 boundary f f f
 atom_style peri

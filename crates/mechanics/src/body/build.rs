@@ -68,7 +68,7 @@ impl<const D: usize> Body<D> {
             identity: Identity::new(),
             slots,
             len: grid.slots(),
-            spacing: lattice.spacing * lattice.kind.site_volume().powf(1.0 / D as f64),
+            spacing: lattice.distance(),
             volume: Values::Uniform(volume),
             density: Values::Uniform(1.0),
             period,
@@ -117,7 +117,7 @@ impl<const D: usize> Body<D> {
                 ),
             ));
         }
-        let order = spatial_order::<D>(position, 4.0 * spacing);
+        let order = spatial_order::<D>(position, spacing);
         let len = n.div_ceil(TILE) * TILE;
         let mut slots = vec![0u32; n];
         // absent slots of the last tile repeat the last point; their bonds are dead
@@ -196,21 +196,23 @@ fn images<const D: usize>(grid: &mut Grid<D>) -> Exchange {
     images
 }
 
-/// Ids sorted by cells of edge `cell`, cells in serpentine-free lexicographic order. Cells are those of space, not of the body:
-/// the order of points, and so of the bonds of each, is the same in a part of a body as in the whole.
-fn spatial_order<const D: usize>(position: &[[f64; 3]], cell: f64) -> Vec<u32> {
-    let key = |x: &[f64; 3]| -> [i64; 3] {
-        let mut k = [0i64; 3];
-        for a in 0..D {
-            k[2 - a] = (x[a] / cell).floor() as i64;
-        }
-        k
-    };
+/// Ids sorted by the [cells](cell_of) of their points.
+fn spatial_order<const D: usize>(position: &[[f64; 3]], spacing: f64) -> Vec<u32> {
     let mut order: Vec<(([i64; 3], u32),)> = position
         .iter()
         .enumerate()
-        .map(|(i, x)| ((key(x), i as u32),))
+        .map(|(i, x)| ((cell_of::<D>(x, spacing), i as u32),))
         .collect();
     order.sort_unstable();
     order.into_iter().map(|((_, i),)| i).collect()
+}
+
+/// The cell of a point among those that order a cloud, the last axis first: four spacings wide, in serpentine-free lexicographic order. Cells are those of
+/// space, not of the body: the order of points, and so of the bonds of each, is the same in a part of a body as in the whole.
+pub(super) fn cell_of<const D: usize>(x: &[f64; 3], spacing: f64) -> [i64; 3] {
+    let mut cell = [0i64; 3];
+    for a in 0..D {
+        cell[2 - a] = (x[a] / (4.0 * spacing)).floor() as i64;
+    }
+    cell
 }

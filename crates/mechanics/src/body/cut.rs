@@ -5,16 +5,19 @@
 //!
 //! A part of a lattice has the cells of the whole grid from one to another, in the order of memory, so that a neighbour is as many cells away as in the whole:
 //! slabs across the axis that is slowest in memory, whose borders may lie within a layer. What a region says of cells one by one needs no whole body: no rank
-//! has it ([`Body::shared_lattice`]).
+//! has it ([`Counted`]). The same holds of several such bodies, and of clouds whose points are sites of a lattice, moved or not.
 
 mod blocks;
 mod cloud;
+mod counted;
 mod lattice;
 mod several;
 
 use super::{Body, Layout};
 pub(super) use blocks::CELLS;
 use blocks::by_ranks;
+pub use cloud::Moved;
+pub use counted::Counted;
 use peridyne_comm::Comm;
 use std::ops::Range;
 use std::sync::Arc;
@@ -55,18 +58,16 @@ impl<const D: usize> Body<D> {
     fn copies_of(&self, blocks: &Range<usize>, reach: f64) -> usize {
         match &self.layout {
             Layout::Grid(grid) => lattice::copies_of(grid, blocks),
-            Layout::Cloud(x) => cloud::near(self, x, &self.slots_of_blocks(blocks), reach).len(),
+            Layout::Cloud(x) => {
+                let x = crate::array::from_fn(|a| &x[a][..self.points()]);
+                cloud::near(x, self.period, &self.slots_of_blocks(blocks), reach).len()
+            }
             Layout::Several(pieces) => {
-                let mut passed = 0;
-                let each = pieces.iter().map(|piece| {
-                    let count = piece.body.points_of_blocks().len();
-                    let own = |x: usize| x.clamp(passed, passed + count) - passed;
-                    let own = own(blocks.start)..own(blocks.end);
-                    passed += count;
-                    match own.is_empty() {
-                        true => 0,
-                        false => piece.body.copies_of(&own, reach),
-                    }
+                let counts = pieces.iter().map(|p| p.body.points_of_blocks().len());
+                let own = several::of_each(counts, std::slice::from_ref(blocks));
+                let each = pieces.iter().zip(own).map(|(p, own)| match &own[0] {
+                    none if none.is_empty() => 0,
+                    own => p.body.copies_of(own, reach),
                 });
                 each.sum()
             }

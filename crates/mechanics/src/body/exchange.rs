@@ -352,7 +352,7 @@ struct Others {
     names: Vec<Run>,
     named: Vec<u8>,
     /// What is sent, and what comes.
-    room: Mutex<[Vec<u8>; 2]>,
+    workspace: Mutex<[Vec<u8>; 2]>,
 }
 
 impl Others {
@@ -393,7 +393,7 @@ impl Others {
             send: vec![],
             receive: vec![],
             names,
-            room: Mutex::default(),
+            workspace: Mutex::default(),
             comm: comm.clone(),
         }
     }
@@ -415,8 +415,8 @@ impl Others {
         work: impl FnOnce(&mut All),
     ) {
         // taken, not held: another fill may wait for the same ranks
-        let mut room = std::mem::take(&mut *self.room());
-        let [out, into] = &mut room;
+        let mut workspace = std::mem::take(&mut *self.workspace());
+        let [out, into] = &mut workspace;
         out.clear();
         for message in &self.send {
             pack(all, &message.spans, out);
@@ -444,11 +444,13 @@ impl Others {
             unpack(all, &message.spans, of);
             rest = others;
         }
-        *self.room() = room;
+        *self.workspace() = workspace;
     }
 
-    fn room(&self) -> MutexGuard<'_, [Vec<u8>; 2]> {
-        self.room.lock().unwrap_or_else(PoisonError::into_inner)
+    fn workspace(&self) -> MutexGuard<'_, [Vec<u8>; 2]> {
+        self.workspace
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     /// One column after the other.

@@ -1,6 +1,7 @@
 //! Several bodies as one: each keeps its own layout, its slots and its points come one after another.
 
-use super::{Body, Exchange, FieldView, FieldViewMut, Identity, Layout, Values};
+use super::{Body, Exchange, FieldView, FieldViewMut, Identity, Layout, Subdomain, Values};
+use std::sync::Arc;
 
 /// A body among several.
 #[derive(Debug, Clone)]
@@ -47,13 +48,16 @@ impl<const D: usize> Body<D> {
         Some(changed)
     }
 
-    /// One body of several, all with the same periods. Its spacing is the smallest.
+    /// One body of several, all with the same periods. Its spacing is the smallest. Of parts of bodies that ranks share all ranks join theirs at once.
     ///
     /// # Panics
-    /// If one is a part of a body: its copies would know nothing of the other ranks any more.
+    /// If some are parts of bodies, and others are whole: somebody else's copies would know nothing of these.
     pub fn several(bodies: Vec<Body<D>>) -> Body<D> {
-        let whole = bodies.iter().all(|body| body.subdomain.is_none());
-        assert!(whole, "bodies are joined before ranks share them");
+        let parts = bodies.iter().filter(|b| b.subdomain.is_some()).count();
+        assert!(
+            parts == 0 || parts == bodies.len(),
+            "ranks share all of several bodies, or none"
+        );
         let mut pieces = Vec::with_capacity(bodies.len());
         let mut first = 0;
         for body in bodies {
@@ -66,8 +70,9 @@ impl<const D: usize> Body<D> {
         for p in &pieces {
             slots.extend(p.body.slots.iter().map(|s| p.first as u32 + s));
         }
-        let volume = join(&pieces, &slots, len, 0.0, |b| &b.volume);
-        let density = join(&pieces, &slots, len, 1.0, |b| &b.density);
+        let exchange = Exchange::joined(pieces.iter().map(|p| (p.first, &p.body.exchange)));
+        let volume = join(&pieces, &slots, (len, 0.0), &exchange, |b| &b.volume);
+        let density = join(&pieces, &slots, (len, 1.0), &exchange, |b| &b.density);
         let marked = pieces.iter().any(|p| !p.body.mark.is_empty());
         let mark = |p: &Piece<D>| match p.body.mark.is_empty() {
             true => vec![0; p.body.points()],
@@ -90,9 +95,9 @@ impl<const D: usize> Body<D> {
                 true => pieces.iter().flat_map(mark).collect(),
                 false => vec![],
             },
-            exchange: Exchange::joined(pieces.iter().map(|p| (p.first, &p.body.exchange))),
+            exchange,
+            subdomain: joined(&pieces).map(Arc::new),
             layout: Layout::Several(pieces),
-            subdomain: None,
             beside: vec![],
         }
     }
@@ -161,15 +166,17 @@ impl<const D: usize> Body<D> {
                 false => all[p.range()].copy_from_slice(&p.body.horizon),
             }
         }
+        // of copies that are of no piece
+        self.exchange.fill(&mut all);
         self.horizon = all;
     }
 
-    /// Ids of the points of each of the bodies.
+    /// Ids of the points of each of the bodies, of those of all ranks.
     pub fn ids(&self) -> Vec<std::ops::Range<usize>> {
         let mut first = 0;
         let each = self.pieces().iter().map(|p| {
             let from = first;
-            first += p.body.points();
+            first += p.body.all_points();
             from..first
         });
         each.collect()
@@ -183,17 +190,42 @@ fn piece_of<const D: usize>(pieces: &[Piece<D>], slot: usize) -> usize {
         .saturating_sub(1)
 }
 
-/// A number per slot from those of the pieces.
+/// What parts of bodies, side by side, know of the whole of these; `None`: they are whole.
+fn joined<const D: usize>(pieces: &[Piece<D>]) -> Option<Subdomain> {
+    let comm = pieces.first()?.body.subdomain()?.comm();
+    let (mut ids, mut of_slots, mut before) = (vec![], vec![], 0);
+    for of in pieces.iter().filter_map(|p| p.body.subdomain()) {
+        ids.extend(of.ids().iter().map(|id| before + id));
+        of_slots.extend(of.of_slots().iter().map(|id| before + id));
+        before += of.points() as u32;
+    }
+    Some(Subdomain::new(comm, ids, of_slots, before as usize))
+}
+
+/// A number per slot from those of the pieces, uniform if they are all the same.
 fn join<const D: usize>(
     pieces: &[Piece<D>],
     slots: &[u32],
-    len: usize,
-    absent: f64,
+    (len, absent): (usize, f64),
+    exchange: &Exchange,
     of: impl Fn(&Body<D>) -> &Values,
 ) -> Values {
+    // what is uniform all ranks know to be so
+    let first = pieces.first().and_then(|p| of(&p.body).uniform());
+    if let Some(first) = first
+        && pieces.iter().all(|p| of(&p.body).uniform() == Some(first))
+    {
+        return Values::Uniform(first);
+    }
     let each = pieces.iter().flat_map(|p| {
         let values = of(&p.body);
         p.body.slots.iter().map(|s| values.at(*s as usize))
     });
-    Values::from_points(&each.collect::<Vec<_>>(), slots, len, absent)
+    if !exchange.is_shared() {
+        return Values::from_points(&each.collect::<Vec<_>>(), slots, len, absent);
+    }
+    let mut all = vec![absent; len];
+    each.zip(slots).for_each(|(x, s)| all[*s as usize] = x);
+    exchange.fill(&mut all);
+    Values::PerSlot(all)
 }

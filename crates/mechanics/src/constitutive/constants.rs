@@ -1,6 +1,6 @@
 //! Constants of all materials of a body, from the spec.
 
-use super::shelf::{AnyPotentials, Shelf};
+use super::registry::{AnyPotentials, Registry};
 use crate::error::BuildError;
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
@@ -41,7 +41,7 @@ pub(super) fn constants<const D: usize>(
     horizon: f64,
     moments: Moments,
     alike: Moments,
-    shelf: &Shelf,
+    registry: &Registry,
 ) -> Result<Constants, BuildError> {
     let to = Calibration {
         horizon,
@@ -60,7 +60,7 @@ pub(super) fn constants<const D: usize>(
         contact.push(15.0 * hard / horizon);
     }
     kinds.are_one()?;
-    let laws = kinds.laws(spec, shelf)?;
+    let laws = kinds.laws(spec, registry)?;
     Ok(Constants { laws, contact })
 }
 
@@ -144,7 +144,7 @@ impl<'a> Kinds<'a> {
                 let k = if D == 1 { moduli.young } else { moduli.bulk() };
                 (moduli.shear().min(k), hard(PmbStiffness::Bulk(k)))
             }
-            LawSpec::LpsAsTyped { bulk, shear } => (
+            LawSpec::Lps3d { bulk, shear } => (
                 shear.min(*bulk),
                 18.0 * bulk / (std::f64::consts::PI * to.horizon.powi(4)),
             ),
@@ -169,7 +169,7 @@ impl<'a> Kinds<'a> {
                 return Err(BuildError::unknown(
                     at(n, "law"),
                     law.name.clone(),
-                    format!("the law {} is on no shelf", law.name),
+                    format!("the law {} is not in the registry", law.name),
                 ));
             }
         })
@@ -212,8 +212,8 @@ impl<'a> Kinds<'a> {
         Ok(())
     }
 
-    fn laws(mut self, spec: &Spec, shelf: &Shelf) -> Result<Laws, BuildError> {
-        Ok(if let Some(potentials) = shelf.potentials(spec)? {
+    fn laws(mut self, spec: &Spec, registry: &Registry) -> Result<Laws, BuildError> {
+        Ok(if let Some(potentials) = registry.potentials(spec)? {
             Laws::Atoms(potentials)
         } else if let Some(body) = self.given.pop() {
             Laws::Micromoduli(body.clone())

@@ -62,7 +62,7 @@ pub(super) fn criteria<const D: usize>(
     })
 }
 
-/// Are there cycles where bonds wear, and bonds that wear where there are cycles?
+/// Are there cycles where bonds have fatigue, and bonds with fatigue where there are cycles?
 pub fn consistent(spec: &Spec) -> Result<(), BuildError> {
     let fatigue = |f: Option<FractureSpec>| f.is_some_and(|f| f.fatigue.is_some());
     let mut materials = spec.materials.iter();
@@ -70,19 +70,19 @@ pub fn consistent(spec: &Spec) -> Result<(), BuildError> {
     let mut interfaces = spec.interactions.interfaces.iter();
     let interface = interfaces.position(|i| fatigue(i.fracture));
     let path = |of: &str, n: usize| format!("{of}[{n}].fracture.fatigue");
-    let wears = material.map(|n| path("materials", n));
-    let wears = wears.or(interface.map(|n| path("interface", n)));
+    let fatigues = material.map(|n| path("materials", n));
+    let fatigues = fatigues.or(interface.map(|n| path("interface", n)));
     let cycles = spec.run.schedule.statics().and_then(|s| s.cycles);
-    match (wears, cycles) {
+    match (fatigues, cycles) {
         (None, None) | (Some(_), Some(_)) => Ok(()),
         (Some(path), None) => Err(BuildError::unsupported(
             path,
-            "bonds wear in cycles of load, and this run has none",
+            "fatigue needs cycles of load, and this run has none",
         )
         .help("write [statics] with method = \"newton\", increments and cycles = { load_ratio = 0.1 }")),
         (None, Some(_)) => Err(BuildError::unsupported(
             "statics.cycles",
-            "no material wears in cycles of load",
+            "no material has fatigue",
         )
         .help("give a material fracture.fatigue")),
     }

@@ -1,6 +1,6 @@
 //! Law and family become an interaction on a body.
 
-use super::shelf::{AnyPotentials, Neighbours, Place};
+use super::registry::{AnyPotentials, Neighbours, Place};
 use super::{ConstitutiveModel, Laws};
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
@@ -222,7 +222,7 @@ impl ConstitutiveModel {
         repulsion: Option<Repulsion>,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         if !body.horizon.is_empty() {
-            return self.of_own_horizons(body, c[0], toughness, repulsion);
+            return self.of_variable_horizons(body, c[0], toughness, repulsion);
         }
         if c.iter().all(|x| *x == c[0]) {
             let law = BondBased { c: c[0] };
@@ -342,7 +342,7 @@ impl ConstitutiveModel {
     }
 
     /// Bonds of points with horizons of their own: at equal moduli c goes as the inverse of `∫ ω r dV`, `δ^−(D+1)` where nothing else is a length.
-    fn of_own_horizons<const D: usize>(
+    fn of_variable_horizons<const D: usize>(
         &self,
         body: &Body<D>,
         c: f64,

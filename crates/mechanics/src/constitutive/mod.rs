@@ -4,12 +4,12 @@ mod constants;
 pub mod criteria;
 mod interaction;
 mod pairs;
-pub(crate) mod shelf;
+pub(crate) mod registry;
 mod sweeps;
 mod toughness;
 
 use crate::body::Body;
-use crate::condition::toughness::Bears;
+use crate::boundary_condition::toughness::Resistance;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
@@ -20,12 +20,12 @@ use crate::interaction::{PairTable, Repulsion, Toughness};
 use crate::law::influence::{InfluenceFunction, mean_influence};
 use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
-use crate::spec::{Calibration, FamilyChoice, Horizon, Influence, InterfaceRule, Plane, Spec};
+use crate::spec::{BondMixing, Calibration, FamilyChoice, Horizon, Influence, Plane, Spec};
 pub use constants::Laws;
 use constants::{Constants, constants};
 pub use pairs::contact_stiffness;
-pub use shelf::Shelf;
-pub use shelf::{AnyPotentials, Softens, Stiffness};
+pub use registry::Registry;
+pub use registry::{AnyPotentials, Softens, Stiffness};
 use std::sync::Arc;
 pub use sweeps::Sweeps;
 pub use toughness::toughness;
@@ -62,15 +62,15 @@ pub struct ConstitutiveModel {
     pub held: bool,
     /// Do bonds break, or are some cut?
     pub breaks: bool,
-    pub rule: InterfaceRule,
+    pub rule: BondMixing,
     /// Is the body in plane strain?
     pub slice: bool,
     /// Constants of pairs of materials, where they do not follow from the two.
     pub pairs: Option<Arc<BondTable>>,
     /// `None`: springs, micromoduli and atoms have others.
     pub sweeps: Option<Sweeps>,
-    /// The law of the shelf by which all materials are swept in general; `None`: `laws` says all.
-    pub named: Option<shelf::Chosen>,
+    /// The law of the registry by which all materials are swept in general; `None`: `laws` says all.
+    pub named: Option<registry::Chosen>,
     pub simd: Simd,
 }
 
@@ -78,8 +78,8 @@ pub struct ConstitutiveModel {
 pub struct ConstitutiveModels {
     /// First slot, places of the materials in the spec, model.
     of: Vec<(usize, Vec<usize>, ConstitutiveModel)>,
-    /// Laws of interfaces that are on the shelf.
-    between: Vec<shelf::Chosen>,
+    /// Laws of interfaces that are on the registry.
+    between: Vec<registry::Chosen>,
 }
 
 /// Do bonds break, or are some cut? Where the spec says so.
@@ -108,13 +108,13 @@ impl ConstitutiveModels {
     /// `(first slot, places of its materials in the spec, model)` of each body, in order; and laws of the interfaces `between` them.
     pub fn several(
         of: Vec<(usize, Vec<usize>, ConstitutiveModel)>,
-        between: Vec<shelf::Chosen>,
+        between: Vec<registry::Chosen>,
     ) -> ConstitutiveModels {
         ConstitutiveModels { of, between }
     }
 
-    /// Laws of the shelf, of bodies and of interfaces.
-    pub fn named(&self) -> impl Iterator<Item = &shelf::Chosen> {
+    /// Laws of the registry, of bodies and of interfaces.
+    pub fn named(&self) -> impl Iterator<Item = &registry::Chosen> {
         let own = self.all().filter_map(|m| m.named.as_ref());
         own.chain(&self.between)
     }
@@ -165,15 +165,15 @@ impl ConstitutiveModels {
     }
 
     /// What a material bears in the body of a slot: a critical stretch, or the root of a critical work (energy / volume²).
-    pub fn bears(&self, slot: usize, material: usize) -> (Bears, f64) {
+    pub fn resistance(&self, slot: usize, material: usize) -> (Resistance, f64) {
         let n = self.of.partition_point(|(first, _, _)| *first <= slot) - 1;
         let (first, materials, model) = &self.of[n];
         let own = materials.iter().position(|m| *m == material).unwrap_or(0);
         let by = model.strength.get(slot - first).copied().unwrap_or(1.0);
         match &model.criteria.measure {
-            Measure::Work(limits) => (Bears::Work, limits[own].sqrt()),
+            Measure::Work(limits) => (Resistance::Work, limits[own].sqrt()),
             Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => {
-                (Bears::Stretch, by * model.toughness[own].s00)
+                (Resistance::Stretch, by * model.toughness[own].s00)
             }
         }
     }
@@ -199,7 +199,7 @@ impl ConstitutiveModel {
         horizon: f64,
         spacing: f64,
         bulk: Bulk,
-        shelf: &Shelf,
+        registry: &Registry,
         simd: Simd,
     ) -> Result<ConstitutiveModel, BuildError> {
         let continuum = |kind| Moments::continuum(D, horizon, spec.space.section, kind);
@@ -208,14 +208,14 @@ impl ConstitutiveModel {
             Calibration::Discrete => bulk.moments,
         };
         let alike = continuum(Influence::Constant);
-        let Constants { laws, contact } = constants::<D>(spec, horizon, moments, alike, shelf)?;
+        let Constants { laws, contact } = constants::<D>(spec, horizon, moments, alike, registry)?;
         let toughness = spec
             .materials
             .iter()
             .enumerate()
             .map(|(n, m)| {
                 let path = format!("materials[{n}].fracture");
-                toughness::<D>(spec, m, horizon, moments, shelf, &path)
+                toughness::<D>(spec, m, horizon, moments, registry, &path)
             })
             .collect::<Result<Vec<_>, _>>()?;
         let criteria = criteria::criteria::<D>(spec, moments)?;
@@ -233,7 +233,7 @@ impl ConstitutiveModel {
         let named = match &sweeps {
             Some(sweeps) if !sweeps.fused => {
                 let full = (horizon, moments, bulk.family);
-                shelf::chosen::<D>(spec, shelf, full, &toughness)?
+                registry::chosen::<D>(spec, registry, full, &toughness)?
             }
             Some(_) | None => None,
         };
@@ -248,7 +248,7 @@ impl ConstitutiveModel {
             horizon,
             spacing,
             influence: spec.bonds.influence,
-            scaling: spec.bonds.volume_scaling,
+            scaling: spec.bonds.partial_volume_correction,
             ratio: matches!(spec.bonds.horizon, Horizon::Ratio(_)),
             held: spec.bonds.family == FamilyChoice::Reference,
             breaks: breaks(spec),
@@ -263,7 +263,7 @@ impl ConstitutiveModel {
 
     /// Are there constants that differ from place to place?
     pub fn varies(&self) -> bool {
-        self.named.as_ref().is_some_and(shelf::Chosen::varies)
+        self.named.as_ref().is_some_and(registry::Chosen::varies)
     }
 
     /// `ω ν` of a bond ξ of length r0, the mean of both ends.

@@ -39,7 +39,7 @@ pub(super) fn bond_table(
         let (of, with) = (n / materials, n % materials);
         let (stiffness, volume) = match (laws, &p.law) {
             (Laws::Bond(_), LawSpec::Pmb(PmbStiffness::Micromodulus(c))) => (*c, 0.0),
-            (Laws::Solid(_), law @ LawSpec::LpsAsTyped { .. }) => {
+            (Laws::Solid(_), law @ LawSpec::Lps3d { .. }) => {
                 let Some(solid) = Solid::of_law(spec.space.dimension, spec.space.plane, law) else {
                     return unsupported("a law that is no solid");
                 };
@@ -47,7 +47,7 @@ pub(super) fn bond_table(
             }
             _ => {
                 return unsupported(
-                    "pairs have a micromodulus (pmb) or moduli as typed (lps), of the law of the materials",
+                    "pairs have a micromodulus (pmb) or three-dimensional moduli (lps), of the law of the materials",
                 );
             }
         };
@@ -79,7 +79,7 @@ pub(super) fn bond_table(
             },
         });
     }
-    let scaling = spec.bonds.volume_scaling.then_some(spacing);
+    let scaling = spec.bonds.partial_volume_correction.then_some(spacing);
     Ok(Some(BondTable::new(materials, pairs, scaling)))
 }
 

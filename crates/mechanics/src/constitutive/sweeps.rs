@@ -3,8 +3,8 @@
 //! its name.
 
 use crate::law::material::{Thermoelastic, ThermoelasticSolid};
-use crate::law::solid::linear::{EamLike, Linear, Lps, LpsAsTyped, Pmb};
-use crate::spec::{Criterion, FractureSpec, LawSpec, Spec, TransferSpec};
+use crate::law::solid::linear::{EamLike, Linear, Lps, Lps3d, Pmb};
+use crate::spec::{Criterion, DiffusionSpec, FractureSpec, LawSpec, Spec};
 use std::fmt::{Display, Formatter};
 
 /// What finds the forces of the bonds of a body.
@@ -59,7 +59,7 @@ fn names(law: &LawSpec) -> Option<[&str; 2]> {
     match law {
         LawSpec::Pmb(_) => Some([Pmb::NAME, Thermoelastic::NAME]),
         LawSpec::Lps(_) => Some([Lps::NAME, ThermoelasticSolid::NAME]),
-        LawSpec::LpsAsTyped { .. } => Some([LpsAsTyped::NAME, ThermoelasticSolid::NAME]),
+        LawSpec::Lps3d { .. } => Some([Lps3d::NAME, ThermoelasticSolid::NAME]),
         LawSpec::EamLike { .. } => Some([EamLike::NAME, ThermoelasticSolid::NAME]),
         LawSpec::Named(law) => Some([&law.name; 2]),
         LawSpec::Springs(_) | LawSpec::Micromoduli(_) | LawSpec::Atoms(_) => None,
@@ -79,15 +79,15 @@ fn needs(spec: &Spec) -> Vec<&'static str> {
             all.push(need);
         }
     }
-    let mut transfers = spec.interactions.transfers.iter();
-    if transfers.any(TransferSpec::expands) {
+    let mut diffusions = spec.interactions.diffusions.iter();
+    if diffusions.any(DiffusionSpec::expands) {
         all.push("expands");
     }
     let bond_based = |law: &LawSpec| matches!(law, LawSpec::Pmb(_));
     let solid = spec.materials.iter().any(|m| !bond_based(&m.law));
     // a kernel of `pmb` knows horizons of points of one material
-    if spec.bonds.own_horizon.is_some() && (solid || spec.materials.len() > 1) {
-        all.push("has horizons of points");
+    if spec.bonds.variable_horizon.is_some() && (solid || spec.materials.len() > 1) {
+        all.push("has a variable horizon");
     }
     // those of solids weigh a bond alike at both ends
     if spec.bonds.influence.is_directed() && solid {
@@ -105,6 +105,6 @@ fn of_fracture(fracture: FractureSpec) -> impl Iterator<Item = &'static str> {
         Criterion::PlasticStrain(_) => Some("breaks by plastic strain"),
     };
     let rate = (fracture.rate).map(|_| "has a critical stretch that grows with the rate");
-    let fatigue = (fracture.fatigue).map(|_| "wears in cycles of load");
+    let fatigue = (fracture.fatigue).map(|_| "has fatigue");
     [measure, rate, fatigue].into_iter().flatten()
 }

@@ -1,6 +1,6 @@
 //! When bonds break: the critical stretch of a material.
 
-use super::Shelf;
+use super::Registry;
 use crate::error::BuildError;
 use crate::interaction::Toughness;
 use crate::law::fracture_energy;
@@ -20,7 +20,7 @@ pub fn toughness<const D: usize>(
     m: &MaterialSpec,
     horizon: f64,
     moments: Moments,
-    shelf: &Shelf,
+    registry: &Registry,
     path: &str,
 ) -> Result<Toughness, BuildError> {
     let Some(fracture) = m.fracture else {
@@ -32,7 +32,7 @@ pub fn toughness<const D: usize>(
             return Ok(UNBREAKABLE);
         }
         Criterion::Energy(energy) => {
-            let energy = shelf.brittle_energy(&m.law, energy);
+            let energy = registry.brittle_energy(&m.law, energy);
             let bonds = |stiffness| {
                 let c = micromodulus(D, spec.space.plane, stiffness, moments);
                 fracture_energy::bond_based(D, c, moments)
@@ -48,7 +48,7 @@ pub fn toughness<const D: usize>(
                     horizon,
                     spec.bonds.influence,
                 ),
-                LawSpec::LpsAsTyped { .. }
+                LawSpec::Lps3d { .. }
                 | LawSpec::EamLike { .. }
                 | LawSpec::Springs(_)
                 | LawSpec::Micromoduli(_)

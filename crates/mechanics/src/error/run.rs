@@ -58,7 +58,7 @@ pub enum RunError {
         position: [f64; 3],
         value: f64,
     },
-    Transfer {
+    Diffusion {
         step: u64,
         /// What spreads.
         quantity: &'static str,
@@ -161,7 +161,7 @@ impl RunError {
                 place(position),
                 ", expected a positive number",
             ],
-            RunError::Transfer {
+            RunError::Diffusion {
                 step,
                 quantity,
                 error,
@@ -235,7 +235,7 @@ fn energy_made(step: u64, given: f64, made: f64) -> Message {
         Dimension::ENERGY.of(made),
         " of energy in a body that was given ",
         Dimension::ENERGY.of(given),
-        ": its points hold more without the bonds that broke than with them, so what follows is no fracture; take a law whose points lose stiffness then (`correspondence`, `position_aware`), a smaller critical stretch, or less compression beside what breaks",
+        ": its points hold more without the bonds that broke than with them, so what follows is no fracture; take a law whose points lose stiffness then (`correspondence`, `pals`), a smaller critical stretch, or less compression beside what breaks",
     ]
 }
 

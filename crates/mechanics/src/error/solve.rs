@@ -40,7 +40,7 @@ pub enum SolveError {
     #[error("{count} modes would take about {}, {} are left: ask for fewer", size(*.bytes), size(*.left))]
     TooManyModes { count: usize, bytes: f64, left: f64 },
     #[error(
-        "the stiffness is not symmetric (asymmetry {asymmetry:.1e}): forces are slopes of no energy, as under laws in rate form that bear stress, with friction, and where action is not reaction; conjugate gradients and modes of vibration need a symmetric one: write solver = \"direct\", and leave modes out or take them of the body at rest"
+        "the stiffness is not symmetric (asymmetry {asymmetry:.1e}): forces are slopes of no energy, as under laws in rate form under stress, with friction, and where action is not reaction; conjugate gradients and modes of vibration need a symmetric one: write solver = \"direct\", and leave modes out or take them of the body at rest"
     )]
     NotSymmetric { asymmetry: f64 },
     #[error(

@@ -72,7 +72,7 @@ pub fn run_which_blocks<K: Kernel<Out = ()>>(
 pub struct PerBlock<T> {
     blocks: usize,
     empty: T,
-    room: Mutex<Vec<T>>,
+    workspace: Mutex<Vec<T>>,
     /// Ranks that have the other blocks.
     ranks: Option<Arc<Comm>>,
 }
@@ -82,7 +82,7 @@ impl<T: Copy + Send> PerBlock<T> {
         PerBlock {
             blocks,
             empty,
-            room: Mutex::new(vec![empty; blocks]),
+            workspace: Mutex::new(vec![empty; blocks]),
             ranks: None,
         }
     }
@@ -98,8 +98,10 @@ impl<T: Copy + Send> PerBlock<T> {
         self.blocks
     }
 
-    fn room(&self) -> MutexGuard<'_, Vec<T>> {
-        self.room.lock().unwrap_or_else(PoisonError::into_inner)
+    fn workspace(&self) -> MutexGuard<'_, Vec<T>> {
+        self.workspace
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Run `kernel` on every block of this rank and fold its results, in the order of blocks.
@@ -118,7 +120,7 @@ impl<T: Copy + Send> PerBlock<T> {
         mut look: impl FnMut(&T),
     ) {
         self.each(
-            &|room| for_which_blocks(simd, kernel, which, room),
+            &|workspace| for_which_blocks(simd, kernel, which, workspace),
             &mut look,
         );
     }
@@ -126,11 +128,11 @@ impl<T: Copy + Send> PerBlock<T> {
     /// The same of who fills the room: the kernel does not show in this code.
     fn each(&self, fill: &dyn Fn(&mut [T]), look: &mut dyn FnMut(&T)) {
         // taken, not held: a thread that waits for its blocks may be lent to a sweep that also wants the room
-        let mut room = std::mem::take(&mut *self.room());
-        room.resize(self.blocks, self.empty);
-        fill(&mut room);
-        room.iter().for_each(look);
-        *self.room() = room;
+        let mut workspace = std::mem::take(&mut *self.workspace());
+        workspace.resize(self.blocks, self.empty);
+        fill(&mut workspace);
+        workspace.iter().for_each(look);
+        *self.workspace() = workspace;
     }
 }
 
@@ -142,7 +144,7 @@ impl<const N: usize> PerBlock<[f64; N]> {
 
     /// Run `kernel` on every block, of all ranks, and add its results up.
     pub fn sum<K: Kernel<Out = [f64; N]>>(&self, simd: Simd, kernel: &K) -> [f64; N] {
-        self.total(&|room| for_each_block(simd, kernel, room))
+        self.total(&|workspace| for_each_block(simd, kernel, workspace))
     }
 
     fn total(&self, fill: &dyn Fn(&mut [[f64; N]])) -> [f64; N] {

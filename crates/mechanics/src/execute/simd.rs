@@ -1,6 +1,8 @@
 //! The one place where an instruction set is chosen: detected at start, or asked for.
 
 use super::lane::{Eight, Lane, Piece};
+#[cfg(target_arch = "aarch64")]
+use super::lane::{F64x2, Pair};
 #[cfg(target_arch = "x86_64")]
 use super::lane::{F64x4, F64x8, Pair};
 #[cfg(target_arch = "x86_64")]
@@ -8,8 +10,9 @@ use std::{hint::black_box, mem::MaybeUninit};
 
 /// A loop is compiled for every path it has, which is what most of a build is spent on. x86 processors have had AVX2 since 2013: what
 /// they run eight numbers by eight is not made for them unless the build asks for it (PERIDYNE_PORTABLE=1), which tests of widths do.
-const PORTABLE: bool =
-    cfg!(not(target_arch = "x86_64")) || option_env!("PERIDYNE_PORTABLE").is_some();
+/// 64-bit ARM has NEON always.
+const PORTABLE: bool = cfg!(not(any(target_arch = "x86_64", target_arch = "aarch64")))
+    || option_env!("PERIDYNE_PORTABLE").is_some();
 
 /// For work on the engine: built with PERIDYNE_AVX2_ALONE=1 it has one path. So have its unit tests: that widths do not show is for the
 /// tests of the library as it is.
@@ -20,6 +23,7 @@ const WIDE: bool = option_env!("PERIDYNE_AVX2_ALONE").is_none() && cfg!(not(test
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Simd {
     Portable,
+    Neon,
     Avx2,
     Avx512,
 }
@@ -51,6 +55,8 @@ impl Simd {
         if PORTABLE {
             all.push(Simd::Portable);
         }
+        #[cfg(target_arch = "aarch64")]
+        all.push(Simd::Neon);
         #[cfg(target_arch = "x86_64")]
         {
             if has_avx2() {
@@ -66,6 +72,7 @@ impl Simd {
     pub fn name(self) -> &'static str {
         match self {
             Simd::Portable => "portable",
+            Simd::Neon => "neon",
             Simd::Avx2 => "avx2",
             Simd::Avx512 => "avx512",
         }
@@ -82,12 +89,16 @@ impl Simd {
             let path: Option<unsafe fn(&K, usize) -> K::Out> = match self {
                 Simd::Avx512 if WIDE && !K::SELDOM && has_avx512() => Some(K::Home::wide),
                 Simd::Avx2 | Simd::Avx512 if has_avx2() => Some(K::Home::pairs),
-                Simd::Portable | Simd::Avx2 | Simd::Avx512 => None,
+                Simd::Portable | Simd::Neon | Simd::Avx2 | Simd::Avx512 => None,
             };
             if let Some(path) = path {
                 // SAFETY: what the processor has was just asked
                 return unsafe { from_a_line(path, kernel, b) };
             }
+        }
+        #[cfg(target_arch = "aarch64")]
+        if self == Simd::Neon {
+            return kernel.block::<Pair<Pair<F64x2>>>(b);
         }
         match PORTABLE {
             true => kernel.block::<Eight>(b),
@@ -100,6 +111,8 @@ impl Simd {
     pub(crate) fn each<K: Kernel>(kernel: &K) -> Vec<K::Out> {
         #[allow(unused_mut)]
         let mut all = vec![kernel.block::<Eight>(0)];
+        #[cfg(target_arch = "aarch64")]
+        all.push(kernel.block::<Pair<Pair<F64x2>>>(0));
         #[cfg(target_arch = "x86_64")]
         {
             // SAFETY, both: just detected

@@ -81,7 +81,7 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Points may be anywhere now.
-    pub fn look_again(&mut self) {
+    pub fn invalidate_neighbours(&mut self) {
         self.path = f64::INFINITY;
     }
 
@@ -185,9 +185,9 @@ impl<const D: usize> Neighbours<D> {
                 && (cell_group[a] == LOOSE || cell_group[a] != cell_group[b]);
             apart > 0.0 && !mixed && {
                 let ((p, pr), (q, qr)) = (&balls[a], &balls[b]);
-                let room = apart - *pr as f64 - *qr as f64;
+                let workspace = apart - *pr as f64 - *qr as f64;
                 let square: f64 = (0..D).map(|a| (q[a] as f64 - p[a] as f64).powi(2)).sum();
-                room > 0.0 && square < room * room
+                workspace > 0.0 && square < workspace * workspace
             }
         };
         let own = body.len as u32;

@@ -18,7 +18,7 @@ pub struct Fragments {
 }
 
 impl Fragments {
-    /// Connected components over the whole bonds of `interaction`. A point without whole bonds is a fragment of one. Where ranks share the body these are
+    /// Connected components over the intact bonds of `interaction`. A point without whole bonds is a fragment of one. Where ranks share the body these are
     /// the pieces of all ranks, and in which of them the points are that are here; masses are not known then. All ask at once.
     pub fn of<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Fragments {
         Self::by(body, interaction, &|_, _, _, state| {
@@ -278,7 +278,7 @@ mod tests {
     #[test]
     fn a_cut_through_the_body_makes_two() {
         let quarters = sites([7, 5, 5], |_| true);
-        for kind in [CrackKind::Absent, CrackKind::Broken] {
+        for kind in [CrackKind::Excluded, CrackKind::Broken] {
             let (body, mut law) = lattice::<3>(LatticeKind::Cubic, &quarters, 1.0, 3, [false; 3]);
             assert_eq!(Fragments::of(&body, law.as_ref()).size, [175]);
             let plane = |x: f64, to: f64| CrackShape::Segment {

@@ -103,7 +103,7 @@ impl Adhesion {
             // ∫ (1 − ρ/L)² dy with ρ² = y² + z²
             2 => {
                 let y = (l * l - z * z).sqrt();
-                let bent = y * l + z * z * (y / z).asinh();
+                let bent = y * l + z * z * libm::asinh(y / z);
                 2.0 * (y - bent / l + (z * z * y + y.powi(3) / 3.0) / (l * l))
             }
             // ∫ (1 − r/L)² 2π r dr from z
@@ -117,7 +117,7 @@ impl Adhesion {
         let (l, d) = (self.range, faces.apart.min(self.range));
         // ∫ (1 − r/L)/r over the half ball; the slope 1/L is less than that at most distances and added
         let (central, slope) = match D {
-            1 => ((l / d).ln() - (l - d) / l, (l - d) / l),
+            1 => (libm::log(l / d) - (l - d) / l, (l - d) / l),
             2 => {
                 let plane = std::f64::consts::PI;
                 let central = (l - d) - (l * l - d * d) / (2.0 * l);
@@ -181,8 +181,8 @@ impl<const D: usize> Cohesion<D> {
         self.neighbours.moved(path);
     }
 
-    pub fn look_again(&mut self) {
-        self.neighbours.look_again();
+    pub fn invalidate_neighbours(&mut self) {
+        self.neighbours.invalidate_neighbours();
     }
 
     /// Find the pairs anew if points may have moved too far.

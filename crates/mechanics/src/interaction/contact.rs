@@ -153,10 +153,10 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Points may be anywhere now.
-    pub fn look_again(&mut self) {
-        self.neighbours.look_again();
+    pub fn invalidate_neighbours(&mut self) {
+        self.neighbours.invalidate_neighbours();
         if let Some(cohesion) = &mut self.cohesion {
-            cohesion.look_again();
+            cohesion.invalidate_neighbours();
         }
     }
 

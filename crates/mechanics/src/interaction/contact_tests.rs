@@ -12,7 +12,7 @@ fn rule() -> Repulsion {
 }
 
 /// Distance and vector in the reference (`u` 0) or now, to the nearest image.
-fn apart<const D: usize>(body: &Body<D>, u: &Field<D>, i: usize, j: usize) -> ([f64; D], f64) {
+fn separation<const D: usize>(body: &Body<D>, u: &Field<D>, i: usize, j: usize) -> ([f64; D], f64) {
     let (p, q) = (body.position(i), body.position(j));
     let y = crate::array::from_fn(|a| {
         let d = (q[a] + u[a][j]) - (p[a] + u[a][i]);
@@ -30,8 +30,8 @@ fn brute<const D: usize>(body: &Body<D>, u: &Field<D>, horizon: f64) -> (Field<D
     for (k, &i) in body.slots.iter().enumerate() {
         for &j in &body.slots[k + 1..] {
             let (i, j) = (i as usize, j as usize);
-            let r0 = apart(body, &rest, i, j).1;
-            let (y, r) = apart(body, u, i, j);
+            let r0 = separation(body, &rest, i, j).1;
+            let (y, r) = separation(body, u, i, j);
             let d = (BONDED * r0).min(RANGE);
             if r0 <= horizon * (1.0 + 1e-9) || r >= d {
                 continue;
@@ -192,7 +192,7 @@ fn a_cloud_with_volumes_of_its_own() {
     let volume: Vec<f64> = cloud.iter().map(|x| 1.0 + 0.1 * x[0]).collect();
     let body = Body::<3>::from_cloud(&cloud, &volume, &[], 1.0, [None; 3]).unwrap();
     let rest = zeros::<3>(body.len);
-    let in_family = |i: usize, j: usize| apart(&body, &rest, i, j).1 <= 2.5;
+    let in_family = |i: usize, j: usize| separation(&body, &rest, i, j).1 <= 2.5;
     check(
         &body,
         &in_family,
@@ -300,7 +300,7 @@ fn families_of_stencils_know_their_members() {
                 if i == j {
                     continue;
                 }
-                let near = apart(&body, &rest, i, j).1 <= 0.3 * m as f64 * (1.0 + 1e-9);
+                let near = separation(&body, &rest, i, j).1 <= 0.3 * m as f64 * (1.0 + 1e-9);
                 assert_eq!(law.in_family(&body, i, j), near, "{kind:?} {i} {j}");
                 inside += usize::from(near);
             }

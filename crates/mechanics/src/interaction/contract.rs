@@ -3,8 +3,8 @@
 use super::bond::sum_of_virials;
 use super::bonds::AnyBonds;
 use super::{
-    BondStatus, Crosses, EachBond, EachForce, EachPair, EachTangent, FactorsOf, Gradient, Heals,
-    PointEnergiesMut, Sweep, Tally, Wearing, add_virial, along, history,
+    BondFatigue, BondStatus, Crosses, EachBond, EachForce, EachPair, EachTangent, FactorsOf,
+    Gradient, Heals, PointEnergiesMut, Sweep, Tally, add_virial, along, history,
 };
 use crate::body::{Body, FieldView, FieldViewMut, Identity, view};
 use crate::columns::{Declaration, On};
@@ -159,7 +159,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     }
 
     /// Does it have terms of more than two atoms, so that the tangents of its pairs are not along them?
-    fn has_fans(&self) -> bool {
+    fn has_many_body(&self) -> bool {
         false
     }
 
@@ -289,7 +289,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     fn begin_steps(&mut self, _body: &Body<D>) {}
 
     /// What the stable step is of that of the body as [`begin_steps`](Interaction::begin_steps) saw it, at most 1: the least length of a whole bond over that in the reference, of laws
-    /// whose bonds are the stiffer the shorter they are, and the root of the stiffness of torn points; 1 of all others. Images of `u` must be fresh.
+    /// whose bonds are the stiffer the shorter they are, and the root of the stiffness of damaged points; 1 of all others. Images of `u` must be fresh.
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
@@ -310,7 +310,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     fn scale_bonds(&mut self, _body: &Body<D>, _factors: &FactorsOf<D>) -> Result<(), BuildError> {
         Err(BuildError::unsupported(
             "bonds",
-            "factors of bonds and corrections of surfaces multiply what pmb, springs, lps, lps_as_typed and eam_like pull on a lattice, and pmb in a cloud or an interface: the bonds of this body are others",
+            "bond stiffness scaling and surface corrections are for pmb, springs, lps, lps_3d and eam_like on a lattice, and pmb in a cloud or an interface: the bonds of this body are others",
         )
         .help("take one of these on a lattice, or leave both out"))
     }
@@ -376,13 +376,18 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).
-    fn wearing(&self, _body: &Body<D>, _u: FieldView<D>, _load: &Cycles) -> Option<Vec<Wearing>> {
+    fn fatigue_of_bonds(
+        &self,
+        _body: &Body<D>,
+        _u: FieldView<D>,
+        _load: &Cycles,
+    ) -> Option<Vec<BondFatigue>> {
         None
     }
 
-    /// So many cycles pass: takes from these, which begin with those of [`wearing`](Interaction::wearing), one for each of its bonds. Those that are worn
+    /// So many cycles pass: takes from these, which begin with those of [`fatigue_of_bonds`](Interaction::wearing), one for each of its bonds. Those that are worn
     /// out break in the next sweep.
-    fn wear(&mut self, _bonds: &mut dyn Iterator<Item = Wearing>, _cycles: f64) {}
+    fn accumulate_fatigue(&mut self, _bonds: &mut dyn Iterator<Item = BondFatigue>, _cycles: f64) {}
 
     /// Directed bonds of the reference family.
     fn directed_bonds(&self) -> u64 {

@@ -42,7 +42,7 @@ impl Coefficients {
     pub fn at(&self, speed: f64) -> f64 {
         match self.more {
             0.0 => self.kinetic,
-            more => self.kinetic + more * (-speed * self.slowness).exp(),
+            more => self.kinetic + more * libm::exp(-speed * self.slowness),
         }
     }
 }

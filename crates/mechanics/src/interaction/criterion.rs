@@ -45,31 +45,32 @@ impl Criteria {
     }
 }
 
-/// A bond that wears: what is left of its life, and what a cycle takes of it.
+/// Fatigue of a bond: what is left of its life, and what a cycle takes of it.
 #[derive(Debug, Clone, Copy)]
-pub struct Wearing {
+pub struct BondFatigue {
     /// 1 at first; 0: it is worn out.
     pub life: f64,
     /// Per cycle.
     pub rate: f64,
-    /// Of those that ranks share one counts it; the others wear it, too.
+    /// Of those that ranks share one counts it; it has fatigue on the others, too.
     pub counts: bool,
 }
 
-impl Wearing {
+impl BondFatigue {
     /// What a cycle with this range of stretch takes of a bond's life, near a crack or far from any.
     pub fn rate(of: &FatigueSpec, range: f64, near: bool) -> f64 {
         let (law, beyond) = match near {
             true => (of.growth, range),
             false => (of.nucleation, range - of.limit),
         };
-        law.map_or(0.0, |[a, m]| a * beyond.max(0.0).powf(m))
+        law.map_or(0.0, |[a, m]| a * libm::pow(beyond.max(0.0), m))
     }
 }
 
 /// Cycles after which the first of these directed bonds are worn out, as many as end an increment; in any order.
-pub fn first_to_wear(bonds: &[Wearing], options: &Cycles) -> Vec<f64> {
-    let last = |b: &Wearing| (b.counts && b.rate > 0.0 && b.life > 0.0).then(|| b.life / b.rate);
+pub fn first_to_fail(bonds: &[BondFatigue], options: &Cycles) -> Vec<f64> {
+    let last =
+        |b: &BondFatigue| (b.counts && b.rate > 0.0 && b.life > 0.0).then(|| b.life / b.rate);
     let mut all: Vec<f64> = bonds.iter().filter_map(last).collect();
     // each bond is there from both ends
     let most = 2 * options.bonds.max(1);
@@ -81,7 +82,7 @@ pub fn first_to_wear(bonds: &[Wearing], options: &Cycles) -> Vec<f64> {
 }
 
 /// Cycles until so many of the bonds are worn out of which these are the first, or until no more are allowed.
-pub fn cycles_to_wear(mut first: Vec<f64>, options: &Cycles, left: f64) -> f64 {
+pub fn cycles_to_failure(mut first: Vec<f64>, options: &Cycles, left: f64) -> f64 {
     let Some(last) = first.len().checked_sub(1) else {
         return if left.is_finite() { left } else { 0.0 };
     };
@@ -99,7 +100,7 @@ mod tests {
 
     #[test]
     fn an_increment_ends_with_the_nth_bond() {
-        let of = |life: f64, rate: f64| Wearing {
+        let of = |life: f64, rate: f64| BondFatigue {
             life,
             rate,
             counts: true,
@@ -116,10 +117,10 @@ mod tests {
             bonds,
             most: f64::INFINITY,
         };
-        let until = |bonds: &[Wearing], n: usize, left: f64| {
-            let first = first_to_wear(bonds, &options(n));
+        let until = |bonds: &[BondFatigue], n: usize, left: f64| {
+            let first = first_to_fail(bonds, &options(n));
             assert!(first.len() <= 2 * n);
-            cycles_to_wear(first, &options(n), left)
+            cycles_to_failure(first, &options(n), left)
         };
         assert_eq!(until(&bonds, 1, f64::INFINITY), 2.0);
         assert_eq!(until(&bonds, 2, f64::INFINITY), 10.0);

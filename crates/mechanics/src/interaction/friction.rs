@@ -62,7 +62,7 @@ struct End<const D: usize> {
 /// The same, as ranks tell each other.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
-struct Told {
+struct ExternalValues {
     id: u64,
     volume: f64,
     moved: [[f64; 3]; 3],
@@ -71,8 +71,8 @@ struct Told {
 }
 
 // SAFETY, both: numbers without gaps between them, and all bits are some
-unsafe impl Zeroable for Told {}
-unsafe impl Pod for Told {}
+unsafe impl Zeroable for ExternalValues {}
+unsafe impl Pod for ExternalValues {}
 
 /// By what those that touch are pressed while an increment or an implicit step looks for its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -483,7 +483,7 @@ impl<const D: usize> Friction<D> {
                 spin: self.families.spin(body, [u, v], from, id),
             };
             if shared {
-                own.push(Told {
+                own.push(ExternalValues {
                     id: u64::from(id),
                     volume: end.volume,
                     moved: [end.u, end.from, end.v].map(|x| full(&x)),
@@ -496,7 +496,7 @@ impl<const D: usize> Friction<D> {
         if !shared {
             return ends;
         }
-        let is_other = |told: &Told| {
+        let is_other = |told: &ExternalValues| {
             let id = told.id as u32;
             whose.place(id).is_none() && ids.binary_search(&id).is_ok()
         };

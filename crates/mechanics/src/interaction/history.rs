@@ -22,7 +22,11 @@ const OF_BONDS: Dimension = Dimension([-4, 1, -2, 0]);
 
 /// What peridynamic laws of bits remember; `breaks`: do bonds break?
 pub fn columns(breaks: bool) -> Vec<Declaration> {
-    let whole = Declaration::of_bonds(WHOLE, Dimension::NUMBER, "1: the bond is whole, 0: broken.");
+    let whole = Declaration::of_bonds(
+        WHOLE,
+        Dimension::NUMBER,
+        "1: the bond is intact, 0: broken.",
+    );
     let elongation = Declaration::of_points(
         ELONGATION,
         Shape::Scalar,

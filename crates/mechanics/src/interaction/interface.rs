@@ -4,8 +4,9 @@
 //! forces on its own points, and the first one reports. So an interface is as many points on each rank as it has in one process.
 
 use super::{
-    BondForce, BondTangent, Crosses, EachBond, EachForce, EachPair, EachTangent, FactorsOf,
-    Gradient, Heals, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally, Wearing, history,
+    BondFatigue, BondForce, BondTangent, Crosses, EachBond, EachForce, EachPair, EachTangent,
+    FactorsOf, Gradient, Heals, Interaction, PointEnergies, PointEnergiesMut, Sweep, Tally,
+    history,
 };
 use crate::body::{Body, Field, FieldView, FieldViewMut, view, view_mut, zeros};
 use crate::columns::On;
@@ -163,18 +164,18 @@ impl<const D: usize> Interface<D> {
         let points = &self.points;
         points.take(u, view_mut(&mut self.u));
         let sweep = match sweep {
-            Sweep::Evolve { v, steps, release } => {
+            Sweep::Evolve { v, steps, breakage } => {
                 points.take(v, view_mut(&mut self.v));
                 Sweep::Evolve {
                     v: view(&self.v),
                     steps,
-                    release,
+                    breakage,
                 }
             }
             Sweep::Hold => Sweep::Hold,
         };
-        let room = points.cloud.len;
-        let mut watch = seen.is_some().then(|| self.seen.for_slots(room));
+        let workspace = points.cloud.len;
+        let mut watch = seen.is_some().then(|| self.seen.for_slots(workspace));
         let mut tally = self.bonds.forces(
             &points.cloud,
             view(&self.u),
@@ -321,11 +322,13 @@ impl<const D: usize> Interface<D> {
         self.bonds.expand(&points.cloud, &own)
     }
 
-    /// [`wearing`](Interaction::wearing)
-    pub fn wearing(&self, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
+    /// [`fatigue_of_bonds`](Interaction::wearing)
+    pub fn fatigue_of_bonds(&self, u: FieldView<D>, load: &Cycles) -> Option<Vec<BondFatigue>> {
         let mut own = self.points.cloud.at_rest();
         self.points.take(u, view_mut(&mut own));
-        let mut all = self.bonds.wearing(&self.points.cloud, view(&own), load)?;
+        let mut all = self
+            .bonds
+            .fatigue_of_bonds(&self.points.cloud, view(&own), load)?;
         { all.iter_mut() }.for_each(|bond| bond.counts &= self.points.first);
         Some(all)
     }

@@ -73,13 +73,13 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
 
     /// Write displacements and critical stretches into the records.
     fn pack_now(&mut self, u: FieldView<D>) {
-        let mut moved = std::mem::take(&mut self.bonds.room.records);
+        let mut moved = std::mem::take(&mut self.bonds.workspace.records);
         self.bonds.pack(u, &mut moved);
-        self.bonds.room.records = moved;
+        self.bonds.workspace.records = moved;
     }
 
     fn moved(&self) -> &[f64] {
-        &self.bonds.room.records
+        &self.bonds.workspace.records
     }
 
     /// Pressures of this state.
@@ -306,7 +306,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         match W::SHARES {
             true => Err(BuildError::unsupported(
                 "bonds",
-                "in a state-based law a bond also acts through the pressure of its ends, and factors of bonds of a list are those of its own pull",
+                "in a state-based law a bond also acts through the pressure of its ends, and the factors of a list are those of its own force",
             )
             .help("take pmb, or leave the factors out")),
             false => {

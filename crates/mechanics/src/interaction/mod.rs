@@ -43,7 +43,7 @@ pub use bond::{
 pub use bond::{add_virial, critical_stretch};
 pub use contact_forces::ContactForces;
 pub use contract::Interaction;
-pub use criterion::{Wearing, cycles_to_wear, first_to_wear};
+pub use criterion::{BondFatigue, cycles_to_failure, first_to_fail};
 pub use evaluation::Evaluation;
 pub use interface::Interface;
 pub use point_constants::PointConstants;
@@ -52,7 +52,7 @@ use point_energies::EnergyFields;
 pub use point_energies::{PointEnergies, PointEnergiesMut};
 pub use replicated::Replicated;
 pub use repulsion::{PairTable, Repulsion, in_series};
-pub use several::SeveralInteraction;
+pub use several::MultiBodyInteraction;
 pub(crate) use sweep::Motion;
 pub use sweep::{BlockTally, Fault, Released, Sweep, Tally};
 pub use tangent::{BondTangent, Channel, EachTangent};

@@ -14,7 +14,7 @@ pub struct PointEnergies {
     pub repulsion: Vec<f64>,
     /// Dilatation θ (–).
     pub dilatation: Vec<f64>,
-    /// `Σ k r0²` over whole bonds, of peridynamic laws: over the weighted volume m where there is one (–).
+    /// `Σ k r0²` over intact bonds, of peridynamic laws: over the weighted volume m where there is one (–).
     pub whole: Vec<f64>,
 }
 

@@ -107,25 +107,25 @@ impl<const D: usize> Interaction<D> for Replicated<D> {
         let u = self.spread(body, u);
         let velocity;
         let sweep = match sweep {
-            Sweep::Evolve { v, steps, release } => {
+            Sweep::Evolve { v, steps, breakage } => {
                 velocity = self.spread(body, v);
                 Sweep::Evolve {
                     v: view(&velocity),
                     steps,
-                    release,
+                    breakage,
                 }
             }
             Sweep::Hold => Sweep::Hold,
         };
         let mut all: Field<D> = zeros(self.whole.len);
         let mut energies = seen.is_some().then(PointEnergies::default);
-        let mut room = energies.as_mut().map(|e| e.for_slots(self.whole.len));
+        let mut workspace = energies.as_mut().map(|e| e.for_slots(self.whole.len));
         let tally = self.inner.forces(
             &self.whole,
             view(&u),
             view_mut(&mut all),
             sweep,
-            room.as_mut(),
+            workspace.as_mut(),
         );
         for (f, all) in f.iter_mut().zip(&all) {
             self.keep(all, f);
@@ -160,17 +160,17 @@ impl<const D: usize> Interaction<D> for Replicated<D> {
         out: &mut PointEnergiesMut,
     ) {
         let (u, mut seen) = (self.spread(body, u), PointEnergies::default());
-        let mut room = seen.for_slots(self.whole.len);
-        self.inner.observe(&self.whole, view(&u), &mut room);
+        let mut workspace = seen.for_slots(self.whole.len);
+        self.inner.observe(&self.whole, view(&u), &mut workspace);
         self.keep_energies(&seen, out);
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &Gradient<D>, out: &mut PointEnergiesMut) {
         self.check(body, &[]);
         let mut seen = PointEnergies::default();
-        let mut room = seen.for_slots(self.whole.len);
+        let mut workspace = seen.for_slots(self.whole.len);
         self.inner
-            .observe_gradient(&self.whole, gradient, &mut room);
+            .observe_gradient(&self.whole, gradient, &mut workspace);
         self.keep_energies(&seen, out);
     }
 
@@ -178,8 +178,8 @@ impl<const D: usize> Interaction<D> for Replicated<D> {
         self.inner.is_potential()
     }
 
-    fn has_fans(&self) -> bool {
-        self.inner.has_fans()
+    fn has_many_body(&self) -> bool {
+        self.inner.has_many_body()
     }
 
     unsafe fn tangents_unchecked(

@@ -5,8 +5,8 @@ mod columns;
 
 use super::interface::{Interface, has_bonds};
 use super::{
-    BondForce, BondStatus, BondTangent, Crosses, EachBond, EachForce, EachPair, EachTangent,
-    FactorsOf, Gradient, Heals, Interaction, PointEnergiesMut, Sweep, Tally, Wearing, history,
+    BondFatigue, BondForce, BondStatus, BondTangent, Crosses, EachBond, EachForce, EachPair,
+    EachTangent, FactorsOf, Gradient, Heals, Interaction, PointEnergiesMut, Sweep, Tally, history,
 };
 use crate::body::several::Piece;
 use crate::body::{Body, FieldView, FieldViewMut, Identity, Layout, view, view_mut};
@@ -25,7 +25,7 @@ struct Own<const D: usize> {
 }
 
 /// Interactions of several bodies, in their order.
-pub struct SeveralInteraction<const D: usize> {
+pub struct MultiBodyInteraction<const D: usize> {
     body: Identity,
     own: Vec<Own<D>>,
     /// Where their slots end: behind them are copies.
@@ -38,16 +38,16 @@ pub struct SeveralInteraction<const D: usize> {
 /// A sweep as the bonds of one body see it.
 fn of_piece<'a, const D: usize>(p: &Piece<D>, sweep: Sweep<'a, D>) -> Sweep<'a, D> {
     match sweep {
-        Sweep::Evolve { v, steps, release } => Sweep::Evolve {
+        Sweep::Evolve { v, steps, breakage } => Sweep::Evolve {
             v: p.part(v),
             steps,
-            release,
+            breakage,
         },
         Sweep::Hold => Sweep::Hold,
     }
 }
 
-impl<const D: usize> SeveralInteraction<D> {
+impl<const D: usize> MultiBodyInteraction<D> {
     /// One interaction for each body that `body` is made of, `None` for loose points, and those between two.
     pub fn new(
         body: &Body<D>,
@@ -65,7 +65,7 @@ impl<const D: usize> SeveralInteraction<D> {
             first: p.first,
             bonds,
         });
-        SeveralInteraction {
+        MultiBodyInteraction {
             body: body.identity,
             own: own.collect(),
             end,
@@ -123,7 +123,7 @@ fn pieces<const D: usize>(body: &Body<D>) -> &[Piece<D>] {
     }
 }
 
-impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
+impl<const D: usize> Interaction<D> for MultiBodyInteraction<D> {
     fn made_for(&self) -> Identity {
         self.body
     }
@@ -219,19 +219,25 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         all
     }
 
-    fn wearing(&self, body: &Body<D>, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
+    fn fatigue_of_bonds(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        load: &Cycles,
+    ) -> Option<Vec<BondFatigue>> {
         self.check(body, &[u]);
         let all = self.each(body);
-        let each = all.filter_map(|(p, bonds)| bonds.wearing(&p.body, p.part(u), load));
-        let between = { self.interfaces.iter() }.filter_map(|i| i.wearing(u, load));
+        let each = all.filter_map(|(p, bonds)| bonds.fatigue_of_bonds(&p.body, p.part(u), load));
+        let between = { self.interfaces.iter() }.filter_map(|i| i.fatigue_of_bonds(u, load));
         each.chain(between).reduce(|mut all, more| {
             all.extend(more);
             all
         })
     }
 
-    fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
-        self.all_mut().for_each(|own| own.wear(bonds, cycles));
+    fn accumulate_fatigue(&mut self, bonds: &mut dyn Iterator<Item = BondFatigue>, cycles: f64) {
+        self.all_mut()
+            .for_each(|own| own.accumulate_fatigue(bonds, cycles));
     }
 
     /// That of the worst.
@@ -245,8 +251,8 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.interfaces.is_empty() && all.peek().is_some() && all.all(|b| b.is_potential())
     }
 
-    fn has_fans(&self) -> bool {
-        self.all().any(|b| b.has_fans())
+    fn has_many_body(&self) -> bool {
+        self.all().any(|b| b.has_many_body())
     }
 
     fn add_stress_across(&mut self, body: &Body<D>, u: FieldView<D>, trace: &mut [f64]) -> bool {

@@ -27,7 +27,7 @@ struct Partner<const D: usize> {
     /// ξ
     xi: [f64; D],
     /// The last evaluation at which the bond was found broken.
-    torn: u64,
+    broken_at: u64,
 }
 
 /// A point with its family.
@@ -59,7 +59,7 @@ pub(super) struct Spin {
 
 /// How two points turn together.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Together {
+pub(super) struct PairRotation {
     share: Matrix<f64, 3>,
     /// Of velocities, and of displacements since the step began.
     pub turns: [Point; 2],
@@ -109,7 +109,7 @@ impl<const D: usize> Known<D> {
     fn each_whole(&self, now: u64, u: &Field<D>, mut visit: impl FnMut(usize, [f64; D])) {
         let (i, centre) = (self.slot as usize, &self.centre);
         visit(i, centre.map(|c| -c));
-        for partner in self.partners.iter().filter(|p| p.torn != now) {
+        for partner in self.partners.iter().filter(|p| p.broken_at != now) {
             let k = partner.slot as usize;
             let d = |a: usize| partner.xi[a] + (u[a][k] - u[a][i]) - centre[a];
             visit(k, crate::array::from_fn(d));
@@ -157,7 +157,7 @@ impl<const D: usize> Known<D> {
 
 impl Spin {
     /// How two points turn together; `None`: neither has a whole bond.
-    pub fn together([a, b]: [&Spin; 2]) -> Option<Together> {
+    pub fn together([a, b]: [&Spin; 2]) -> Option<PairRotation> {
         let none = [[0.0; 3]; 3];
         if a.takes == none && b.takes == none {
             return None;
@@ -166,7 +166,7 @@ impl Spin {
         let (share, _) = inverse_within(takes, ROW);
         let turns =
             [0, 1].map(|n| times(&share, &[0, 1, 2].map(|m| a.turns[n][m] + b.turns[n][m])));
-        Some(Together { share, turns })
+        Some(PairRotation { share, turns })
     }
 }
 
@@ -190,7 +190,7 @@ fn mark<const D: usize>(
     let apart = |p: &Partner<D>| -> f64 { (0..D).map(|a| (p.xi[a] - xi[a]).powi(2)).sum() };
     let same = partners.iter_mut().filter(|p| such(p));
     if let Some(partner) = same.min_by(|p, q| apart(p).total_cmp(&apart(q))) {
-        partner.torn = now;
+        partner.broken_at = now;
     }
 }
 
@@ -260,12 +260,12 @@ impl<const D: usize> Families<D> {
             if i == j || body.piece_of(i) != body.piece_of(j) {
                 return;
             }
-            let torn = if state == BondStatus::Whole { 0 } else { now };
+            let broken_at = if state == BondStatus::Whole { 0 } else { now };
             let partner = |slot: usize, xi| Partner {
                 id: by_slot[slot],
                 slot: slot as u32,
                 xi,
-                torn,
+                broken_at,
             };
             if let Some(own) = (place[i] as usize).checked_sub(1) {
                 known[own].partners.push(partner(j, xi));
@@ -302,7 +302,7 @@ impl<const D: usize> Families<D> {
     }
 
     /// A couple on two points of which [`Spin::together`] said how they turn, of those of this rank.
-    pub fn turn(&mut self, together: &Together, ends: [u32; 2], couple: &Point) {
+    pub fn turn(&mut self, together: &PairRotation, ends: [u32; 2], couple: &Point) {
         let couple = times(&together.share, couple);
         for id in ends {
             if let Some(place) = self.place(id) {
@@ -346,7 +346,7 @@ impl<const D: usize> Families<D> {
                     None => continue,
                 },
             };
-            let whole = members.iter().filter(|p| p.torn != self.now);
+            let whole = members.iter().filter(|p| p.broken_at != self.now);
             for p in whole.filter(|p| whose.place(p.id).is_some()) {
                 push(p.slot as usize, &p.xi);
             }

@@ -52,7 +52,7 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     most_contact: f64,
     /// Of a whole cell.
     volume: f64,
-    apart: Apart,
+    out_of_line: Apart,
 }
 
 /// Blocks of a part of a body by who has the partners of their points.
@@ -229,9 +229,9 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
         let motion = sweep.motion();
-        let apart = std::mem::take(&mut self.apart);
-        let rest = match &apart.blocks {
-            Some([_, rest]) if apart.begun => Which::These(rest),
+        let out_of_line = std::mem::take(&mut self.out_of_line);
+        let rest = match &out_of_line.blocks {
+            Some([_, rest]) if out_of_line.begun => Which::These(rest),
             _ => Which::All,
         };
         if let Some(seen) = seen {
@@ -246,7 +246,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         } else if W::SHARES {
             self.share(body, u, rest);
         }
-        let (total, least_critical) = match &apart.blocks {
+        let (total, least_critical) = match &out_of_line.blocks {
             Some([inside, others]) if W::SHARES => {
                 let mut both = (&mut *self, f);
                 body.exchange.fill_during(
@@ -267,7 +267,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 self.sweep(body, u, f, motion, rest)
             }
         };
-        self.apart.blocks = apart.blocks;
+        self.out_of_line.blocks = out_of_line.blocks;
         if motion.is_some() && !self.bonds.critical.is_empty() && !self.settled {
             let mut critical = std::mem::take(&mut self.bonds.critical);
             let kernel = Remember {
@@ -301,7 +301,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         if let Some(motion) = &motion {
             self.check(body, &[motion.v]);
         }
-        let Apart { blocks, .. } = std::mem::take(&mut self.apart);
+        let Apart { blocks, .. } = std::mem::take(&mut self.out_of_line);
         if let Some([inside, _]) = &blocks {
             match W::SHARES {
                 true => self.share(body, u, Which::These(inside)),
@@ -309,15 +309,15 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                     self.sweep(body, u, f, motion, Which::These(inside));
                 }
             }
-            self.apart.begun = true;
+            self.out_of_line.begun = true;
         }
-        self.apart.blocks = blocks;
+        self.out_of_line.blocks = blocks;
     }
 
     fn meanwhile(&self) -> [usize; 2] {
         // displacements and velocities, then pressures
         let shares = usize::from(W::SHARES);
-        match self.apart.blocks {
+        match self.out_of_line.blocks {
             Some(_) => [1 + shares, 8 * (2 * D + shares)],
             None => [0; 2],
         }
@@ -388,8 +388,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn each_broken(&self, body: &Body<D>, visit: &mut EachPair<D>) {
-        let torn = |n: usize| self.state[n] & WHOLE == 0;
-        self.bonds.each_broken_of(body, torn, visit);
+        let damaged = |n: usize| self.state[n] & WHOLE == 0;
+        self.bonds.each_broken_of(body, damaged, visit);
     }
 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {

@@ -3,7 +3,7 @@
 use crate::body::FieldView;
 use crate::execute::exact::Exact;
 use crate::execute::lane::Lane;
-use crate::spec::Release;
+use crate::spec::Breakage;
 use crate::state::words;
 use std::ops::AddAssign;
 
@@ -17,7 +17,7 @@ pub enum Sweep<'a, const D: usize> {
     Evolve {
         v: FieldView<'a, D>,
         steps: [f64; 2],
-        release: Release,
+        breakage: Breakage,
     },
     /// Forces only; the memory stays as it is.
     Hold,
@@ -28,7 +28,7 @@ pub(crate) struct Motion<'a, const D: usize> {
     pub v: FieldView<'a, D>,
     /// Time steps that end and begin here.
     pub steps: [f64; 2],
-    pub release: Release,
+    pub breakage: Breakage,
 }
 
 impl<const D: usize> Motion<'_, D> {
@@ -36,10 +36,10 @@ impl<const D: usize> Motion<'_, D> {
     /// doing so over half a step: half of `½Δt F·(v_j − v_i)`, the other half is the partner's. `rate` is
     /// `(ξ+η)·(v_j − v_i)`.
     #[inline(always)]
-    pub(super) fn farewell<L: Lane>(&self, pull: L, rate: L) -> L {
-        let time = match self.release {
-            Release::AtOnce => -0.25 * self.steps[0],
-            Release::AfterForce => 0.25 * self.steps[1],
+    pub(super) fn breaking_correction<L: Lane>(&self, pull: L, rate: L) -> L {
+        let time = match self.breakage {
+            Breakage::BeforeForce => -0.25 * self.steps[0],
+            Breakage::AfterForce => 0.25 * self.steps[1],
         };
         L::splat(time) * pull * rate
     }
@@ -54,7 +54,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
     /// `None`: nothing breaks.
     pub(super) fn motion(self) -> Option<Motion<'a, D>> {
         match self {
-            Sweep::Evolve { v, steps, release } => Some(Motion { v, steps, release }),
+            Sweep::Evolve { v, steps, breakage } => Some(Motion { v, steps, breakage }),
             Sweep::Hold => None,
         }
     }

@@ -86,7 +86,7 @@ impl BondWeight {
     /// 0 at the horizon.
     pub fn fringe(&self, spacing: f64) -> f64 {
         match self.influence.kind().0 {
-            Influence::Conical | Influence::CubicSpline => 0.0,
+            Influence::Linear | Influence::CubicSpline => 0.0,
             Influence::Constant
             | Influence::Inverse
             | Influence::Gaussian

@@ -1,4 +1,4 @@
-//! What a law on the shelf says of itself: its keys with dimensions, defaults and bounds, from which decks, schemas, lists and
+//! What a law on the registry says of itself: its keys with dimensions, defaults and bounds, from which decks, schemas, lists and
 //! reference pages follow; and how constants come of them.
 
 use crate::columns::Dimension;
@@ -6,7 +6,7 @@ use crate::expression::Expression;
 use crate::law::partner::Partner;
 use crate::law::solid::eam_like::Solid;
 use crate::quantity::rounded;
-use crate::spec::{Influence, InterfaceRule, LawSpec, Moduli, Parameter, Parameters, Plane};
+use crate::spec::{BondMixing, Influence, LawSpec, Moduli, Parameter, Parameters, Plane};
 use std::borrow::Cow;
 
 /// A law, or what else a spec names, as its users see it.
@@ -199,7 +199,7 @@ pub const fn number(
     }
 }
 
-/// One of some words, the first when left out.
+/// One of some words, the first by default.
 pub const fn word(
     name: &'static str,
     words: &'static [(&'static str, &'static str)],
@@ -457,7 +457,9 @@ impl Value {
             },
             (Value::Direction, Parameter::Direction(components)) => {
                 match components.iter().any(Expression::depends_on_time) {
-                    true => Err(format!("`{name}` is one of the reference: it knows no t")),
+                    true => Err(format!(
+                        "`{name}` is one of the reference: it does not depend on t"
+                    )),
                     false => Ok(()),
                 }
             }
@@ -557,18 +559,18 @@ pub(crate) fn each<T>(
     made.collect()
 }
 
-/// A law that can stand on a shelf.
-pub trait Shelved: Sized {
-    /// Is [`Shelved::linear`] its own elasticity? Of anisotropic laws it is a mean.
+/// A law that can stand on a registry.
+pub trait Registered: Sized {
+    /// Is [`Registered::linear`] its own elasticity? Of anisotropic laws it is a mean.
     const ISOTROPIC: bool = true;
     /// Do its constants hold the critical stretch, so that toughness cannot depend on place and time?
-    const ENDS: bool = false;
+    const OWN_CRITICAL_STRETCH: bool = false;
     /// Do its bonds bear nothing any more where they break?
-    const FADES: bool = false;
+    const SOFTENS_TO_ZERO: bool = false;
     /// Do its bonds store energy by turning, too? Then a fracture energy gives no critical stretch.
-    const TURNS: bool = false;
+    const TANGENTIAL_STIFFNESS: bool = false;
     /// Do some of its bonds break at a stretch of their own? Then bonds break by nothing else, and toughness of places spares points at most.
-    const KINDS: bool = false;
+    const BOND_CLASSES: bool = false;
     /// May its bonds pull in the reference, as those of atoms do? Then its tangents are not sweeps at tiny displacements.
     const PULLS_AT_REST: bool = false;
 
@@ -599,7 +601,7 @@ pub trait Shelved: Sized {
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)>;
 
     /// The same with this rule for bonds between unlike materials; most laws answer for each end by itself.
-    fn meeting(self, _: InterfaceRule) -> Self {
+    fn meeting(self, _: BondMixing) -> Self {
         self
     }
 }

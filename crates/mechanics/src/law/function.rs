@@ -75,7 +75,7 @@ impl Function {
                 (Op::Two(f), _) => (Step::Two(two(f)?), 2),
                 (Op::Three(Ternary::Select), _) => (Step::Choice, 3),
                 (Op::Three(f), _) => return Err(unknown(&f)),
-                (Op::Time, _) => return Err("it knows no time".into()),
+                (Op::Time, _) => return Err("it does not depend on time".into()),
             };
             height = height + 1 - taken;
             most = most.max(height);
@@ -92,7 +92,7 @@ impl Function {
     /// The value, and the slope by variable `by`.
     #[inline(always)]
     pub fn at<N: Number, const V: usize>(&self, variables: [N; V], by: usize) -> [N; 2] {
-        N::apart(Evaluated {
+        N::out_of_line(Evaluated {
             steps: &self.steps,
             variables,
             by,

@@ -86,10 +86,10 @@ impl InfluenceFunction {
         match self.kind {
             Influence::Constant => L::splat(1.0),
             Influence::Inverse => inv_r,
-            Influence::Conical => L::splat(1.0) - q,
-            Influence::Gaussian => L::apart(Gaussian(q)),
-            Influence::CubicSpline => L::apart(CubicSpline(q)),
-            Influence::Formula(formula) => L::apart(Written {
+            Influence::Linear => L::splat(1.0) - q,
+            Influence::Gaussian => L::out_of_line(Gaussian(q)),
+            Influence::CubicSpline => L::out_of_line(CubicSpline(q)),
+            Influence::Formula(formula) => L::out_of_line(Written {
                 formula,
                 horizon,
                 mean: self.mean,
@@ -208,7 +208,7 @@ mod tests {
         match kind {
             Influence::Constant => 1.0,
             Influence::Inverse => 1.0 / r,
-            Influence::Conical => 1.0 - q,
+            Influence::Linear => 1.0 - q,
             Influence::Gaussian => (-4.0 * q * q).exp(),
             Influence::CubicSpline if q <= 0.5 => 1.0 - 6.0 * q * q + 6.0 * q * q * q,
             Influence::CubicSpline if q <= 1.0 => 2.0 * (1.0 - q).powi(3),
@@ -240,7 +240,7 @@ mod tests {
         let words = [
             (Influence::Constant, "1"),
             (Influence::Inverse, "1/r"),
-            (Influence::Conical, "1 - r/delta"),
+            (Influence::Linear, "1 - r/delta"),
             (Influence::Gaussian, "exp(-(2*r/delta)^2)"),
         ];
         for (word, text) in words {

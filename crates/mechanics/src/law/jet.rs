@@ -85,7 +85,7 @@ impl<const N: usize> Number for Jet<N> {
     fn exp(self) -> Self {
         let a = self.0;
         let mut r = [0.0; N];
-        r[0] = a[0].exp();
+        r[0] = libm::exp(a[0]);
         for n in 1..N {
             let sum: f64 = (1..=n).map(|k| k as f64 * a[k] * r[n - k]).sum();
             r[n] = sum / n as f64;
@@ -95,7 +95,7 @@ impl<const N: usize> Number for Jet<N> {
     fn ln(self) -> Self {
         let a = self.0;
         let mut r = [0.0; N];
-        r[0] = a[0].ln();
+        r[0] = libm::log(a[0]);
         for n in 1..N {
             let known: f64 = (1..n).map(|k| k as f64 * r[k] * a[n - k]).sum();
             r[n] = (a[n] - known / n as f64) / a[0];
@@ -116,12 +116,12 @@ impl<const N: usize> Number for Jet<N> {
     }
     fn ln_1p(self) -> Self {
         let mut r = self.plus(1.0).ln();
-        r.0[0] = self.0[0].ln_1p();
+        r.0[0] = libm::log1p(self.0[0]);
         r
     }
     fn exp_m1(self) -> Self {
         let mut r = self.exp();
-        r.0[0] = self.0[0].exp_m1();
+        r.0[0] = libm::expm1(self.0[0]);
         r
     }
     fn fma(self, a: Self, b: Self) -> Self {

@@ -33,7 +33,7 @@ impl Moments {
 /// The integral of `ω r0` over the ball of a horizon over that of another, `of` (lengths).
 pub fn first_moments(dimension: usize, of: f64, horizon: f64, kind: Influence) -> f64 {
     let power = match kind {
-        Influence::Constant | Influence::Conical | Influence::Gaussian | Influence::CubicSpline => {
+        Influence::Constant | Influence::Linear | Influence::Gaussian | Influence::CubicSpline => {
             dimension + 1
         }
         Influence::Inverse => dimension,
@@ -97,7 +97,7 @@ fn mean_over_directions(formula: Formula, dimensions: usize, r: f64, horizon: f6
     let at = |xi: [f64; 3]| formula.at(xi.map(|x| x * r), r, horizon);
     let round = |across: f64, along: f64| {
         let of = |phi: f64| {
-            let (sin, cos) = phi.sin_cos();
+            let (sin, cos) = libm::sincos(phi);
             // both halves and both sides at once: an integral over a quarter
             let all = [[cos, sin], [-cos, sin], [cos, -sin], [-cos, -sin]];
             let each = all.map(|[x, y]| at([across * x, across * y, along]));
@@ -202,7 +202,7 @@ mod tests {
             let all = |m: Moments| [m.first, m.second, m.bare];
             for (word, text) in [
                 (Influence::Inverse, "1/r"),
-                (Influence::Conical, "1 - r/delta"),
+                (Influence::Linear, "1 - r/delta"),
                 (Influence::Gaussian, "exp(-4*(r/delta)^2)"),
                 (
                     Influence::CubicSpline,

@@ -7,11 +7,11 @@
 pub mod blocks;
 pub mod bonded;
 pub mod descriptor;
-pub mod fan;
 pub mod fracture_energy;
 pub mod function;
 pub mod influence;
 pub mod jet;
+pub mod many_body;
 pub mod material;
 pub mod micromodulus;
 mod moduli;
@@ -63,7 +63,7 @@ impl BondFactors<f64> {
 /// These laws are linear in the stretch `s = (r − r0)/r0` of their bonds, and kernels, tangents and released energies take that for granted.
 /// Nothing checks it: a law that is otherwise compiles, and has wrong tangents and releases. Such laws are [`material::Material`]s.
 ///
-/// With `S = Σ k r0² s` over the whole bonds of a point, `q` its [`pressure_factor`](Law::pressure_factor) and `P = q S` its pressure:
+/// With `S = Σ k r0² s` over the intact bonds of a point, `q` its [`pressure_factor`](Law::pressure_factor) and `P = q S` its pressure:
 /// - The force density on i is `Σ pull (ξ+η)`. `pull` is of first degree in `g = (r − r0)/r`: its slope is taken as a difference of two
 ///   values. At `g = 0` and without pressures it is 0.
 /// - Laws with [`SHARES`](Law::SHARES) have P in field 0. `pull` is of first degree in it, with one slope for both ends that depends on no

@@ -57,7 +57,7 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     fn any_below(self, limit: f64) -> bool;
     /// Do a piece of work out of line, in code of these numbers' instruction set, where they have one.
     #[inline(always)]
-    fn apart<P: Piece>(piece: P) -> P::Out {
+    fn out_of_line<P: Piece>(piece: P) -> P::Out {
         piece.run()
     }
 
@@ -107,11 +107,11 @@ impl<L: Lane> Number for L {
     }
     #[inline(always)]
     fn ln_1p(self) -> L {
-        each(self, f64::ln_1p)
+        each(self, libm::log1p)
     }
     #[inline(always)]
     fn exp_m1(self) -> L {
-        each(self, f64::exp_m1)
+        each(self, libm::expm1)
     }
     #[inline(always)]
     fn fma(self, a: L, b: L) -> L {
@@ -130,8 +130,8 @@ impl<L: Lane> Number for L {
         L::any(self.lt(L::splat(limit)))
     }
     #[inline(always)]
-    fn apart<P: Piece>(piece: P) -> P::Out {
-        <L as Lane>::apart(piece)
+    fn out_of_line<P: Piece>(piece: P) -> P::Out {
+        <L as Lane>::out_of_line(piece)
     }
     #[inline(always)]
     fn table(self, table: &Spline) -> L {
@@ -380,11 +380,11 @@ impl<L: Lane, S: Slope<L>> Number for Dual<L, S> {
     #[inline(always)]
     fn ln_1p(self) -> Self {
         let slope = Lane::div(L::splat(1.0), L::splat(1.0) + self.value);
-        self.chain(each(self.value, f64::ln_1p), slope)
+        self.chain(each(self.value, libm::log1p), slope)
     }
     #[inline(always)]
     fn exp_m1(self) -> Self {
-        let e = each(self.value, f64::exp_m1);
+        let e = each(self.value, libm::expm1);
         self.chain(e, e + L::splat(1.0))
     }
     #[inline(always)]
@@ -409,8 +409,8 @@ impl<L: Lane, S: Slope<L>> Number for Dual<L, S> {
         self.value.any_below(limit)
     }
     #[inline(always)]
-    fn apart<P: Piece>(piece: P) -> P::Out {
-        <L as Lane>::apart(piece)
+    fn out_of_line<P: Piece>(piece: P) -> P::Out {
+        <L as Lane>::out_of_line(piece)
     }
     #[inline(always)]
     fn choose(self, limit: Self, a: Self, b: Self) -> Self {

@@ -119,7 +119,7 @@ mod tests {
             start: vec![0, 1, 3, 4],
             partner: vec![1, 0, 2, 1],
             block: [1.0, 0.5, 1.0, 2.0].map(|c| [[c]]).to_vec(),
-            carriers: None,
+            load_map: None,
             mass: None,
         }
     }
@@ -159,7 +159,7 @@ mod tests {
             start: vec![0, 1, 2],
             partner: vec![1, 0],
             block: vec![c; 2],
-            carriers: None,
+            load_map: None,
             mass: None,
         };
         assert_eq!(bond([[3.0, 0.0], [0.0, 0.0]]).soundness().rotation, 0.0);

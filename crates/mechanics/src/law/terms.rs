@@ -158,9 +158,9 @@ fn terms<'a, P: Potential>(
 }
 
 /// A sum of potentials: parts and terms of one after those of the other.
-pub struct Together(pub Vec<Box<dyn Sites>>);
+pub struct SumOfSites(pub Vec<Box<dyn Sites>>);
 
-impl Sites for Together {
+impl Sites for SumOfSites {
     fn reach(&self) -> f64 {
         self.0.iter().map(|s| s.reach()).fold(0.0, f64::max)
     }

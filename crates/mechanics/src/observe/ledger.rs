@@ -20,9 +20,9 @@ pub struct Ledger {
     /// with β = ¼ and γ = ½, and of explicit steps, which take none by themselves.
     pub numerical: f64,
     /// Work done on the body by body forces, tractions and prescribed motion since the start.
-    pub work_conditions: f64,
-    /// Work done on the body by indenters since the start.
-    pub work_indenter: f64,
+    pub work_boundary_conditions: f64,
+    /// Work done on the body by rigid_bodies since the start.
+    pub work_rigid_bodies: f64,
     /// Energy at the start.
     pub initial: f64,
 }
@@ -35,8 +35,8 @@ words!([] Ledger {
     made: f64,
     dissipated: f64,
     numerical: f64,
-    work_conditions: f64,
-    work_indenter: f64,
+    work_boundary_conditions: f64,
+    work_rigid_bodies: f64,
     initial: f64,
 });
 
@@ -48,7 +48,7 @@ impl Ledger {
 
     /// What of the balance must stay as it is.
     pub fn base(&self) -> f64 {
-        self.held() - self.made - self.work_conditions - self.work_indenter
+        self.held() - self.made - self.work_boundary_conditions - self.work_rigid_bodies
     }
 
     /// What the balance misses: 0 in exact time.

@@ -29,7 +29,7 @@ impl Dimension {
     pub const FORCE_DENSITY: Dimension = Dimension([-2, 1, -2, 0]);
     pub const MICROMODULUS: Dimension = Dimension([-5, 1, -2, 0]);
     pub const CONTACT_STIFFNESS: Dimension = Dimension([-6, 1, -2, 0]);
-    pub const INDENTER_STIFFNESS: Dimension = Dimension([-4, 1, -2, 0]);
+    pub const RIGID_BODY_STIFFNESS: Dimension = Dimension([-4, 1, -2, 0]);
     pub const DAMPING: Dimension = Dimension([-3, 1, -1, 0]);
     pub const CONDUCTIVITY: Dimension = Dimension([1, 1, -3, -1]);
     /// Per mass.
@@ -73,8 +73,8 @@ impl Dimension {
             "a contact stiffness (force per volume squared and length)",
         ),
         (
-            Dimension::INDENTER_STIFFNESS,
-            "an indenter stiffness (force per volume and area)",
+            Dimension::RIGID_BODY_STIFFNESS,
+            "a contact stiffness of a rigid body (force per volume and area)",
         ),
         (Dimension::DAMPING, "a damping (mass per volume and time)"),
         (Dimension::CONDUCTIVITY, "a thermal conductivity"),

@@ -41,13 +41,16 @@ impl Sites {
 pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
     let search = Search::new(lattice, region)?;
     search.affordable(1)?;
-    let room = search.cells as usize * lattice.kind.basis().len();
+    let workspace = search.cells as usize * lattice.kind.basis().len();
     let mut quarters = Vec::new();
     // room for the whole box is only address space until it is written, and saves copying while growing
-    quarters.try_reserve_exact(room).map_err(|_| {
+    quarters.try_reserve_exact(workspace).map_err(|_| {
         BuildError::too_large(
             "body.spacing",
-            ((room * size_of::<[i32; 3]>()) as f64, memory::available()),
+            (
+                (workspace * size_of::<[i32; 3]>()) as f64,
+                memory::available(),
+            ),
             format!(
                 "no memory for the sites of {} lattice cells",
                 rounded(search.cells, 3)

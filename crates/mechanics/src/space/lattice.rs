@@ -161,6 +161,12 @@ impl Lattice {
         })
     }
 
+    /// Typical distance of nearest points (length): the edge of a cube of the volume of one.
+    pub fn distance(&self) -> f64 {
+        let root = 1.0 / self.kind.dimension() as f64;
+        self.spacing * libm::pow(self.kind.site_volume(), root)
+    }
+
     /// Coordinates of a site: `quarter` counts quarters of the cell's edges from the origin (site `b` of cell
     /// `(i,j,k)` has `quarter = 4(i,j,k) + basis[b]`).
     pub fn position(&self, quarter: [i32; 3]) -> [f64; 3] {

@@ -86,7 +86,7 @@ impl RigidShape {
         match self {
             RigidShape::Sphere { radius } => *radius,
             RigidShape::Box { half } => half[..dimension].iter().map(|h| h * h).sum::<f64>().sqrt(),
-            RigidShape::Cylinder { radius, half, .. } => radius.hypot(*half),
+            RigidShape::Cylinder { radius, half, .. } => libm::hypot(*radius, *half),
             RigidShape::Plane { .. } => f64::INFINITY,
             RigidShape::Solid(solid) => solid.reach(),
         }

@@ -36,7 +36,7 @@ impl Quaternion {
     pub const ONE: Quaternion = Quaternion([1.0, 0.0, 0.0, 0.0]);
 
     pub fn about(axis: &Point, angle: f64) -> Quaternion {
-        let (sine, cosine) = (0.5 * angle).sin_cos();
+        let (sine, cosine) = libm::sincos(0.5 * angle);
         Quaternion([cosine, sine * axis[0], sine * axis[1], sine * axis[2]])
     }
 
@@ -107,7 +107,7 @@ impl Quaternion {
         if sine == 0.0 {
             return [0.0; 3];
         }
-        let angle = 2.0 * sine.atan2(w.abs());
+        let angle = 2.0 * libm::atan2(sine, w.abs());
         let sign = if w < 0.0 { -1.0 } else { 1.0 };
         [x, y, z].map(|c| sign * angle * c / sine)
     }

@@ -47,7 +47,7 @@ impl Mixing {
         match self {
             Mixing::Arithmetic => 0.5 * (a + b),
             Mixing::Geometric => (a * b).sqrt(),
-            Mixing::SixthPower => (0.5 * (a.powi(6) + b.powi(6))).powf(1.0 / 6.0),
+            Mixing::SixthPower => libm::pow(0.5 * (a.powi(6) + b.powi(6)), 1.0 / 6.0),
         }
     }
 

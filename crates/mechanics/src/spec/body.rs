@@ -61,8 +61,8 @@ pub struct PieceSpec {
     pub horizon: Option<Horizon>,
     pub influence: Option<Influence>,
     pub family: Option<FamilyChoice>,
-    /// [`BondsSpec::own_horizon`](super::BondsSpec::own_horizon) of its points.
-    pub own_horizon: Option<Expression>,
+    /// [`BondsSpec::variable_horizon`](super::BondsSpec::variable_horizon) of its points.
+    pub variable_horizon: Option<Expression>,
     /// [`BondsSpec::surface`](super::BondsSpec::surface) of this body.
     pub surface: Option<SurfaceFactors>,
 }
@@ -77,7 +77,7 @@ impl PieceSpec {
             horizon: None,
             influence: None,
             family: None,
-            own_horizon: None,
+            variable_horizon: None,
             surface: None,
         }
     }

@@ -11,9 +11,9 @@ use crate::expression::Expression;
 pub struct BondsSpec {
     pub horizon: Horizon,
     /// Horizon of each point of a cloud (length), an expression of x, y, z, at most `horizon`; `None`: all have that.
-    pub own_horizon: Option<Expression>,
+    pub variable_horizon: Option<Expression>,
     /// Scale the partner's volume linearly where its cell straddles the horizon (`lammps-peri` item 3).
-    pub volume_scaling: bool,
+    pub partial_volume_correction: bool,
     /// Calibrate stiffness constants to the discrete bulk family, or use the continuum integrals.
     pub calibration: Calibration,
     /// Influence function ω.

@@ -44,11 +44,11 @@ pub enum ConditionKind {
     SetForce([Option<Expression>; 3]),
     /// Viscous force density −c v (mass / volume / time).
     Damping(Expression),
-    /// A force of the shelf that the model is built with.
+    /// A force of the registry that the model is built with.
     Force(ForceSpec),
 }
 
-/// A force of the shelf by its name, with its constants.
+/// A force of the registry by its name, with its constants.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ForceSpec {
     pub name: String,
@@ -56,7 +56,7 @@ pub struct ForceSpec {
 }
 
 impl ConditionKind {
-    /// A force of the shelf.
+    /// A force of the registry.
     pub fn force(name: &str, parameters: Parameters) -> ConditionKind {
         ConditionKind::Force(ForceSpec {
             name: name.into(),

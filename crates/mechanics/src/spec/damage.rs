@@ -1,6 +1,6 @@
 //! Which bonds break, when, and which become whole again.
 
-use super::Release;
+use super::Breakage;
 use crate::expression::Expression;
 use crate::space::triangles::Triangles;
 
@@ -13,7 +13,7 @@ pub struct DamageSpec {
     /// Which broken bonds become whole again; `None`: none.
     pub healing: Option<HealingSpec>,
     /// When a bond past its critical stretch lets go.
-    pub release: Release,
+    pub breakage: Breakage,
 }
 
 /// Broken bonds that become whole again.
@@ -55,8 +55,8 @@ pub struct PrecrackSpec {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrackKind {
-    /// The bonds were never there: not counted in damage.
-    Absent,
+    /// The bonds are excluded from the families: not counted in damage.
+    Excluded,
     /// The bonds are broken at the start: counted as damage.
     Broken,
 }

@@ -45,7 +45,7 @@ pub enum Influence {
     /// 1/ξ
     Inverse,
     /// 1 − ξ/δ
-    Conical,
+    Linear,
     /// exp(−(2ξ/δ)²)
     Gaussian,
     /// Cubic B-spline with support δ, 1 at ξ = 0.
@@ -119,7 +119,7 @@ impl Influence {
     pub fn knows_horizon(self) -> bool {
         match self {
             Influence::Constant | Influence::Inverse => false,
-            Influence::Conical | Influence::Gaussian | Influence::CubicSpline => true,
+            Influence::Linear | Influence::Gaussian | Influence::CubicSpline => true,
             Influence::Formula(formula) => formula.knows_horizon(),
         }
     }
@@ -133,7 +133,7 @@ impl Influence {
     pub const ALL: [Influence; 5] = [
         Influence::Constant,
         Influence::Inverse,
-        Influence::Conical,
+        Influence::Linear,
         Influence::Gaussian,
         Influence::CubicSpline,
     ];

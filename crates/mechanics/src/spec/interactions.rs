@@ -1,8 +1,7 @@
 //! What points exchange besides what the law of one material says.
 
 use super::{
-    ActingSpec, BondedSpec, ContactSpec, InterfaceRule, InterfaceSpec, Mixing, PairSpec,
-    TransferSpec,
+    ActingSpec, BondMixing, BondedSpec, ContactSpec, DiffusionSpec, InterfaceSpec, Mixing, PairSpec,
 };
 use std::sync::Arc;
 
@@ -11,7 +10,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Default)]
 pub struct InteractionsSpec {
     /// How bonds between unlike materials get their stiffness.
-    pub interface: InterfaceRule,
+    pub interface: BondMixing,
     /// Bonds between bodies, where there are several; the others meet by contact alone.
     pub interfaces: Vec<InterfaceSpec>,
     /// What pairs of materials have instead of what follows from the two, `[of][with]`; empty: nothing. Their bonds
@@ -25,5 +24,5 @@ pub struct InteractionsSpec {
     pub bonded: Option<Arc<BondedSpec>>,
     pub contact: Option<ContactSpec>,
     /// What spreads through the bonds of the reference, each quantity once.
-    pub transfers: Vec<TransferSpec>,
+    pub diffusions: Vec<DiffusionSpec>,
 }

@@ -26,7 +26,7 @@ pub enum LawSpec {
     Lps(Moduli),
     /// Linear peridynamic solid with the three-dimensional formulas and the moduli as typed, in any dimension
     /// (what LAMMPS's `peri/lps` does): bulk and shear modulus.
-    LpsAsTyped { bulk: f64, shear: f64 },
+    Lps3d { bulk: f64, shear: f64 },
     /// `W = E(ϑ) + ½Σ κ-bonds` with the quadratic `E` of seleson2014 (A.16) and `κ` of (A.14): `κ = k ω e / m`,
     /// `P = −(p/m) θ` with the two stiffnesses given directly (seleson2014 (A.24): `k = k̄`, `p = c̄/3`).
     EamLike { pair: f64, volume: f64 },
@@ -37,12 +37,12 @@ pub enum LawSpec {
     Atoms(PotentialSpec),
     /// Given micromoduli, in order of the points of a cloud.
     Micromoduli(Arc<AnyLinearBody>),
-    /// A law of the shelf.
+    /// A law of the registry.
     Named(NamedLaw),
 }
 
 impl LawSpec {
-    /// A law of the shelf.
+    /// A law of the registry.
     pub fn named(name: &str, parameters: Parameters) -> LawSpec {
         LawSpec::Named(NamedLaw {
             name: name.into(),
@@ -52,7 +52,7 @@ impl LawSpec {
         })
     }
 
-    /// The linear law of the same elasticity about the reference: of a named law what the shelf says, of all others themselves.
+    /// The linear law of the same elasticity about the reference: of a named law what the registry says, of all others themselves.
     pub fn linear(&self) -> &LawSpec {
         match self {
             LawSpec::Named(NamedLaw {
@@ -104,7 +104,7 @@ pub struct FractureSpec {
     pub alpha: f64,
     /// How the critical stretch grows with the rate of the stretch; `None`: it does not.
     pub rate: Option<RateSpec>,
-    /// How bonds wear in cycles of load; `None`: they do not.
+    /// Fatigue damage of bonds in cycles of load; `None`: they do not.
     pub fatigue: Option<FatigueSpec>,
 }
 
@@ -176,22 +176,22 @@ impl Criterion {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum InterfaceRule {
+pub enum BondMixing {
     /// Harmonic mean: the two half bonds in series.
     #[default]
-    Series,
+    Harmonic,
     /// Arithmetic mean: in parallel.
-    Parallel,
+    Arithmetic,
     Minimum,
 }
 
 /// When a bond past its critical stretch lets go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Release {
+pub enum Breakage {
     /// In the force evaluation that finds it there (CabanaPD). The dilatation of that evaluation still has it; sums of laws of the
-    /// shelf do not.
+    /// registry do not.
     #[default]
-    AtOnce,
+    BeforeForce,
     /// After the force of that evaluation: it pulls once more (LAMMPS).
     AfterForce,
 }
@@ -201,7 +201,7 @@ pub enum Release {
 pub struct PairSpec {
     /// At most the horizon of the spec (length); 0: no bonds.
     pub horizon: f64,
-    /// `Pmb` with a micromodulus; `LpsAsTyped`: moduli with which both scalars act on the point, whatever its partner
+    /// `Pmb` with a micromodulus; `Lps3d`: moduli with which both scalars act on the point, whatever its partner
     /// is made of. With unlike moduli forces are then not opposite, and no energy is conserved.
     pub law: LawSpec,
     /// Critical stretch s00 of those bonds, and how it depends on compression: a point's s0 is the greatest
@@ -210,7 +210,7 @@ pub struct PairSpec {
     pub alpha: f64,
 }
 
-/// A law of the shelf by its name ([`crate::law::descriptor`]).
+/// A law of the registry by its name ([`crate::law::descriptor`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedLaw {
     pub name: String,

@@ -4,7 +4,7 @@
 //! State-based laws fit too: their rows reach two horizons.
 
 use super::rows::rows;
-use super::{Carriers, MassMatrix};
+use super::{LoadMap, MassMatrix};
 use std::any::Any;
 
 /// Points, and which of them talk to which.
@@ -25,7 +25,7 @@ pub struct LinearBody<const D: usize> {
     /// `C_ij` (force density / length) per partner.
     pub block: Vec<[[f64; D]; D]>,
     /// Of a condensed body: where its loads act.
-    pub carriers: Option<Carriers<D>>,
+    pub load_map: Option<LoadMap<D>>,
     /// Inertia that couples points; `None`: every point has its own mass alone, volume times density. These are its masses lumped.
     pub mass: Option<MassMatrix<D>>,
 }
@@ -42,9 +42,9 @@ impl AnyLinearBody {
     /// Does it say where loads act, or which masses couple points?
     pub fn is_coupled(&self) -> bool {
         match self {
-            Self::One(b) => b.carriers.is_some() || b.mass.is_some(),
-            Self::Two(b) => b.carriers.is_some() || b.mass.is_some(),
-            Self::Three(b) => b.carriers.is_some() || b.mass.is_some(),
+            Self::One(b) => b.load_map.is_some() || b.mass.is_some(),
+            Self::Two(b) => b.load_map.is_some() || b.mass.is_some(),
+            Self::Three(b) => b.load_map.is_some() || b.mass.is_some(),
         }
     }
 
@@ -90,11 +90,11 @@ impl AnyLinearBody {
     }
 
     /// Do its points carry loads of a finer body?
-    pub fn has_carriers(&self) -> bool {
+    pub fn has_load_map(&self) -> bool {
         match self {
-            Self::One(b) => b.carriers.is_some(),
-            Self::Two(b) => b.carriers.is_some(),
-            Self::Three(b) => b.carriers.is_some(),
+            Self::One(b) => b.load_map.is_some(),
+            Self::Two(b) => b.load_map.is_some(),
+            Self::Three(b) => b.load_map.is_some(),
         }
     }
 
@@ -156,7 +156,7 @@ impl<const D: usize> LinearBody<D> {
             start: vec![0],
             partner: vec![],
             block: vec![],
-            carriers: None,
+            load_map: None,
             mass: None,
         }
     }
@@ -187,8 +187,8 @@ impl<const D: usize> LinearBody<D> {
         if let Some(mass) = &self.mass {
             mass.check(&self.masses())?;
         }
-        match &self.carriers {
-            Some(carriers) => carriers.check(n),
+        match &self.load_map {
+            Some(load_map) => load_map.check(n),
             None => Ok(()),
         }
     }
@@ -248,7 +248,7 @@ impl<const D: usize> LinearBody<D> {
             + 8 * self.start.len()
             + 4 * self.partner.len()
             + 8 * D * D * self.block.len()
-            + self.carriers.as_ref().map_or(0, Carriers::bytes)
+            + self.load_map.as_ref().map_or(0, LoadMap::bytes)
             + self.mass.as_ref().map_or(0, MassMatrix::bytes)
     }
 }

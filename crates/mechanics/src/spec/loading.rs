@@ -1,6 +1,6 @@
 //! What acts on a body from outside, and how it moves at first.
 
-use super::{ConditionSpec, IndenterSpec, InitialSpec, ThermalSpec};
+use super::{ConditionSpec, InitialSpec, RigidBodySpec, ThermalSpec};
 
 /// Initial and boundary conditions, and rigid bodies; the default: none, temperatures are energies.
 #[derive(Debug, Clone)]
@@ -11,7 +11,7 @@ pub struct LoadingSpec {
     /// Maxwellian velocities, given before those of `initial`.
     pub thermal: Option<ThermalSpec>,
     pub conditions: Vec<ConditionSpec>,
-    pub indenters: Vec<IndenterSpec>,
+    pub rigid_bodies: Vec<RigidBodySpec>,
 }
 
 impl Default for LoadingSpec {
@@ -21,7 +21,7 @@ impl Default for LoadingSpec {
             boltzmann: 1.0,
             thermal: None,
             conditions: vec![],
-            indenters: vec![],
+            rigid_bodies: vec![],
         }
     }
 }

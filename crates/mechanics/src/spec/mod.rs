@@ -7,23 +7,24 @@ mod atoms;
 mod body;
 mod bonded;
 mod bonds;
-mod carriers;
 mod cohesion;
 mod condition;
 mod contact;
 mod damage;
+mod diffusion;
 mod family;
-mod indenter;
 mod interactions;
 mod interface;
 mod law;
 mod linear_body;
+mod load_map;
 mod loading;
 mod mass_matrix;
 mod parameters;
 mod potential;
 mod preload;
 mod probe;
+mod rigid_body;
 mod rows;
 mod run;
 mod schedule;
@@ -31,34 +32,37 @@ mod smooth;
 mod space;
 mod surface;
 mod table;
-mod transfer;
 
 pub use atoms::{Acting, ActingSpec, Mixing};
 pub use body::{BodySpec, Cloud, Members, Perturbation, PieceSpec, SetSpec};
 pub use bonded::{BondedSpec, BondedTerm, Form};
 pub use bonds::{BondFactorSpec, BondsSpec};
-pub use carriers::Carriers;
 pub use cohesion::CohesionSpec;
 pub use condition::{ConditionKind, ConditionSpec, ForceSpec, InitialSpec, ThermalSpec};
 pub use contact::{AtRest, ContactSpec, ContactStiffness, FrictionSpec};
 pub use damage::{
     CrackKind, CrackShape, DamageSpec, HealingSpec, PrecrackSpec, ToughnessFactor, ToughnessSpec,
 };
+pub use diffusion::{
+    Area, DiffusionCondition, DiffusionKind, DiffusionMaterial, DiffusionMethod, DiffusionSpec,
+    Exchange, Quantity,
+};
 pub use family::{Calibration, FamilyChoice, Formula, Horizon, Influence};
-pub use indenter::{FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
 pub use interactions::InteractionsSpec;
 pub use interface::InterfaceSpec;
 pub use law::{
-    Criterion, FatigueSpec, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, NamedLaw,
-    PairSpec, PmbStiffness, RateSpec, Release,
+    BondMixing, Breakage, Criterion, FatigueSpec, FractureSpec, LawSpec, MaterialSpec, Moduli,
+    NamedLaw, PairSpec, PmbStiffness, RateSpec,
 };
 pub use linear_body::{AnyLinearBody, LinearBody};
+pub use load_map::LoadMap;
 pub use loading::LoadingSpec;
 pub use mass_matrix::MassMatrix;
 pub use parameters::{Parameter, Parameters};
 pub use potential::{End, PotentialSpec};
 pub use preload::PreloadSpec;
-pub use probe::{ContourSpec, CrackTipSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
+pub use probe::{CrackTipSpec, Fold, JIntegralSpec, Measure, Part, ProbeSpec, RigidQuantity};
+pub use rigid_body::{FreeSpec, RigidBodyMotion, RigidBodySpec, TurnSpec};
 pub use rows::add_alike;
 pub use run::RunSpec;
 pub use schedule::{
@@ -69,10 +73,6 @@ pub use space::{Plane, SpaceSpec};
 use std::sync::Arc;
 pub use surface::{SurfaceFactor, SurfaceFactors, SurfaceMethod};
 pub use table::{PartnerTable, TableSpec};
-pub use transfer::{
-    Area, Exchange, Quantity, TransferCondition, TransferKind, TransferMaterial, TransferMethod,
-    TransferSpec,
-};
 
 /// Everything a run is: a body of materials, and sections that have a default.
 #[derive(Debug, Clone)]
@@ -152,8 +152,8 @@ impl Spec {
         bonds.influence = piece.influence.unwrap_or(bonds.influence);
         bonds.family = piece.family.unwrap_or(bonds.family);
         bonds.surface.clone_from(&piece.surface);
-        if let Some(own) = &piece.own_horizon {
-            bonds.own_horizon = Some(own.clone());
+        if let Some(own) = &piece.variable_horizon {
+            bonds.variable_horizon = Some(own.clone());
         }
         own
     }

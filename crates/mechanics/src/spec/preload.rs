@@ -1,7 +1,7 @@
 //! Statics before motion: what is in equilibrium when motion begins.
 
 use super::condition::ConditionSpec;
-use super::indenter::IndenterSpec;
+use super::rigid_body::RigidBodySpec;
 use super::{PrecrackSpec, Statics};
 
 /// A stage of statics that motion begins from: increments of load under conditions of its own, each of which ends in equilibrium. Its
@@ -16,7 +16,7 @@ pub struct PreloadSpec {
     /// In place of those of the motion.
     pub conditions: Vec<ConditionSpec>,
     /// In place of those of the motion.
-    pub indenters: Vec<IndenterSpec>,
+    pub rigid_bodies: Vec<RigidBodySpec>,
     /// Cut when motion begins.
     pub cuts: Vec<PrecrackSpec>,
 }

@@ -26,12 +26,12 @@ pub enum Measure {
     /// A column at the point of the set that is nearest to a place in the reference (of equal ones the first).
     Value { at: Point, of: String, part: Part },
     /// Of a rigid body by its name; `None`: all of it.
-    Indenter {
-        indenter: String,
+    RigidBody {
+        rigid_body: String,
         of: Option<RigidQuantity>,
     },
     /// J-integral around a crack tip in two dimensions, and the stress intensity `K = √(J E′)`.
-    Contour(ContourSpec),
+    JIntegral(JIntegralSpec),
     /// Where a crack ends, how long it is, and into how many branches it has split.
     CrackTip(CrackTipSpec),
     /// How far the points of the set that are nearest to two places in the reference have moved apart.
@@ -53,7 +53,7 @@ pub struct CrackTipSpec {
 
 /// A rectangle around the tip of a straight crack.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContourSpec {
+pub struct JIntegralSpec {
     pub low: [f64; 2],
     pub high: [f64; 2],
     /// Where the crack grows to; a unit vector.
@@ -94,8 +94,8 @@ impl RigidQuantity {
             RigidQuantity::Torque => "torque",
             RigidQuantity::Center => "center",
             RigidQuantity::Velocity => "velocity",
-            RigidQuantity::Turn => "turn",
-            RigidQuantity::Spin => "spin",
+            RigidQuantity::Turn => "rotation",
+            RigidQuantity::Spin => "angular_velocity",
             RigidQuantity::Energy => "energy",
         }
     }

@@ -61,7 +61,7 @@ impl Stepper {
                 Stepper::Newmark(Newmark::hht(-0.1)),
             ),
             of(
-                "still",
+                "none",
                 "Points stand where they are; heat and species go on.",
                 Stepper::Still,
             ),
@@ -74,7 +74,7 @@ impl Stepper {
             Stepper::Verlet => Some("verlet"),
             Stepper::Newmark(n) if n.alpha != 0.0 => Some("hht"),
             Stepper::Newmark(_) => Some("newmark"),
-            Stepper::Still => Some("still"),
+            Stepper::Still => Some("none"),
             Stepper::Statics(_) => None,
         }
     }
@@ -264,9 +264,9 @@ pub enum Control {
     Load,
     /// The next bond: an increment ends where it is at its critical stretch, and the next one begins without it. t is the factor of
     /// loads that are proportional to it, and may fall.
-    Breaking,
+    SequentiallyLinear,
     /// So much growth of the stretch of the bonds that open fastest (number); t is the factor of loads that are proportional to it, and may fall.
-    Opening(f64),
+    IndirectDisplacement(f64),
     /// So far points go, the root of the mean square of all (length); t as above.
     ArcLength(f64),
 }
@@ -275,8 +275,8 @@ impl Control {
     /// Is the load an unknown of its own?
     pub fn follows_a_path(self) -> bool {
         match self {
-            Control::Opening(_) | Control::ArcLength(_) => true,
-            Control::Load | Control::Breaking => false,
+            Control::IndirectDisplacement(_) | Control::ArcLength(_) => true,
+            Control::Load | Control::SequentiallyLinear => false,
         }
     }
 }

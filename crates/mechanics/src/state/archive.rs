@@ -429,17 +429,17 @@ impl<'a> Archive<'a> {
         let Way::Save(to) = &mut self.way else {
             return Ok(());
         };
-        let mut room = vec![];
+        let mut workspace = vec![];
         for word in words {
-            let at = room.len();
-            room.resize(at + T::BYTES, 0);
-            word.put(&mut room[at..]);
-            if room.len() >= PIECE {
-                to.write_all(&room).map_err(StateError::Stream)?;
-                room.clear();
+            let at = workspace.len();
+            workspace.resize(at + T::BYTES, 0);
+            word.put(&mut workspace[at..]);
+            if workspace.len() >= PIECE {
+                to.write_all(&workspace).map_err(StateError::Stream)?;
+                workspace.clear();
             }
         }
-        to.write_all(&room).map_err(StateError::Stream)
+        to.write_all(&workspace).map_err(StateError::Stream)
     }
 
     pub(super) fn take<T: Word>(
@@ -448,11 +448,11 @@ impl<'a> Archive<'a> {
         to: &mut dyn FnMut(T),
     ) -> Result<(), StateError> {
         let each = (PIECE / T::BYTES.max(1)).max(1);
-        let mut room = vec![0; each.min(length) * T::BYTES];
+        let mut workspace = vec![0; each.min(length) * T::BYTES];
         let mut left = length;
         while left > 0 {
             let now = each.min(left);
-            let bytes = &mut room[..now * T::BYTES];
+            let bytes = &mut workspace[..now * T::BYTES];
             self.read(bytes)?;
             bytes.chunks(T::BYTES).for_each(|x| to(T::take(x)));
             left -= now;

@@ -56,7 +56,7 @@ impl Ranks {
     }
 
     /// The first that was not.
-    pub fn apart(&self) -> Option<String> {
+    pub fn difference(&self) -> Option<String> {
         let own = self
             .alike
             .iter()

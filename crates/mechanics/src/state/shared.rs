@@ -84,8 +84,8 @@ impl Archive<'_> {
     }
 
     pub(super) fn same_on_all(&mut self) {
-        let apart = self.shared().and_then(Ranks::apart);
-        if let Some(name) = apart {
+        let difference = self.shared().and_then(Ranks::difference);
+        if let Some(name) = difference {
             self.error.get_or_insert(StateError::Apart { name });
         }
     }

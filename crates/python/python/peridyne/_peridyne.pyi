@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,20 @@ class RunError(Error):
     message: str
     step: int | None
     folder: str | None
+
+class Every:
+    """An observer at an interval of its own."""
+
+    def __init__(self, interval: Interval, call: Callable[[Simulation], Any]) -> None: ...
+    @property
+    def interval(self) -> Interval: ...
+    @property
+    def call(self) -> Callable[[Simulation], Any]: ...
+
+# steps; or a time, with its unit or as a float in that of the deck
+Interval = int | float | str
+# what answers True ends the run
+Observe = Callable[["Simulation"], Any] | Every
 
 class Deck:
     @staticmethod
@@ -46,8 +60,9 @@ class Deck:
         *,
         threads: int | None = None,
         progress: Callable[[int, int, float], Any] | None = None,
-        observe: Callable[[Simulation], Any] | None = None,
-        every: int = 1,
+        observe: Observe | Sequence[Observe] | None = None,
+        every: Interval | None = None,
+        prepare: Callable[[Simulation], Any] | None = None,
         allow_outside: bool = False,
     ) -> Run: ...
 
@@ -63,7 +78,7 @@ class Simulation:
     @property
     def time_step(self) -> float: ...
     @property
-    def broken(self) -> int: ...
+    def broken_bonds(self) -> int: ...
     @property
     def columns(self) -> list[str]: ...
     @property
@@ -78,6 +93,14 @@ class Simulation:
         set: str = "all",
         every: int = 1,
     ) -> None: ...
+    def add_motion(
+        self,
+        call: Callable[[float, npt.NDArray[np.float64]], npt.ArrayLike],
+        *,
+        set: str = "all",
+        axes: str | None = None,
+        of: Literal["displacement", "velocity"] = "displacement",
+    ) -> None: ...
     def describe(self, name: str) -> str: ...
     def members(self, set: str) -> npt.NDArray[np.uint32]: ...
     def probes(self) -> dict[str, float]: ...
@@ -91,8 +114,9 @@ def resume(
     *,
     threads: int | None = None,
     progress: Callable[[int, int, float], Any] | None = None,
-    observe: Callable[[Simulation], Any] | None = None,
-    every: int = 1,
+    observe: Observe | Sequence[Observe] | None = None,
+    every: Interval | None = None,
+    prepare: Callable[[Simulation], Any] | None = None,
     allow_outside: bool = False,
 ) -> Run: ...
 def program(words: Sequence[str]) -> int: ...

@@ -3,9 +3,34 @@
 import csv
 import html
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
+
+
+#: Columns that had another name in version 0.1.
+RENAMED = {
+    "released energy": "energy dissipated by bond breakage",
+    "energy made by breaking": "energy created by bond breakage",
+    "work of conditions": "work of boundary conditions",
+    "work of indenters": "work of rigid bodies",
+    "energy residual": "energy balance error",
+}
+
+
+class Columns(dict):
+    """Columns by name; names of version 0.1 are taken with a warning."""
+
+    def __missing__(self, name):
+        if name == "broken_directed_bonds" and "broken_bonds" in self:
+            warnings.warn("the column 'broken_directed_bonds' is 'broken_bonds' now, each bond once", DeprecationWarning, stacklevel=2)
+            return self["broken_bonds"] * 2
+        new = RENAMED.get(name)
+        if new is None or new not in self:
+            raise KeyError(name)
+        warnings.warn(f"the column {name!r} is called {new!r} now", DeprecationWarning, stacklevel=2)
+        return self[new]
 
 
 class Run:
@@ -38,13 +63,13 @@ class Run:
     def history(self):
         """`history.csv`: an array over rows by the name of its column, without the unit."""
         names, _, table = self._history()
-        return {name: table[:, n] for n, name in enumerate(names)}
+        return Columns({name: table[:, n] for n, name in enumerate(names)})
 
     @property
     def units(self):
         """The unit of each column of the history; "" where it has none."""
         names, units, _ = self._history()
-        return dict(zip(names, units))
+        return Columns(zip(names, units))
 
     @property
     def frames(self):

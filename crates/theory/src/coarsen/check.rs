@@ -225,7 +225,7 @@ pub(super) fn stable<const D: usize>(
     let Some(values) = eigenvalues(n, |i, j| dense[i * n + j]) else {
         return Ok(Stability::Unknown);
     };
-    let size = |z: &[f64; 2]| z[0].hypot(z[1]);
+    let size = |z: &[f64; 2]| libm::hypot(z[0], z[1]);
     let most = values.iter().map(size).fold(0.0, f64::max);
     let low = values.iter().map(|z| z[0]).fold(0.0, f64::min);
     if low < -slack * most {

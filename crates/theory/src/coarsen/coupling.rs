@@ -71,7 +71,7 @@ impl<const D: usize> Coupling<D> {
             start: vec![0],
             partner: vec![],
             block: vec![],
-            carriers: None,
+            load_map: None,
             mass: None,
         };
         for (row, v) in self.rows.iter().zip(&body.volume) {

@@ -34,7 +34,7 @@ use peridyne::statics::{Assembled, Direct, Goal, Support, cg, norm};
 pub enum Removed {
     /// They move with the shapes, and never else.
     #[default]
-    Carried,
+    KinematicPoints,
     /// They come to rest between retained points after every solution, by conjugate gradients.
     Relaxed,
 }
@@ -105,7 +105,7 @@ pub enum IncrementError {
 fn unsolved(error: &SolveError) -> String {
     match error {
         SolveError::Indefinite { .. } => format!(
-            "the coarse body has no stable equilibrium at this load, it buckles or tears before ({error}); end at a lower load"
+            "the coarse body has no stable equilibrium at this load, it buckles or breaks before ({error}); end at a lower load"
         ),
         error => error.to_string(),
     }
@@ -325,10 +325,10 @@ impl<const D: usize> Increments<D> {
             let mut corrections = 0;
             while corrections < self.plan.corrections && self.goes_on(&missing) {
                 corrections += 1;
-                let size = missing.size.hypot(self.counted(&missing));
+                let size = libm::hypot(missing.size, self.counted(&missing));
                 self.solved(body, &equations, load, &missing)?;
                 missing = self.missing(body, &equations, load);
-                let slow = missing.size.hypot(self.counted(&missing)) > SERVES * size;
+                let slow = libm::hypot(missing.size, self.counted(&missing)) > SERVES * size;
                 if slow && corrections < self.plan.corrections && self.goes_on(&missing) {
                     equations = self.equations(body, load)?;
                     done.tangents += 1;
@@ -372,13 +372,13 @@ impl<const D: usize> Increments<D> {
     /// Does what removed points miss count?
     fn counted(&self, missing: &Missing<D>) -> f64 {
         match self.plan.removed {
-            Removed::Carried => 0.0,
+            Removed::KinematicPoints => 0.0,
             Removed::Relaxed => missing.removed,
         }
     }
 
     fn goes_on(&self, missing: &Missing<D>) -> bool {
-        missing.size.hypot(self.counted(missing)) > self.plan.tolerance * missing.scale
+        libm::hypot(missing.size, self.counted(missing)) > self.plan.tolerance * missing.scale
     }
 
     fn missing(
@@ -502,7 +502,7 @@ impl<const D: usize> Increments<D> {
             return Err(IncrementError::NotFinite);
         }
         match self.plan.removed {
-            Removed::Carried => Ok(()),
+            Removed::KinematicPoints => Ok(()),
             Removed::Relaxed => self.relaxed(body, &reduced.tangent, load),
         }
     }

@@ -83,7 +83,7 @@ impl<const D: usize> LatticeBlock<D> {
             start: vec![0],
             partner: vec![],
             block: vec![],
-            carriers: None,
+            load_map: None,
             mass: None,
         };
         let offsets = offsets(self.reach);

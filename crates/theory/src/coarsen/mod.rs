@@ -11,7 +11,7 @@
 //! - [`Scheme::Energy`]: the shapes S are cut off by balls, and the coarse energy is that of the shapes. Symmetric, positive
 //!   semidefinite and free of force under rigid motions for any law; errors of shapes enter squared.
 //!
-//! Loads on removed points are condensed with them where the body says who carries loads ([`peridyne::spec::Carriers`]):
+//! Loads on removed points are condensed with them where the body says who carries loads ([`peridyne::spec::LoadMap`]):
 //! `b_q + Σ_e K_qe K_ee⁻¹ b_e`. Without, a load acts on the retained points alone, as in the paper, which has none on removed ones
 //! (5); with [`Volume::Kept`] the same force density is then the same force at every level.
 //!
@@ -196,8 +196,8 @@ fn made<const D: usize>(
     let parts = check::parts(body.points(), check::bonds(body));
     check::represented(&parts, &marked)?;
     let below = body.soundness();
-    let loaded = match &body.carriers {
-        Some(carriers) => carriers.reached(body.points()),
+    let loaded = match &body.load_map {
+        Some(load_map) => load_map.reached(body.points()),
         None => vec![false; body.points()],
     };
     let task = Task {
@@ -220,7 +220,7 @@ fn made<const D: usize>(
         false => None,
     };
     made.body.mass = mass::matrix(&plan.task, made.shapes.take(), &made.body, options.mass);
-    made.body.carriers = body.carriers.clone().map(|c| c.passed(&made.pass));
+    made.body.load_map = body.load_map.clone().map(|c| c.passed(&made.pass));
     check::connected(&made.coupling, &retained, &parts, radius)?;
     let soundness = made.body.soundness();
     let allowed = options.rotation + 2.0 * below.rotation;
@@ -256,7 +256,7 @@ fn made<const D: usize>(
         soundness,
         stability,
         definite: stability == Stability::Definite,
-        loss: made.body.carriers.as_ref().map(|c| c.loss()),
+        loss: made.body.load_map.as_ref().map(|c| c.loss()),
         lumping: plan.lumped.lumping,
         mass: [mass, coarse],
         shift: shift.sqrt(),
@@ -307,7 +307,7 @@ fn spacing<const D: usize>(body: &LinearBody<D>, points: usize) -> f64 {
     let box_: f64 = axes.iter().product();
     match axes.is_empty() {
         true => 1.0,
-        false => (box_ / points as f64).powf(1.0 / axes.len() as f64),
+        false => libm::pow(box_ / points as f64, 1.0 / axes.len() as f64),
     }
 }
 

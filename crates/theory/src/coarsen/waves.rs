@@ -180,7 +180,7 @@ impl<'a, const D: usize> Interior<'a, D> {
         let (partners, blocks) = body.row(i);
         let mut stiff = [0.0; D];
         for (&j, c) in partners.iter().zip(blocks) {
-            let part = body.volume[i] * (1.0 - phase(j).cos());
+            let part = body.volume[i] * (1.0 - libm::cos(phase(j)));
             for b in 0..D {
                 stiff[b] += part * c[b][moves];
             }
@@ -192,7 +192,7 @@ impl<'a, const D: usize> Interior<'a, D> {
                 let (partners, blocks) = mass.row(i);
                 for (&j, m) in partners.iter().zip(blocks) {
                     for b in 0..D {
-                        heavy[b] += phase(j).cos() * m[b][moves];
+                        heavy[b] += libm::cos(phase(j)) * m[b][moves];
                     }
                 }
             }

@@ -199,7 +199,7 @@ pub fn bravais<const D: usize>(cell: &[[f64; D]; D]) -> Option<(LatticeKind, f64
     let kinds = LatticeKind::ALL.into_iter();
     let mut plain = kinds.filter(|k| k.dimension() == D && *k != LatticeKind::Diamond);
     plain.find_map(|kind| {
-        let spacing = (volume / kind.site_volume()).powf(1.0 / D as f64);
+        let spacing = libm::pow(volume / kind.site_volume(), 1.0 / D as f64);
         let (rows, _) = primitive::<D>(kind).ok()?;
         let whole = |row: &[f64; D]| {
             b.iter().all(|b| {

@@ -33,7 +33,7 @@ pub enum CrystalError {
     #[error(
         "waves, stability and upscaling are not known of the law {0}: they take pmb, lps, springs and potentials"
     )]
-    Shelved(String),
+    Registered(String),
     #[error(
         "waves and constants of lps are known where its influence function is the same from both ends of a bond, ω(ξ) = ω(−ξ)"
     )]
@@ -45,7 +45,7 @@ pub enum CrystalError {
     )]
     NotPeriodic,
     #[error(
-        "potentials of more than two atoms, and sums of several, have no fixed neighbours: they feel those that are near now (leave \
+        "potentials of more than two atoms, and sums of several, have no fixed neighbours: they interact with those that are near now (leave \
          family out)"
     )]
     FixedNeighbours,

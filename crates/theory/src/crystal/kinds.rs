@@ -1,11 +1,11 @@
-//! Crystals of all potentials of a body, by their names: sums of mixtures and fans.
+//! Crystals of all potentials of a body, by their names: sums of mixtures and many-body potentials.
 
 use super::Atom;
 use super::atoms::Cell;
 use super::error::CrystalError;
 use super::lattice::Crystal;
 use peridyne::law::descriptor::Wrong;
-use peridyne::law::fan::{self, Fan};
+use peridyne::law::many_body::{self, ManyBody};
 use peridyne::law::potential::mixture::{Given, Mixture, mixture};
 use peridyne::law::potential::{self, Described, Potential};
 
@@ -18,7 +18,7 @@ trait Ask<const D: usize> {
         cell: Cell<D>,
     ) -> Result<Self::Out, CrystalError>;
 
-    fn fan<F: Fan>(fan: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError>;
+    fn many_body<F: ManyBody>(many_body: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError>;
 }
 
 /// The crystal, and the energy per cell.
@@ -34,8 +34,8 @@ impl<const D: usize> Ask<D> for Whole {
         Crystal::of_cell(mixture, cell)
     }
 
-    fn fan<F: Fan>(fan: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError> {
-        Crystal::of_fan(fan, cell.rows, cell.atoms)
+    fn many_body<F: ManyBody>(many_body: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError> {
+        Crystal::of_many_body(many_body, cell.rows, cell.atoms)
     }
 }
 
@@ -53,8 +53,8 @@ impl<const D: usize> Ask<D> for State {
         Ok([energy, crystal.pressure()])
     }
 
-    fn fan<F: Fan>(fan: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError> {
-        super::fan::state(fan, cell.rows, cell.atoms)
+    fn many_body<F: ManyBody>(many_body: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError> {
+        super::many_body::state(many_body, cell.rows, cell.atoms)
     }
 }
 
@@ -62,7 +62,7 @@ impl<const D: usize> Ask<D> for State {
 /// the constants.
 ///
 /// # Errors
-/// The engine has none of a name, or there is no crystal ([`Crystal::of_mixture`], [`Crystal::of_fan`]).
+/// The engine has none of a name, or there is no crystal ([`Crystal::of_mixture`], [`Crystal::of_many_body`]).
 pub(crate) fn crystal<const D: usize>(
     potentials: &[(String, Given)],
     cell: Cell<D>,
@@ -102,7 +102,7 @@ fn ask<const D: usize, A: Ask<D>>(
             found: None,
         };
         potential::each(&mut find);
-        fan::each(&mut find);
+        many_body::each(&mut find);
         let unknown = || CrystalError::Potential(format!("there is no potential named {name}"));
         answers.push(find.found.ok_or_else(unknown)??);
     }
@@ -149,16 +149,16 @@ impl<const D: usize, A: Ask<D>> potential::Kinds for Find<'_, D, A> {
     }
 }
 
-impl<const D: usize, A: Ask<D>> fan::Kinds for Find<'_, D, A> {
-    fn fan<F: fan::Described>(&mut self) {
+impl<const D: usize, A: Ask<D>> many_body::Kinds for Find<'_, D, A> {
+    fn many_body<F: many_body::Described>(&mut self) {
         if F::NAME == self.name {
-            let made = fan::of_kinds::<F>(self.given).map_err(wrong);
+            let made = many_body::of_kinds::<F>(self.given).map_err(wrong);
             self.found = Some(made.and_then(|made| {
                 if self.cell.fixed.is_some() {
                     return Err(CrystalError::FixedNeighbours);
                 }
                 let atoms = &self.atoms(made.table().kinds());
-                A::fan(&made, Cell { atoms, ..self.cell })
+                A::many_body(&made, Cell { atoms, ..self.cell })
             }));
         }
     }

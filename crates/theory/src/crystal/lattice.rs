@@ -64,7 +64,7 @@ pub struct Crystal<const D: usize> {
     pub bonds: Vec<Bond<D>>,
     /// `[site]` F″ of the point scalar; 0 for pair laws.
     pub curvature: Vec<f64>,
-    /// Of fans: extensions that answer to one another.
+    /// Of many-body potentials: extensions that answer to one another.
     pub couplings: Vec<Coupling<D>>,
 }
 

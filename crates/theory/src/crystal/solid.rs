@@ -24,7 +24,7 @@ pub struct LatticeSolid {
     pub density: f64,
     pub influence: Influence,
     /// Partners' volumes fade at the horizon.
-    pub volume_scaling: bool,
+    pub partial_volume_correction: bool,
 }
 
 impl LatticeSolid {
@@ -37,7 +37,7 @@ impl LatticeSolid {
             section: 1.0,
             density: 1.0,
             influence: Influence::Constant,
-            volume_scaling: false,
+            partial_volume_correction: false,
         }
     }
 
@@ -54,7 +54,7 @@ impl LatticeSolid {
     /// Edge of a cube (square) of the volume of a point: over which the horizon cuts volumes.
     fn point(&self) -> f64 {
         let d = self.kind.dimension() as f64;
-        self.spacing * self.kind.site_volume().powf(1.0 / d)
+        self.spacing * libm::pow(self.kind.site_volume(), 1.0 / d)
     }
 
     /// `ω ν V` of a bond, the mean of both ends.
@@ -65,7 +65,7 @@ impl LatticeSolid {
 
     /// ν
     fn fraction(&self, r0: f64) -> f64 {
-        match self.volume_scaling {
+        match self.partial_volume_correction {
             true => volume_fraction(r0, self.delta(), self.point()),
             false => 1.0,
         }
@@ -175,11 +175,11 @@ impl LatticeSolid {
                 self.bond_based(micromodulus(D, plane, *stiffness, moments))
             }
             LawSpec::Lps(_)
-            | LawSpec::LpsAsTyped { .. }
+            | LawSpec::Lps3d { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Atoms(_)
             | LawSpec::Micromoduli(_) => Err(CrystalError::NotASolid),
-            LawSpec::Named(law) => Err(CrystalError::Shelved(law.name.clone())),
+            LawSpec::Named(law) => Err(CrystalError::Registered(law.name.clone())),
         }
     }
 }

@@ -37,14 +37,14 @@ impl LinearChain<f64> {
         let (mut w, mut g) = ([0.0; 3], [0.0; 3]);
         for (j, stiffness) in self.stiffness.iter().enumerate() {
             let x = (j + 1) as f64 * self.spacing;
-            let (sin, cos) = (k * x).sin_cos();
-            w[0] += 4.0 * stiffness * (0.5 * k * x).sin().powi(2);
+            let (sin, cos) = libm::sincos(k * x);
+            w[0] += 4.0 * stiffness * libm::sin(0.5 * k * x).powi(2);
             w[1] += 2.0 * stiffness * x * sin;
             w[2] += 2.0 * stiffness * x * x * cos;
         }
         for (j, share) in self.share.iter().enumerate() {
             let x = (j + 1) as f64 * self.spacing;
-            let (sin, cos) = (k * x).sin_cos();
+            let (sin, cos) = libm::sincos(k * x);
             g[0] += 2.0 * share * sin;
             g[1] += 2.0 * share * x * cos;
             g[2] -= 2.0 * share * x * x * sin;
@@ -84,7 +84,7 @@ impl SpringContinuum {
         if k == 0.0 {
             return self.phase_velocity(0.0);
         }
-        let versine = 2.0 * (0.5 * k * self.horizon).sin().powi(2);
+        let versine = 2.0 * libm::sin(0.5 * k * self.horizon).powi(2);
         self.k1 / self.density * 2.0 / self.horizon.powi(2) * versine / (k * self.frequency(k))
     }
 }
@@ -116,7 +116,7 @@ pub fn cin(z: f64) -> f64 {
         }
         return sum;
     }
-    EULER_GAMMA + z.ln() - cosine_integral(z)
+    EULER_GAMMA + libm::log(z) - cosine_integral(z)
 }
 
 /// `Ci(z) = −Re E₁(iz)`, z beyond the series.

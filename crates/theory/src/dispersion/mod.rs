@@ -216,7 +216,7 @@ impl<const D: usize> Crystal<D> {
 /// The frequency that velocity Verlet gives a wave of frequency ω: `ω_Δt = (2/Δt) asin(ωΔt/2)`; `None` if unstable.
 pub fn verlet_frequency(omega: f64, dt: f64) -> Option<f64> {
     let x = 0.5 * omega * dt;
-    (x.abs() <= 1.0).then(|| 2.0 / dt * x.asin())
+    (x.abs() <= 1.0).then(|| 2.0 / dt * libm::asin(x))
 }
 
 #[cfg(test)]

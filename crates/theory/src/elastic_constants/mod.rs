@@ -3,7 +3,7 @@
 //!
 //! With `r² = ξ·(1 + 2E)·ξ` and rigid sites
 //! `C_ijkl = (1/2V) Σ_bonds (stiffness − tension)/r² ξ_i ξ_j ξ_k ξ_l + (1/V) Σ_s F″_s (Σ share ξ_i ξ_j/r)(Σ share ξ_k ξ_l/r)`.
-//! Spans of fans add `(1/V) Σ_pq k_pq y_i y_j y_k y_l`, the first two of p and the others of q: d²/2 is linear in E.
+//! Spans of many-body potentials add `(1/V) Σ_pq k_pq y_i y_j y_k y_l`, the first two of p and the others of q: d²/2 is linear in E.
 //! Sites that are not equivalent move along: `C −= Λᵀ Φ⁻¹ Λ / V`, Φ the force constants of sites against each other, Λ the
 //! forces on sites per strain.
 //!

@@ -43,7 +43,7 @@ impl Field for f64 {
         (*self >= 0.0).then(|| self.sqrt())
     }
     fn exponential(&self) -> Option<f64> {
-        Some(self.exp())
+        Some(libm::exp(*self))
     }
     fn value(&self) -> f64 {
         *self

@@ -27,14 +27,14 @@ pub fn fractions(spec: &Spec, terms: usize) -> Option<Vec<Q>> {
     let weight = |j: i64| match (&material.law, spec.bonds.influence) {
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Constant) => Some(Q::ratio(1, 1)),
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Inverse) => Some(Q::ratio(1, j)),
-        (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Conical) => Some(Q::ratio(m - j, m)),
+        (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Linear) => Some(Q::ratio(m - j, m)),
         (
             LawSpec::Pmb(_) | LawSpec::Springs(_),
             Influence::Gaussian | Influence::CubicSpline | Influence::Formula(_),
         )
         | (
             LawSpec::Lps(_)
-            | LawSpec::LpsAsTyped { .. }
+            | LawSpec::Lps3d { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Atoms(_)
             | LawSpec::Micromoduli(_)
@@ -45,7 +45,7 @@ pub fn fractions(spec: &Spec, terms: usize) -> Option<Vec<Q>> {
     let part = |j: i64| {
         Q::ratio(
             1,
-            if spec.bonds.volume_scaling && j == m {
+            if spec.bonds.partial_volume_correction && j == m {
                 2
             } else {
                 1

@@ -321,7 +321,7 @@ pub fn of_spec(
             Ok(self.stretches.iter().filter_map(at).collect())
         }
     }
-    if upscale::has_basis_or_fans(spec) {
+    if upscale::has_basis_or_many_body(spec) {
         return Ok(vec![]);
     }
     let (kind, spacing) = upscale::lattice(spec)?;

@@ -7,19 +7,19 @@ use crate::crystal::arrangement::arrangement;
 use crate::crystal::atoms::{Cell, Near, neighbours};
 use crate::crystal::cells::determinant;
 use crate::crystal::{Atom, Crystal, CrystalError, Reference, kinds};
-use peridyne::law::fan;
+use peridyne::law::many_body;
 use peridyne::law::potential::mixture::Given;
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::spec::{FamilyChoice, Horizon, LawSpec, Spec};
 
 /// What is at a horizon is within it.
 const INCLUSIVE: f64 = 1.0 + 1e-9;
 
 /// Has it several kinds of atoms, or terms of more than two? Theory knows such potentials by names.
-pub fn has_basis_or_fans(spec: &Spec) -> bool {
+pub fn has_basis_or_many_body(spec: &Spec) -> bool {
     let several = spec.materials.len() > 1 || !spec.interactions.potentials.is_empty();
     spec.potential()
-        .is_some_and(|p| several || fan::is_known(&p.name))
+        .is_some_and(|p| several || many_body::is_known(&p.name))
 }
 
 /// A cell of atoms and what they say to each other.
@@ -41,7 +41,7 @@ impl<const D: usize> Atoms<D> {
             kind: *kind,
             mass: spec.materials[*kind].density * volume,
         };
-        let given = Shelf::standard().given(spec);
+        let given = Registry::standard().given(spec);
         let given = given.map_err(|e| CrystalError::Potential(e.message.into()))?;
         let atoms: Vec<Atom<D>> = found.sites.iter().map(atom).collect();
         let fixed = match current(spec) {

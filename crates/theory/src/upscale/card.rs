@@ -1,6 +1,6 @@
 //! The error card of an upscaling: what both models say of the same crystal, side by side.
 
-use super::atoms::{Atoms, has_basis_or_fans};
+use super::atoms::{Atoms, has_basis_or_many_body};
 use super::crystal::crystal;
 use super::error::UpscaleError;
 use super::kernels::Kernel;
@@ -195,9 +195,9 @@ fn card_in<const D: usize>(
     if a.basis.len() > 1 {
         notes.push(optical(&a, factor));
     }
-    let current = has_basis_or_fans(fine) && super::reference::current(fine);
+    let current = has_basis_or_many_body(fine) && super::reference::current(fine);
     if current {
-        notes.push("The coarse atoms feel those that are near now, as the fine ones do: the coarse crystal is the fine one, larger and heavier; defects, surfaces and thermal motion of it are not those of the fine one.".into());
+        notes.push("The coarse atoms interact with their current neighbours, as the fine ones do: the coarse crystal is the fine one, larger and heavier; defects, surfaces and thermal motion of it are not those of the fine one.".into());
     }
     if rule == Rule::Shells && a_reference.is_some() && !current {
         notes.push("Neighbours are those of the reference: beyond a compression of a tenth some that would enter are missing; bonds never change partners (no diffusion, melting, slip).".into());
@@ -354,7 +354,7 @@ type Strained<'a> = Box<dyn Fn([[f64; 3]; 3]) -> f64 + 'a>;
 
 /// Of a perfect crystal, its sites carried along; where neighbours are fixed, of a periodic block.
 fn strained(spec: &Spec) -> Option<Strained<'_>> {
-    if has_basis_or_fans(spec) {
+    if has_basis_or_many_body(spec) {
         return match spec.space.dimension {
             1 => cell_under_strain::<1>(spec),
             2 => cell_under_strain::<2>(spec),
@@ -381,7 +381,7 @@ fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<Message>) -> Vec<EnergyR
     let d = fine.space.dimension;
     let [Some(a), Some(b)] = [fine, coarse].map(strained) else {
         notes.push(
-            "Energies under strain are left out: no periodic block holds the neighbours.".into(),
+            "Energies under strain are missing: no periodic block holds the neighbours.".into(),
         );
         return vec![];
     };
@@ -463,7 +463,7 @@ fn block(spec: &Spec) -> Option<Spec> {
     block.space.section = spec.space.section;
     block.bonds.horizon = horizon;
     block.bonds.influence = spec.bonds.influence;
-    block.bonds.volume_scaling = spec.bonds.volume_scaling;
+    block.bonds.partial_volume_correction = spec.bonds.partial_volume_correction;
     block.bonds.calibration = spec.bonds.calibration;
     block.bonds.family = FamilyChoice::Stencil;
     block.run.schedule.time_step = TimeStep::Fixed(1.0);

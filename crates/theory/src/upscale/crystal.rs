@@ -1,7 +1,7 @@
 //! The crystal of a model.
 
 use super::atoms::Atoms;
-use super::atoms::has_basis_or_fans;
+use super::atoms::has_basis_or_many_body;
 use super::error::UpscaleError;
 use super::reference::{lattice, reach};
 use crate::crystal::{Crystal, CrystalError, LatticeSolid, Reach, Reference};
@@ -30,7 +30,7 @@ pub fn crystal<const D: usize>(
     let (kind, spacing) = lattice(spec)?;
     let density = spec.materials[0].density;
     match spec.potential() {
-        Some(_) if has_basis_or_fans(spec) => {
+        Some(_) if has_basis_or_many_body(spec) => {
             let (crystal, reference) = Atoms::<D>::of(spec)?.crystal()?;
             Ok((crystal, Some(reference)))
         }
@@ -51,7 +51,7 @@ pub fn crystal<const D: usize>(
             solid.section = spec.space.section;
             solid.density = density;
             solid.influence = spec.bonds.influence;
-            solid.volume_scaling = spec.bonds.volume_scaling;
+            solid.partial_volume_correction = spec.bonds.partial_volume_correction;
             let crystal = solid.of_law(
                 &spec.materials[0].law,
                 spec.space.plane,

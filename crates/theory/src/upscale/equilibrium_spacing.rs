@@ -1,6 +1,6 @@
 //! Where a crystal rests: the lattice spacing without pressure.
 
-use super::atoms::{Atoms, has_basis_or_fans};
+use super::atoms::{Atoms, has_basis_or_many_body};
 use super::reference::{lattice, reach};
 use crate::crystal::potential::rest;
 use crate::crystal::{Crystal, Reach};
@@ -11,7 +11,7 @@ use peridyne::spec::Spec;
 /// The spacing at which the spec's lattice of atoms has no pressure and resists compression, of several that of the least
 /// energy, or that which an embedded-atom model in closed form is made for; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
 pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
-    if has_basis_or_fans(spec) {
+    if has_basis_or_many_body(spec) {
         return match spec.space.dimension {
             1 => of_kinds::<1>(spec),
             2 => of_kinds::<2>(spec),
@@ -54,7 +54,7 @@ fn at<const D: usize, P: Potential>(
     }
 }
 
-/// The same of several kinds of atoms, and of fans.
+/// The same of several kinds of atoms, and of many-body potentials.
 fn of_kinds<const D: usize>(spec: &Spec) -> Option<f64> {
     let (kind, spacing) = lattice(spec).ok()?;
     let atoms = Atoms::<D>::of(spec).ok()?;
@@ -68,7 +68,7 @@ fn of_kinds<const D: usize>(spec: &Spec) -> Option<f64> {
 const STEP: f64 = 0.98;
 const FROM: f64 = 2.5;
 const TO: f64 = 0.3;
-/// Of fans, and of kinds: cut-offs are short there, and nearer than a third of them nothing rests.
+/// Of many-body potentials, and of kinds: cut-offs are short there, and nearer than a third of them nothing rests.
 const INNER: f64 = 0.6;
 
 fn best(

@@ -9,7 +9,9 @@ use peridyne::quantity::{Dimension, Message};
 pub enum UpscaleError {
     #[error("the factor is {0}: expected a whole number of 2 or more")]
     Factor(u32),
-    #[error("only a lattice body can be upscaled: its coarse points are lattice points, too")]
+    #[error(
+        "only a lattice body can be upscaled: its coarse points are lattice points, too (a crystal of any calculator of ASE: peridyne.ase.upscale)"
+    )]
     NoLattice,
     #[error(
         "a body with several materials is not upscaled, unless they are atoms whose kinds repeat from cell to cell: one law has one \

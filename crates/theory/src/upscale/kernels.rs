@@ -52,7 +52,7 @@ pub fn kernels(fine: &Spec, coarse: &Spec) -> Result<Vec<Kernel>, UpscaleError> 
             LawSpec::Pmb(_)
             | LawSpec::Springs(_)
             | LawSpec::Lps(_)
-            | LawSpec::LpsAsTyped { .. }
+            | LawSpec::Lps3d { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Named(_) => {}
         }

@@ -6,7 +6,7 @@
 //! | a potential whose form allows it (Lennard-Jones) on fixed neighbours, without cut-off | σ̄, ε̄, reach | M = N/n (seleson2009 (5.3)) |
 //! | any other potential | energy density under every homogeneous strain, number of shells | lengths times n, energies times n^D (seleson2014 (3.3)) |
 //!
-//! Atoms of several kinds in a cell, and potentials of fans, keep their shells too, on current neighbours: the coarse crystal is the fine one
+//! Atoms of several kinds in a cell, and many-body potentials, keep their shells too, on current neighbours: the coarse crystal is the fine one
 //! n times as large with masses n^D times as large. Mass density, pressure, energy density and elastic constants, sites relaxed, are the
 //! same, and so are long acoustic waves; at the wave vector k/n it has 1/n of all frequencies at k. Optical waves are lost: those of the
 //! coarse crystal lie at 1/n of theirs, and stand for nothing.
@@ -26,7 +26,7 @@ mod reference;
 mod scale;
 mod verdict;
 
-pub use atoms::has_basis_or_fans;
+pub use atoms::has_basis_or_many_body;
 pub use crystal::crystal;
 pub use equilibrium_spacing::equilibrium_spacing;
 pub use error::UpscaleError;

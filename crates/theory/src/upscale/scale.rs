@@ -1,6 +1,6 @@
 //! Coarse specifications of fine ones.
 
-use super::atoms::has_basis_or_fans;
+use super::atoms::has_basis_or_many_body;
 use super::crystal::crystal;
 use super::error::UpscaleError;
 use super::reference::{REACH, current, lattice};
@@ -115,7 +115,7 @@ pub fn upscale_keeping(
     };
     let shells = keep == Some(Keep::Shells);
     let rule = match &spec.materials[0].law {
-        LawSpec::Atoms(_) if has_basis_or_fans(spec) => {
+        LawSpec::Atoms(_) if has_basis_or_many_body(spec) => {
             if keep == Some(Keep::Reach) {
                 return Err(UpscaleError::NoReach);
             }

@@ -40,5 +40,5 @@ pub fn shock_time(flux: &Flux, u: &[f64], spacing: f64, periodic: bool) -> Optio
 /// `(l + r)/2 − (l − r)/2 tanh((l − r) x/4ε)`; it moves at `(l + r)/2`.
 pub fn viscous_shock(left: f64, right: f64, viscosity: f64, x: f64) -> f64 {
     let (mean, half) = (0.5 * (left + right), 0.5 * (left - right));
-    mean - half * (half * x / (2.0 * viscosity)).tanh()
+    mean - half * libm::tanh(half * x / (2.0 * viscosity))
 }

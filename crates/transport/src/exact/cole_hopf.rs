@@ -92,7 +92,8 @@ impl<G: Fn(f64) -> f64> ColeHopf<G> {
             let width = width.max(f64::MIN_POSITIVE);
             for k in 0..POINTS {
                 let y = low + width * k as f64;
-                let weight = width * (-(phase(y) - least).max(0.0) / (2.0 * self.viscosity)).exp();
+                let weight =
+                    width * libm::exp(-(phase(y) - least).max(0.0) / (2.0 * self.viscosity));
                 above += weight * (x - y) / t;
                 below += weight;
             }

@@ -20,9 +20,9 @@ impl Bump {
         match self {
             _ if s >= 1.0 => 0.0,
             Bump::Hat => 1.0 - s,
-            Bump::Cosine => 0.5 * (1.0 + (std::f64::consts::PI * s).cos()),
+            Bump::Cosine => 0.5 * (1.0 + libm::cos(std::f64::consts::PI * s)),
             Bump::Polynomial(p) => q.powi(p as i32),
-            Bump::Smooth => (-1.0 / q).exp(),
+            Bump::Smooth => libm::exp(-1.0 / q),
         }
     }
 
@@ -33,10 +33,10 @@ impl Bump {
         match self {
             _ if s > 1.0 => 0.0,
             Bump::Hat => -1.0,
-            Bump::Cosine => -0.5 * pi * (pi * s).sin(),
+            Bump::Cosine => -0.5 * pi * libm::sin(pi * s),
             Bump::Polynomial(p) => -2.0 * f64::from(p) * s * q.powi(p as i32 - 1),
             Bump::Smooth if q <= 0.0 => 0.0,
-            Bump::Smooth => -2.0 * s / (q * q) * (-1.0 / q).exp(),
+            Bump::Smooth => -2.0 * s / (q * q) * libm::exp(-1.0 / q),
         }
     }
 
@@ -47,16 +47,16 @@ impl Bump {
         match self {
             _ if s > 1.0 => 0.0,
             Bump::Hat => 0.0,
-            Bump::Cosine => -0.5 * pi * pi * (pi * s).cos(),
+            Bump::Cosine => -0.5 * pi * pi * libm::cos(pi * s),
             Bump::Polynomial(1) => -2.0,
             Bump::Polynomial(p) => {
                 let p = f64::from(p);
-                -2.0 * p * q.powf(p - 2.0) * (q - 2.0 * (p - 1.0) * s * s)
+                -2.0 * p * libm::pow(q, p - 2.0) * (q - 2.0 * (p - 1.0) * s * s)
             }
             Bump::Smooth if q <= 0.0 => 0.0,
             Bump::Smooth => {
                 let (q2, s2) = (q * q, s * s);
-                (-1.0 / q).exp() * (4.0 * s2 / (q2 * q2) - 2.0 / q2 - 8.0 * s2 / (q2 * q))
+                libm::exp(-1.0 / q) * (4.0 * s2 / (q2 * q2) - 2.0 / q2 - 8.0 * s2 / (q2 * q))
             }
         }
     }
@@ -74,7 +74,7 @@ impl Bump {
     /// integral of the Bessel function `J_{p+1/2}`), which loses digits above κ = 20.
     pub fn transform(self, k: f64) -> Option<f64> {
         let pi = std::f64::consts::PI;
-        let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
+        let sinc = |x: f64| if x == 0.0 { 1.0 } else { libm::sin(x) / x };
         match self {
             Bump::Hat => Some(sinc(0.5 * k).powi(2)),
             Bump::Cosine if (k - pi).abs() < 1e-9 => Some(0.5),

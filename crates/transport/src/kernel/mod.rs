@@ -373,9 +373,9 @@ impl Kernel {
     pub fn symbol(&self, k: f64) -> f64 {
         let panels = 16 + (k.abs() * self.horizon / 4.0) as usize;
         self.integral(panels, |z| match self.parity {
-            Parity::Odd => self.value(z) * (k * z).sin(),
+            Parity::Odd => self.value(z) * libm::sin(k * z),
             // cos − 1 without cancellation
-            Parity::Even => -4.0 * self.value(z) * (0.5 * k * z).sin().powi(2),
+            Parity::Even => -4.0 * self.value(z) * libm::sin(0.5 * k * z).powi(2),
         })
     }
 
@@ -383,8 +383,8 @@ impl Kernel {
     pub fn growth(&self, mu: f64) -> f64 {
         let panels = 16 + (mu.abs() * self.horizon / 4.0) as usize;
         self.integral(panels, |z| match self.parity {
-            Parity::Odd => self.value(z) * (mu * z).sinh(),
-            Parity::Even => 4.0 * self.value(z) * (0.5 * mu * z).sinh().powi(2),
+            Parity::Odd => self.value(z) * libm::sinh(mu * z),
+            Parity::Even => 4.0 * self.value(z) * libm::sinh(0.5 * mu * z).powi(2),
         })
     }
 }

@@ -248,7 +248,7 @@ impl Operator {
             .as_ref()
             .is_some_and(|a| matches!(a.flux, Flux::Function(_)));
         // two transforms; a difference, a product and a sum of each pair of bonds
-        let transforms = 2.0 * 2.5 * points.log2().max(1.0);
+        let transforms = 2.0 * 2.5 * libm::log2(points).max(1.0);
         let each = law.bonds().into_iter().zip(law.convolutions());
         let convolutions = each.enumerate().map(|(n, (bonds, number))| {
             let of_pair = if function && n == 0 { 16.0 } else { 3.0 };

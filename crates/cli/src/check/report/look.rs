@@ -34,10 +34,10 @@ fn stiffness(found: &Findings) -> Option<String> {
     let patch = found.patch.as_ref()?;
     let (n, m) = { found.materials.iter().enumerate() }.find(|(_, m)| m.nominal.is_some())?;
     let nominal = m.nominal?.young;
-    let real = mean(found, &patch.best(n)?.stiffness).young;
+    let real = mean(found, patch.best(n)?.1).young;
     real.is_finite().then(|| {
         format!(
-            "stiffness: `{}` has a Young's modulus of {}, {} beside what was asked for",
+            "stiffness: `{}` has a Young's modulus of {}, {} beside the target",
             m.name,
             found.units.show(real, Dim::PRESSURE),
             percent(real, nominal)

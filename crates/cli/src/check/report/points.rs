@@ -3,7 +3,7 @@
 use super::row::{AXES, row};
 use crate::check::Findings;
 use crate::numbers::whole;
-use peridyne_io::deck::Dim;
+use peridyne_io::deck::{Dim, each_once};
 use peridyne_theory::patch_test::{Class, Place};
 use std::fmt::Write;
 
@@ -42,8 +42,8 @@ pub(super) fn points(found: &Findings) -> String {
         &mut out,
         "bonds",
         format!(
-            "{} directed, as a {}",
-            whole(info.directed_bonds),
+            "{}, as a {}",
+            whole(each_once(info.directed_bonds)),
             info.family_kind
         ),
     );
@@ -83,7 +83,7 @@ pub(super) fn points(found: &Findings) -> String {
         );
     }
     let near = match info.near_horizon {
-        0 => "none".to_string(),
+        0 => "no bond within round-off of it".to_string(),
         n => format!("{} bonds within round-off of it", whole(n)),
     };
     if !atoms {
@@ -93,7 +93,7 @@ pub(super) fn points(found: &Findings) -> String {
         row(
             &mut out,
             "pre-cracks cut",
-            format!("{} directed bonds", whole(info.cut)),
+            format!("{} bonds", whole(each_once(info.cut))),
         );
     }
     out
@@ -107,7 +107,7 @@ pub(super) fn families(found: &Findings) -> String {
     let d = found.info.dimension;
     let total = found.info.points.max(1) as f64;
     let mut out = String::from(
-        "Families (a place is told by the part of a full family that a point has)\n  place             points   share  mean size  of a full one\n",
+        "Families (by the part of a full family that a point has)\n  place             points   share  mean size  of a full one\n",
     );
     for place in Place::ALL {
         let classes: Vec<&Class> = patch.classes.iter().filter(|c| c.place == place).collect();

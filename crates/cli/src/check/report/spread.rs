@@ -3,13 +3,13 @@
 use super::row::row;
 use crate::check::Findings;
 use crate::numbers::whole;
-use peridyne::spec::TransferMethod;
+use peridyne::spec::DiffusionMethod;
 use peridyne_io::deck::Dim;
 
 pub(super) fn spread(found: &Findings) -> String {
     let (info, units) = (&found.info, found.units);
     let mut out = String::new();
-    for t in &info.transfers {
+    for t in &info.diffusions {
         if out.is_empty() {
             out.push_str("Heat and species\n");
         }
@@ -31,7 +31,7 @@ pub(super) fn spread(found: &Findings) -> String {
             format!("in about {} (extent² / diffusivity)", time(t.spread)),
         );
         let steps = match t.method {
-            TransferMethod::Explicit { safety } => {
+            DiffusionMethod::Explicit { safety } => {
                 let parts = (info.time_step / (safety * t.stable_step)).ceil().max(1.0);
                 format!(
                     "explicit, {} of the run in {} of at most {safety} of the stable {}",
@@ -43,12 +43,12 @@ pub(super) fn spread(found: &Findings) -> String {
                     time(t.stable_step)
                 )
             }
-            TransferMethod::Implicit { .. } => format!(
+            DiffusionMethod::Implicit { .. } => format!(
                 "implicit, {} times the stable explicit {}",
                 peridyne_io::deck::rounded(info.time_step / t.stable_step, 3),
                 time(t.stable_step)
             ),
-            TransferMethod::Steady { .. } => "steady after every step".into(),
+            DiffusionMethod::Steady { .. } => "steady after every step".into(),
         };
         row(&mut out, "its steps", steps);
     }

@@ -5,8 +5,8 @@ use crate::check::{Findings, Material, directions, mean};
 use crate::numbers::digits;
 use peridyne::spec::{LawSpec, Moduli, PmbStiffness};
 use peridyne_io::deck::{Dim, UnitSystem};
-use peridyne_theory::patch_test::{Class, PatchTest};
-use peridyne_theory::voigt::components;
+use peridyne_theory::patch_test::{PatchTest, Place};
+use peridyne_theory::voigt::{Stiffness, components};
 use std::fmt::Write;
 
 pub(super) fn stiffness(found: &Findings) -> String {
@@ -15,8 +15,12 @@ pub(super) fn stiffness(found: &Findings) -> String {
             "Stiffness\n  not measured: a patch test of this body would take minutes; check a smaller body of the same lattice and horizon\n",
         );
     };
+    let by_waves = patch.classes.iter().any(|c| c.long_waves);
     let mut out = String::from(match found.spec.potential() {
-        None => "Stiffness that this body really has, by place (patch test)\n",
+        None if by_waves => {
+            "Effective moduli by long waves, as the bonds of this linear body are not invariant under rotation\n"
+        }
+        None => "Effective moduli of this body, by place (patch test)\n",
         Some(_) => {
             "Stiffness of the state that the run starts from, stress against strain, all atoms carried along, by place\n"
         }
@@ -75,23 +79,35 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
         (text + more).trim_end().to_string()
     };
     if let Some(nominal) = m.nominal {
-        let _ = writeln!(out, "{}", line("asked", nominal, None, ""));
+        let _ = writeln!(out, "{}", line("target", nominal, None, ""));
     }
+    let mut without = vec![];
     for class in patch.classes.iter().filter(|c| c.material == n) {
-        let real = mean(found, &class.stiffness);
-        let more = class.stiffness.anisotropy().map_or(String::new(), |a| {
+        let Some(stiffness) = &class.stiffness else {
+            without.push(class.place.name(d));
+            continue;
+        };
+        let real = mean(found, stiffness);
+        let more = stiffness.anisotropy().map_or(String::new(), |a| {
             let universal = a.universal.map_or("–".into(), |u| format!("{u:.3}"));
             format!("{:>8.3}{universal:>8}", a.zener)
         });
         let text = line(class.place.name(d), real, m.nominal, &more);
         let _ = writeln!(out, "{text}");
     }
+    if !without.is_empty() {
+        let _ = writeln!(
+            out,
+            "  none of their own, as long waves are of the bulk: {}",
+            without.join(", ")
+        );
+    }
     let number = |value: f64| digits(value / scale.factor);
     for line in directions::lines(found, patch, n, m, &number) {
         let _ = writeln!(out, "{line}");
     }
-    if let Some(class) = patch.best(n) {
-        tensor(out, class, &scale);
+    if let Some((class, stiffness)) = patch.best(n) {
+        tensor(out, class.place, stiffness, &scale);
     }
     if matches!(
         found.spec.materials[n].law,
@@ -99,7 +115,7 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
     ) {
         let _ = writeln!(
             out,
-            "  asked: what the micromodulus {} means in a full {}",
+            "  target: what the micromodulus {} means in a full {}",
             units.show(
                 found.info.micromodulus.get(n).copied().unwrap_or(f64::NAN),
                 Dim::MICROMODULUS
@@ -110,8 +126,8 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
 }
 
 /// Stiffness in Voigt's notation.
-fn tensor(out: &mut String, class: &Class, scale: &Scale) {
-    let d = class.stiffness.dimension;
+fn tensor(out: &mut String, place: Place, stiffness: &Stiffness, scale: &Scale) {
+    let d = stiffness.dimension;
     if d == 1 {
         return;
     }
@@ -124,7 +140,7 @@ fn tensor(out: &mut String, class: &Class, scale: &Scale) {
     let _ = writeln!(
         out,
         "  C of the {}{}",
-        class.place.name(d),
+        place.name(d),
         if scale.unit.is_empty() {
             String::new()
         } else {
@@ -137,13 +153,13 @@ fn tensor(out: &mut String, class: &Class, scale: &Scale) {
         names.iter().map(|n| format!("{n:>10}")).collect::<String>()
     );
     // as many decimals as the largest entry has
-    let largest = (0..n).map(|i| class.stiffness.c[i][i]).fold(0.0, f64::max);
+    let largest = (0..n).map(|i| stiffness.c[i][i]).fold(0.0, f64::max);
     let whole = digits(largest / scale.factor);
     let decimals = whole.split_once('.').map_or(0, |(_, d)| d.len());
     for (i, name) in names.iter().enumerate() {
         let cells: String = (0..=i)
             .map(|j| {
-                let c = class.stiffness.c[i][j];
+                let c = stiffness.c[i][j];
                 if c.abs() < 1e-6 * largest {
                     format!("{:>10}", "0")
                 } else if whole.contains('e') {
@@ -175,7 +191,7 @@ impl Scale {
                     .patch
                     .iter()
                     .flat_map(|p| &p.classes)
-                    .map(|c| c.stiffness.c[0][0])
+                    .filter_map(|c| Some(c.stiffness.as_ref()?.c[0][0]))
                     .fold(0.0, f64::max);
                 let (factor, unit) = match largest {
                     p if p >= 1e9 => (1e9, "GPa"),

@@ -10,10 +10,10 @@ use crate::state::{Archive, Owner, words};
 pub(in crate::run) struct Past {
     pub dissipated: f64,
     pub conditions: f64,
-    pub indenters: f64,
+    pub rigid_bodies: f64,
 }
 
-words!([] Past { dissipated: f64, conditions: f64, indenters: f64 });
+words!([] Past { dissipated: f64, conditions: f64, rigid_bodies: f64 });
 
 #[derive(Debug, Clone, Default)]
 pub(in crate::run) struct Accounts {
@@ -50,8 +50,8 @@ impl Accounts {
         self.swept.dissipated = Exact::ZERO;
         self.past = Past {
             dissipated: now.dissipated,
-            conditions: now.work_conditions,
-            indenters: now.work_indenter,
+            conditions: now.work_boundary_conditions,
+            rigid_bodies: now.work_rigid_bodies,
         };
     }
 
@@ -62,8 +62,8 @@ impl Accounts {
             made: self.released.made,
             dissipated: self.past.dissipated,
             numerical: self.numerical,
-            work_conditions: self.past.conditions,
-            work_indenter: self.past.indenters,
+            work_boundary_conditions: self.past.conditions,
+            work_rigid_bodies: self.past.rigid_bodies,
             initial: self.initial.unwrap_or(0.0),
             ..Ledger::default()
         }

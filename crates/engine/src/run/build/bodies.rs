@@ -1,19 +1,19 @@
 //! Bodies of a spec, before they have bonds.
 
 use crate::body::Body;
-use crate::constitutive::{AnyPotentials, Shelf};
+use crate::constitutive::{AnyPotentials, Registry};
 use crate::error::BuildError;
 use crate::family::nodes::Nodes;
 use crate::interaction::longest_term;
 use crate::quantity::Warnings;
 use crate::run::agreed::agreed;
 use crate::run::faces::Faces;
-use crate::run::feasible::enough_memory;
 use crate::run::names::Names;
-use crate::run::parts::{Part, parts};
+use crate::run::parts::{Part, halo, horizons, parts};
 use crate::run::reference::{cell, current_neighbours};
+use crate::run::sanity::enough_memory;
 use crate::run::sets::{assign_materials, sets};
-use crate::run::{atoms, clouds, gaps, interfaces, meant, own_horizons, surface, traits};
+use crate::run::{atoms, clouds, gaps, interfaces, lints, surface, traits, variable_horizons};
 use crate::spec::{BodySpec, FamilyChoice, Horizon, PieceSpec, Spec};
 use peridyne_comm::Comm;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ pub(super) struct Bodies<'a, const D: usize> {
 impl<'a, const D: usize> Bodies<'a, D> {
     pub fn new(
         spec: &'a Spec,
-        shelf: &Shelf,
+        registry: &Registry,
         potentials: Option<&AnyPotentials>,
         ranks: Option<&Arc<Comm>>,
         warnings: &mut Warnings,
@@ -65,24 +65,24 @@ impl<'a, const D: usize> Bodies<'a, D> {
         let smoothed = match &spec.bonds.smooth {
             None => None,
             Some(smooth) => {
-                let (nodes, carried) = Nodes::new(&body, smooth)?;
+                let (nodes, kinematic) = Nodes::new(&body, smooth)?;
                 let mut atoms = std::mem::replace(&mut body, nodes);
                 atoms.set_density(spec.materials[0].density);
                 clouds::own_densities(spec, &mut atoms);
-                Some((atoms, carried))
+                Some((atoms, kinematic))
             }
         };
-        let carriers = match spec.micromoduli() {
-            Some(linear) => (**linear).clone().of::<D>().and_then(|l| l.carriers),
+        let load_map = match spec.micromoduli() {
+            Some(linear) => (**linear).clone().of::<D>().and_then(|l| l.load_map),
             None => None,
         };
-        let (sets, carrier_sets) = sets(spec, &body, carriers.as_ref())?;
+        let (sets, loaded_sets) = sets(spec, &body, load_map.as_ref())?;
         assign_materials(spec, &mut body, &sets)?;
         match &smoothed {
             None => clouds::own_densities(spec, &mut body),
-            Some((atoms, carried)) => carried.give_masses(atoms, &mut body),
+            Some((atoms, kinematic)) => kinematic.give_masses(atoms, &mut body),
         }
-        complete(&mut parts, &mut body, spec.body.pieces(), shelf)?;
+        complete(&mut parts, &mut body, spec.body.pieces(), registry)?;
         if !body.horizons().is_empty() {
             let own = body.slots().iter().map(|s| body.horizons()[*s as usize]);
             least_horizon = body.least(own.fold(least_horizon, f64::min));
@@ -97,23 +97,26 @@ impl<'a, const D: usize> Bodies<'a, D> {
         }
         let mut names = Names {
             sets,
-            carriers,
-            carrier_sets,
-            faces: Faces::new(spec)?,
-            shelf: shelf.clone(),
+            load_map,
+            loaded_sets,
+            faces: Faces::new(spec),
+            registry: registry.clone(),
         };
         let mut whole_nodes = None;
         let nearest = gaps::between(&body, reach(spec, &parts, &body, horizon));
         if let Some(ranks) = ranks {
             let ended = surface::ended(spec, &body);
             let whole = ended.as_ref().unwrap_or(&body);
-            warnings.extend(meant::all(spec, whole, &names.sets)?);
+            warnings.extend(lints::all(spec, whole, &names.sets)?);
             names.faces.find(spec, whole, &names.sets)?;
             if body.subdomain().is_none() {
                 // all ranks know all points until here, and find the same mistakes
                 whole_nodes = smoothed.is_some().then(|| body.clone());
                 let beside = interfaces::ends(spec, &body)?;
-                body = body.subdomain_beside(ranks, halo(spec, &body, horizon), &beside);
+                let bonded = spec.interactions.bonded.as_ref();
+                let term = || bonded.map_or(0.0, |bonded| longest_term(&body, bonded));
+                let halo = halo(spec, body.spacing(), horizon, term);
+                body = body.subdomain_beside(ranks, halo, &beside);
                 cut(&mut names, &body);
             }
             agreed(&body, enough(spec, &parts, &body))?;
@@ -139,22 +142,6 @@ fn reach<const D: usize>(spec: &Spec, parts: &[Part], body: &Body<D>, horizon: f
     let own = parts.iter().zip(body.pieces());
     let ranges = own.map(|(part, p)| free * cell(&part.spec, &p.body));
     ranges.fold(horizon, f64::max)
-}
-
-/// How far the points are of which a part of a body has copies (length). Atoms find who is near by themselves, but for those that they are bonded to.
-fn halo<const D: usize>(spec: &Spec, body: &Body<D>, horizon: f64) -> f64 {
-    if let Some(smooth) = &spec.bonds.smooth {
-        // nodes feel each other through two atoms of a family, each within reach of one of them
-        return horizon + 2.0 * smooth.reach + body.spacing();
-    }
-    let given = spec.micromoduli().map_or(0.0, |l| 1.001 * l.longest());
-    if !current_neighbours(spec) {
-        // volumes of partners fade over a spacing at the horizon
-        return given.max(horizon + body.spacing());
-    }
-    let bonded = spec.interactions.bonded.as_ref();
-    let term = bonded.map_or(0.0, |bonded| longest_term(body, bonded));
-    term.max(body.spacing())
 }
 
 /// What is left of the names in this part of a body.
@@ -183,22 +170,22 @@ fn complete<const D: usize>(
     parts: &mut [Part],
     body: &mut Body<D>,
     named: &[PieceSpec],
-    shelf: &Shelf,
+    registry: &Registry,
 ) -> Result<(), BuildError> {
     if named.is_empty() {
         let part = &parts[0];
-        return own_horizons::give(&part.spec, body, part.horizon);
+        return variable_horizons::give(&part.spec, body, part.horizon);
     }
     for (n, part) in parts.iter_mut().enumerate() {
         let mut own = body.pieces()[n].body.clone();
         part.choose(body, n, &mut own);
-        let made = traits::agree(&part.spec, shelf)
-            .and_then(|()| own_horizons::give(&part.spec, &mut own, part.horizon));
+        let made = traits::agree(&part.spec, registry)
+            .and_then(|()| variable_horizons::give(&part.spec, &mut own, part.horizon));
         made.map_err(|e| {
-            let own = named[n].own_horizon.is_some() && e.path == "own_horizon";
+            let own = named[n].variable_horizon.is_some() && e.path == "variable_horizon";
             let e = part.named(&named[n], e);
             match own {
-                true => e.at(format!("body[{n}].own_horizon")),
+                true => e.at(format!("body[{n}].variable_horizon")),
                 false => e,
             }
         })?;
@@ -206,11 +193,4 @@ fn complete<const D: usize>(
     }
     body.join_horizons(&parts.iter().map(|p| p.horizon).collect::<Vec<_>>());
     Ok(())
-}
-
-/// The longest and the shortest of bodies that have bonds.
-fn horizons(parts: &[Part]) -> [f64; 2] {
-    let bonded = || parts.iter().filter(|p| p.bonded).map(|p| p.horizon);
-    let longest = bonded().reduce(f64::max).unwrap_or(parts[0].horizon);
-    [longest, bonded().fold(longest, f64::min)]
 }

@@ -10,7 +10,7 @@ use crate::interaction::{Replicated, Smoothed};
 use crate::message;
 use crate::quantity::{Dimension, Warnings, rounded};
 use crate::run::bind::bind;
-use crate::run::{bonds, gaps, meant, precracks};
+use crate::run::{bonds, gaps, lints, precracks};
 use crate::spec::Spec;
 use crate::statics::SYMMETRIC;
 
@@ -35,15 +35,16 @@ impl<const D: usize> Bonds<D> {
         bodies: &mut Bodies<'_, D>,
         warnings: &mut Warnings,
     ) -> Result<Self, BuildError> {
-        let (shelf, parts, body) = (&bodies.names.shelf, &mut bodies.parts, &mut bodies.body);
+        let (registry, parts, body) = (&bodies.names.registry, &mut bodies.parts, &mut bodies.body);
         let cell_volume = body.volume().uniform();
         let (constitutive, mut interaction) = match bodies.smoothed.take() {
-            None => bind(spec, parts, body, shelf, simd, warnings)?,
-            Some((mut atoms, carried)) => {
-                let (constitutive, inner) = bind(spec, parts, &mut atoms, shelf, simd, warnings)?;
+            None => bind(spec, parts, body, registry, simd, warnings)?,
+            Some((mut atoms, kinematic)) => {
+                let (constitutive, inner) =
+                    bind(spec, parts, &mut atoms, registry, simd, warnings)?;
                 let nodes = bodies.whole_nodes.take();
                 let of = nodes.as_ref().unwrap_or(body);
-                let made = Box::new(Smoothed::new(of, atoms, inner, carried, breaks(spec)));
+                let made = Box::new(Smoothed::new(of, atoms, inner, kinematic, breaks(spec)));
                 let made: Box<dyn Interaction<D>> = match nodes {
                     None => made,
                     Some(nodes) => Box::new(Replicated::new(body, nodes, made)),
@@ -60,13 +61,12 @@ impl<const D: usize> Bonds<D> {
             _ => bodies.ends,
         };
         if near_horizon > 0 {
-            let what = if bodies.ends > 0 {
-                "bonds of the stencil"
-            } else {
-                "directed bonds"
+            let (count, what) = match bodies.ends {
+                0 => (near_horizon.div_ceil(2), "bonds"),
+                ends => (ends, "bonds of the stencil"),
             };
             warnings.push(message![
-                format!("{near_horizon} {what} end within round-off of the horizon "),
+                format!("{count} {what} end within round-off of the horizon "),
                 Dimension::LENGTH.of(bodies.horizon),
                 ": a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances",
             ]);
@@ -74,12 +74,12 @@ impl<const D: usize> Bonds<D> {
         let cut = cut(spec, body, interaction.as_mut(), warnings)?;
         if bodies.atoms && breaks(spec) {
             warnings.push(
-                "atoms feel those of their family in the reference whose bonds are whole, and nobody else: parts that come apart and meet again go through each other",
+                "atoms interact with those of their family in the reference whose bonds are intact, and with no others: parts that come apart and meet again go through each other",
             );
         }
         // of a part it was told before it was cut
         if body.subdomain().is_none() {
-            warnings.extend(meant::all(spec, body, &bodies.names.sets)?);
+            warnings.extend(lints::all(spec, body, &bodies.names.sets)?);
         }
         if { spec.interactions.contact.as_ref() }.is_some_and(|c| c.conductance.is_some())
             && spec.materials.iter().any(|m| m.fracture.is_some())

@@ -3,8 +3,8 @@
 use super::bodies::Bodies;
 use super::bonds::Bonds;
 use crate::body::{view, zeros};
-use crate::condition::applied::AppliedForces;
-use crate::condition::prescribed_motion::PrescribedMotion;
+use crate::boundary_condition::applied::AppliedForces;
+use crate::boundary_condition::prescribed_motion::PrescribedMotion;
 use crate::constitutive::AnyPotentials;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
@@ -17,16 +17,16 @@ use crate::run::clock::Clock;
 use crate::run::clouds::own_velocities;
 use crate::run::conditions::tell_loads;
 use crate::run::contact::Rules;
+use crate::run::diffusions::make::Maker;
+use crate::run::diffusions::state::Diffusions;
 use crate::run::inertia::state::Inertia;
 use crate::run::names::Names;
 use crate::run::observation::View;
+use crate::run::overloaded::overloaded;
 use crate::run::sets::initial;
 use crate::run::system::{Regime, System, Watch};
 use crate::run::time_step::{Limits, time_step};
-use crate::run::torn::torn;
-use crate::run::transfers::make::Maker;
-use crate::run::transfers::state::Transfers;
-use crate::run::{Gap, Info, atoms, contact, gaps, indenters, precracks};
+use crate::run::{Gap, Info, atoms, contact, gaps, precracks, rigid_bodies};
 use crate::spec::{LawSpec, Spec, TimeStep};
 use crate::statics::SYMMETRIC;
 
@@ -98,7 +98,7 @@ impl<const D: usize> Made<D> {
             contact,
             toughness: None,
             healing: None,
-            release: spec.damage.release,
+            breakage: spec.damage.breakage,
             stop: || false,
             constitutive: bonds.constitutive,
             interaction: bonds.interaction,
@@ -111,7 +111,7 @@ impl<const D: usize> Made<D> {
             fault: None,
             stressed: None,
             regime: Regime::default(),
-            transfers: Transfers::default(),
+            diffusions: Diffusions::default(),
         };
         Ok(Made {
             system,
@@ -148,15 +148,15 @@ impl<const D: usize> Made<D> {
         }
         system.info.bytes = system.body.count(system.bytes() as u64) as usize;
         let fields = spec.run.fields.as_deref().unwrap_or_default();
-        View::of(system, &names.shelf, spec.loading.boltzmann).check_fields(fields)
+        View::of(system, &names.registry, spec.loading.boltzmann).check_fields(fields)
     }
 
     /// What acts.
     pub fn act(&mut self, spec: &Spec) -> Result<(), BuildError> {
         let (system, names) = (&mut self.system, &self.names);
-        indenters::check(spec, &system.body)?;
+        rigid_bodies::check(spec, &system.body)?;
         let (conditions, sets) = (&spec.loading.conditions, &names.sets);
-        let acting = names.acting(&system.body, conditions, &spec.loading.indenters, sets)?;
+        let acting = names.acting(&system.body, conditions, &spec.loading.rigid_bodies, sets)?;
         let (forces, constraints) = acting;
         system.set_acting(forces, constraints);
         system.toughness = system.toughness_of(spec, sets)?;
@@ -171,8 +171,8 @@ impl<const D: usize> Made<D> {
         let loads = &mut system.applied.loads;
         let told = tell_loads(&system.body, loads, conditions, end);
         system.info.loads.extend(told);
-        let torn = torn(system, end);
-        system.info.warnings.extend(torn);
+        let overloaded = overloaded(system, end);
+        system.info.warnings.extend(overloaded);
         Ok(())
     }
 }
@@ -227,8 +227,9 @@ fn info<const D: usize>(
     let points = body.all_points();
     let sweeps = { constitutive.all().zip(&bodies.parts) }
         .map(|(m, part)| m.sweeps.clone().filter(|_| part.bonded));
-    let shelf = &bodies.names.shelf;
-    let kinds = |law: &LawSpec| matches!(law, LawSpec::Named(law) if shelf.kinds(&law.name));
+    let registry = &bodies.names.registry;
+    let kinds =
+        |law: &LawSpec| matches!(law, LawSpec::Named(law) if registry.bond_classes(&law.name));
     Info {
         dimension: D,
         points: points as u64,
@@ -262,7 +263,7 @@ fn info<const D: usize>(
         conserves: bonds.asymmetry <= SYMMETRIC && !spec.run.schedule.force_unstable,
         bodies: names(spec, body),
         gaps: vec![],
-        transfers: vec![],
+        diffusions: vec![],
         loads: vec![],
         cut: bonds.cut,
         idle_ranks: body.count(u64::from(body.points() == 0)),

@@ -7,12 +7,12 @@ mod made;
 use self::bodies::Bodies;
 use self::bonds::Bonds;
 use self::made::Made;
-use super::feasible::{consistent, possible};
 use super::model::Model;
+use super::sanity::{consistent, possible};
 use super::stages::Stages;
 use super::stepper::stepper;
 use super::{Simulation, atoms};
-use crate::constitutive::Shelf;
+use crate::constitutive::Registry;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::quantity::Warnings;
@@ -31,20 +31,20 @@ pub struct Options {
 
 /// Build the model of a spec.
 pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, BuildError> {
-    build_with(spec, options, &Shelf::standard())
+    build_with(spec, options, &Registry::standard())
 }
 
 /// The same with laws, potentials, observables and forces of one's own.
 pub fn build_with(
     spec: &Spec,
     options: Options,
-    shelf: &Shelf,
+    registry: &Registry,
 ) -> Result<Box<dyn Simulation>, BuildError> {
     possible(spec, options.simd)?;
     match spec.space.dimension {
-        1 => Ok(Box::new(build_in::<1>(spec, options, shelf)?)),
-        2 => Ok(Box::new(build_in::<2>(spec, options, shelf)?)),
-        3 => Ok(Box::new(build_in::<3>(spec, options, shelf)?)),
+        1 => Ok(Box::new(build_in::<1>(spec, options, registry)?)),
+        2 => Ok(Box::new(build_in::<2>(spec, options, registry)?)),
+        3 => Ok(Box::new(build_in::<3>(spec, options, registry)?)),
         d => Err(BuildError::invalid(
             "dimension",
             format!("{d} dimensions; expected 1, 2 or 3"),
@@ -56,22 +56,22 @@ pub fn build_with(
 pub fn build_in<const D: usize>(
     spec: &Spec,
     options: Options,
-    shelf: &Shelf,
+    registry: &Registry,
 ) -> Result<Model<D>, BuildError> {
-    made_among(spec, options, shelf, None)
+    made_among(spec, options, registry, None)
 }
 
 /// The part of it that this rank has; `None`: all.
 pub(super) fn made_among<const D: usize>(
     spec: &Spec,
     options: Options,
-    shelf: &Shelf,
+    registry: &Registry,
     ranks: Option<&Arc<Comm>>,
 ) -> Result<Model<D>, BuildError> {
     let mut resolved = spec.clone();
-    shelf.resolve(&mut resolved)?;
-    consistent(&resolved, shelf)?;
-    let potentials = shelf.potentials(&resolved)?;
+    registry.resolve(&mut resolved)?;
+    consistent(&resolved, registry)?;
+    let potentials = registry.potentials(&resolved)?;
     atoms::check_smooth(&resolved)?;
     if let Some(potentials) = &potentials {
         atoms::resolve_family(&mut resolved, potentials);
@@ -79,7 +79,7 @@ pub(super) fn made_among<const D: usize>(
     let spec = &resolved;
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = Warnings::default();
-    let mut bodies = Bodies::<D>::new(spec, shelf, potentials.as_ref(), ranks, &mut warnings)?;
+    let mut bodies = Bodies::<D>::new(spec, registry, potentials.as_ref(), ranks, &mut warnings)?;
     let bonds = Bonds::new(spec, simd, &mut bodies, &mut warnings)?;
     let mut made = Made::new(
         spec,

@@ -5,13 +5,13 @@
 //! with B the tangents of what they touch, `G_i` what a place at a point does when the body moves (axes) and turns about its centre (axes in space),
 //! and M its mass and moments of inertia. So `δX = (S − CᵀA⁻¹C)⁻¹ (R − CᵀA⁻¹r)`, with a solution for each unknown of a body.
 //!
-//! What is sought of a body is `(m a, dL/dt)` at the end of the step; its place follows as in [`Rigid::step_implicitly`](crate::condition::rigid::Rigid::step_implicitly).
+//! What is sought of a body is `(m a, dL/dt)` at the end of the step; its place follows as in [`Rigid::step_implicitly`](crate::boundary_condition::rigid::Rigid::step_implicitly).
 
 use super::problem::Problem;
 use super::system::{Border, unknowns};
 use super::tried::{Inertia, Tried};
-use crate::condition::indenter::Indenter;
-use crate::condition::rigid::Wrench;
+use crate::boundary_condition::rigid::Wrench;
+use crate::boundary_condition::rigid_body::RigidBody;
 use crate::execute::exact::Exact;
 use crate::space::{cross, full};
 
@@ -37,7 +37,7 @@ impl<const D: usize> Problem<'_, D> {
             inertia: vec![],
             radius: vec![],
         };
-        let bodies: Vec<&Indenter<D>> = self.system.applied.free().collect();
+        let bodies: Vec<&RigidBody<D>> = self.system.applied.free().collect();
         let all = bodies.len() * each.len();
         for (n, body) in bodies.iter().enumerate() {
             let mass = body.rigid.inertia(inertia.acceleration);
@@ -94,8 +94,8 @@ impl<const D: usize> Problem<'_, D> {
                 let per = if k < 3 { 1.0 } else { 1.0 / radius };
                 let takes = inertia.weight * end[k] + past.map_or(0.0, |f| f[k]);
                 missing[k] = acting[k] - takes;
-                left = left.hypot(per * missing[k]);
-                scale = scale.hypot(per * acting[k]).hypot(per * takes);
+                left = libm::hypot(left, per * missing[k]);
+                scale = libm::hypot(libm::hypot(scale, per * acting[k]), per * takes);
             }
             rest.push(missing);
         }

@@ -5,8 +5,8 @@ use super::state::StaticState;
 use super::system::Equations;
 use super::tried::{Inertia, Onward};
 use super::whole::{told, whole_support};
-use crate::condition::load::Load;
-use crate::condition::rigid::Wrench;
+use crate::boundary_condition::load::Load;
+use crate::boundary_condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::spec::LinearBody;
 use crate::statics::{
@@ -22,12 +22,12 @@ impl<const D: usize> Problem<'_, D> {
         statics::linear_body_touching(&system.body, bonds, contact, &system.u)
     }
 
-    /// What indenters and forces on points resist with at points.
+    /// What rigid_bodies and forces on points resist with at points.
     fn pushed(&self) -> Vec<Block<D>> {
         let system = &*self.system;
         let mut sum = vec![[[0.0; D]; D]; system.body.len()];
-        for indenter in &system.applied.rigid {
-            indenter.each_tangent(&system.body, &system.u, |slot, _, block| {
+        for rigid_body in &system.applied.rigid {
+            rigid_body.each_tangent(&system.body, &system.u, |slot, _, block| {
                 for a in 0..D {
                     for b in 0..D {
                         sum[slot][a][b] += block[a][b];
@@ -192,10 +192,10 @@ impl<const D: usize> Problem<'_, D> {
         Ok((Onward { x, bodies, far }, iterations))
     }
 
-    /// What inertia and indenters add to the stiffness at points; empty: nothing.
+    /// What inertia and rigid_bodies add to the stiffness at points; empty: nothing.
     fn added(&self, inertia: Option<&Inertia<D>>) -> Vec<Block<D>> {
         let Some(inertia) = inertia else {
-            // indenters have no place in equilibrium by tangents
+            // rigid_bodies have no place in equilibrium by tangents
             let any = self.system.applied.loads.iter().any(Load::has_stiffness);
             return if any { self.pushed() } else { vec![] };
         };

@@ -2,7 +2,7 @@
 
 use super::problem::Problem;
 use super::whole::{told, whole_support};
-use crate::condition::prescribed_motion::PrescribedMotion;
+use crate::boundary_condition::prescribed_motion::PrescribedMotion;
 use crate::error::{Loose, SolveError};
 use crate::fracture::fragments::Fragments;
 use crate::run::system::System;

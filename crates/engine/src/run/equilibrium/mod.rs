@@ -35,7 +35,7 @@ use crate::statics::{self, Solved, Support};
 const ROUNDS: usize = 10_000;
 
 /// What linear increments leave out where bonds break.
-const ONE_LOOK: &str = "linear increments look once which bonds break: those that the solution stretches too far are gone from the next increment on, and what their loss breaks is found there; write method = \"newton\" for an equilibrium after every break, or control = \"breaking\" for one bond after the other";
+const ONE_LOOK: &str = "linear increments look once which bonds break: those that the solution stretches too far are gone from the next increment on, and what their loss breaks is found there; write method = \"newton\" for an equilibrium after every break, or control = \"sequentially_linear\" for one bond after the other";
 
 /// What an increment does.
 #[derive(Debug, Clone, Copy, Default)]
@@ -124,7 +124,7 @@ impl<const D: usize> System<D> {
         let sweep = Sweep::Evolve {
             v: view(&still),
             steps: [0.0; 2],
-            release: self.release,
+            breakage: self.breakage,
         };
         let mut tally =
             self.interaction
@@ -198,7 +198,7 @@ impl<const D: usize> Problem<'_, D> {
                 .rigid
                 .iter_mut()
                 .for_each(|i| i.place(t));
-            self.system.look_again();
+            self.system.invalidate_neighbours();
             let before = self.system.accounts.swept.broken;
             let solved = match method {
                 Method::Linear => self.solve_linear(state, &support)?,

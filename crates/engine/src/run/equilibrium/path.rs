@@ -124,9 +124,9 @@ impl<const D: usize> Problem<'_, D> {
         let goal = self.goal(state.options);
         let last = state.followed.as_ref();
         let (opens, target) = match state.options.control {
-            Control::Opening(by) => (true, part * by),
+            Control::IndirectDisplacement(by) => (true, part * by),
             Control::ArcLength(by) => (false, part * by),
-            Control::Load | Control::Breaking => return Err(SolveError::NotFinite),
+            Control::Load | Control::SequentiallyLinear => return Err(SolveError::NotFinite),
         };
         let unit = self.unit_load(support);
         let points = self.system.body.all_points() as f64;
@@ -163,13 +163,13 @@ impl<const D: usize> Problem<'_, D> {
             let more = -target * short(&now.way) - sums.dot(&slope, &a);
             let more = more / sums.dot(&slope, &b);
             let step = further(&a, &b, more);
-            let left = now.left.hypot(short(&now.way));
+            let left = libm::hypot(now.left, short(&now.way));
             for halving in 0..=BACK {
                 let by = 0.5f64.powi(halving);
                 let way = further(&now.way, &step, by);
                 let next = now.factor + by * more;
                 let next = self.trial(way, next, support, start, before, &mut most)?;
-                if next.left.hypot(short(&next.way)) < left || halving == BACK {
+                if libm::hypot(next.left, short(&next.way)) < left || halving == BACK {
                     now = next;
                     break;
                 }

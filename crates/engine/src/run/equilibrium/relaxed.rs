@@ -4,8 +4,8 @@
 use super::problem::Problem;
 use super::state::StaticState;
 use crate::body::view;
-use crate::condition::indenter::Indenter;
-use crate::condition::load::Load;
+use crate::boundary_condition::load::Load;
+use crate::boundary_condition::rigid_body::RigidBody;
 use crate::dynamics::stable_step::largest_ratio;
 use crate::error::SolveError;
 use crate::interaction::friction::Friction;
@@ -63,7 +63,7 @@ impl<const D: usize> Problem<'_, D> {
             let goal = (goal, &self.sums.clone());
             let force = |x: &mut [[f64; D]], f: &mut [[f64; D]], mass: &mut [f64]| {
                 let mut found = self.imbalance(x, &mut r, support);
-                found.scale = found.scale.hypot(reference);
+                found.scale = libm::hypot(found.scale, reference);
                 if calls % LOOK == 0 {
                     if !repels && self.repels_inside() {
                         repels = true;
@@ -110,8 +110,8 @@ impl<const D: usize> Problem<'_, D> {
         if let Some(contact) = &system.contact {
             contact.central.add_stiffness(&system.body, &system.u, sum);
         }
-        for indenter in &system.applied.rigid {
-            indenter.add_stiffness(&system.body, &system.u, sum);
+        for rigid_body in &system.applied.rigid {
+            rigid_body.add_stiffness(&system.body, &system.u, sum);
         }
         for ((m, own), &s) in mass.iter_mut().zip(own).zip(system.body.slots()) {
             *m = m.max(own + sum[s as usize]);
@@ -151,12 +151,12 @@ impl<const D: usize> Problem<'_, D> {
         if let Some(friction) = system.contact.as_mut().and_then(|c| c.friction.as_mut()) {
             friction.press();
         }
-        system.applied.rigid.iter_mut().for_each(Indenter::press);
+        system.applied.rigid.iter_mut().for_each(RigidBody::press);
     }
 
     fn rubs(&self) -> bool {
         let system = &*self.system;
         let friction = system.contact.as_ref().and_then(|c| c.friction.as_ref());
-        friction.is_some_and(Friction::rubs) || system.applied.rigid.iter().any(Indenter::rubs)
+        friction.is_some_and(Friction::rubs) || system.applied.rigid.iter().any(RigidBody::rubs)
     }
 }

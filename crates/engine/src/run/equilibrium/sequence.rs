@@ -119,7 +119,7 @@ impl<const D: usize> Problem<'_, D> {
                 history::WHOLE,
                 &mut whole,
             );
-            self.let_go_of(&last.next);
+            self.break_bonds_of(&last.next);
             state.forget();
         }
         let found = self.next_equilibrium(state, last.as_ref());
@@ -136,7 +136,7 @@ impl<const D: usize> Problem<'_, D> {
         found
     }
 
-    fn let_go_of(&mut self, bonds: &[Critical<D>]) {
+    fn break_bonds_of(&mut self, bonds: &[Critical<D>]) {
         let system = &mut *self.system;
         let held: f64 = system.quadratic_energy().iter().sum();
         let near = 1e-6 * system.body.spacing();

@@ -4,7 +4,7 @@ use super::problem::Problem;
 use super::state::StaticState;
 use super::tried::{Inertia, Tried};
 use super::whole::unknowns;
-use crate::condition::rigid::Wrench;
+use crate::boundary_condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::interaction::BondStatus;
 use crate::spec::Statics;
@@ -157,7 +157,7 @@ impl<const D: usize> Problem<'_, D> {
         let mut r = vec![[0.0; D]; now.x.len()];
         let reference = self.residual_of_reference(support);
         let mut missing = self.missing(&now, inertia, &mut r, support);
-        let mut scale = missing.scale.hypot(reference);
+        let mut scale = libm::hypot(missing.scale, reference);
         let mut iterations = 0;
         for _ in 0..NEWTON {
             goal.go_on(0, &self.sums)?;
@@ -213,13 +213,13 @@ impl<const D: usize> Problem<'_, D> {
                     state.step = None;
                 }
                 if left < size || unstable || halving == HALVINGS {
-                    (now, scale) = (tried, missing.scale.hypot(reference));
+                    (now, scale) = (tried, libm::hypot(missing.scale, reference));
                     break;
                 }
                 if old {
                     // with factors of here
                     missing = self.missing(&now, inertia, &mut r, support);
-                    scale = missing.scale.hypot(reference);
+                    scale = libm::hypot(missing.scale, reference);
                     break;
                 }
                 part *= 0.5;
@@ -250,8 +250,8 @@ impl<const D: usize> Problem<'_, D> {
         let (bodies, [left, acting]) = self.missing_of_bodies(tried, inertia);
         let found = inertia.take(tried, (r, &self.sums), support);
         Missing {
-            scale: scale.hypot(found.scale).hypot(acting),
-            size: found.size.hypot(left),
+            scale: libm::hypot(libm::hypot(scale, found.scale), acting),
+            size: libm::hypot(found.size, left),
             bodies,
         }
     }

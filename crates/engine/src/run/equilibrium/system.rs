@@ -2,7 +2,7 @@
 
 use super::whole::whole_support;
 use crate::body::Body;
-use crate::condition::rigid::Wrench;
+use crate::boundary_condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::spec::LinearBody;
 use crate::state::Archive;

@@ -1,7 +1,7 @@
 //! What Newton's method tries: displacements, and within a step in time the velocities and accelerations that go with them.
 
 use super::problem::Problem;
-use crate::condition::rigid::{NewmarkStep, Wrench};
+use crate::boundary_condition::rigid::{NewmarkStep, Wrench};
 use crate::statics::{Imbalance, Masses, Sums, Support};
 use std::sync::Arc;
 

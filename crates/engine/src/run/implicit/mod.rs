@@ -43,7 +43,7 @@ impl<const D: usize> System<D> {
             )
             .help("write alpha = -0.1, or leave it out"));
         }
-        if alpha != 0.0 && (beta - hht.beta).hypot(gamma - hht.gamma) > 1e-12 {
+        if alpha != 0.0 && libm::hypot(beta - hht.beta, gamma - hht.gamma) > 1e-12 {
             return Err(BuildError::conflict(
                 "schedule.alpha",
                 format!("beta = {beta} and gamma = {gamma} do not go with alpha = {alpha}, which takes (1 - alpha)²/4 and 1/2 - alpha"),
@@ -64,8 +64,8 @@ impl<const D: usize> System<D> {
         traits::of_implicit_steps(self, options.solver)?;
         if self.applied.free().next().is_some() && unknowns(&self.body, &self.held()) == 0 {
             return Err(BuildError::unsupported(
-                "indenters",
-                "an indenter with a mass moves implicitly beside points that are free, and all are held",
+                "rigid_bodies",
+                "a rigid body with a mass moves implicitly beside points that are free, and all are held",
             )
             .help("take integrator = \"verlet\""));
         }

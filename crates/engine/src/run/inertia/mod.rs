@@ -6,7 +6,7 @@ pub(super) mod state;
 use self::state::Inertia;
 use super::system::System;
 use crate::body::{Field, zeros};
-use crate::condition::constraint::Constraint;
+use crate::boundary_condition::constraint::Constraint;
 
 impl<const D: usize> System<D> {
     /// Accelerations of the forces of now.

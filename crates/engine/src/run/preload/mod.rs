@@ -9,7 +9,7 @@ use super::stages::{Stage, Stages};
 use super::stepper::{self, Stepper};
 use super::system::System;
 use crate::body::view;
-use crate::condition::prescribed_motion::PrescribedMotion;
+use crate::boundary_condition::prescribed_motion::PrescribedMotion;
 use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
 use crate::message;
@@ -67,9 +67,9 @@ impl<const D: usize> System<D> {
         });
         let cuts = cuts.collect::<Result<Vec<_>, _>>()?;
         let within = |e: BuildError| e.within("preload");
-        let (conditions, indenters) = (&preload.conditions, &preload.indenters);
+        let (conditions, rigid_bodies) = (&preload.conditions, &preload.rigid_bodies);
         let (forces, constraints) = names
-            .acting(&self.body, conditions, indenters, &names.sets)
+            .acting(&self.body, conditions, rigid_bodies, &names.sets)
             .map_err(within)?;
         let prescribed = PrescribedMotion {
             constraints,
@@ -107,7 +107,7 @@ impl<const D: usize> System<D> {
         let left: HashMap<_, _> = left.collect();
         let jump = self.prescribed.displaced(0.0).find_map(|(slot, a, x)| {
             let from = *left.get(&(slot, a))?;
-            self.apart(x, from).then_some((slot, a, x, from))
+            self.differ(x, from).then_some((slot, a, x, from))
         });
         let Some((slot, a, x, from)) = jump else {
             return Ok(());
@@ -127,14 +127,14 @@ impl<const D: usize> System<D> {
         .help("t of the motion begins at 0 again: write the last displacement of the statics as the first of the motion, or a velocity"))
     }
 
-    fn apart(&self, x: f64, y: f64) -> bool {
+    fn differ(&self, x: f64, y: f64) -> bool {
         !((x - y).abs() <= NEAR * (self.body.spacing() + x.abs().max(y.abs())))
     }
 
     /// Does motion begin where statics ended?
     fn can_move(&mut self, next: &mut Stage<D>) -> Result<(), RunError> {
         let mut told = next.prescribed.displaced(0.0);
-        let jump = told.find(|(slot, axis, asked)| self.apart(*asked, self.u[*axis][*slot]));
+        let jump = told.find(|(slot, axis, asked)| self.differ(*asked, self.u[*axis][*slot]));
         let own = jump.map(|(slot, axis, asked)| {
             let id = self.body.number(slot) as f64 - 1.0;
             [id, axis as f64, asked, self.u[axis][slot]]
@@ -150,7 +150,7 @@ impl<const D: usize> System<D> {
             });
         }
         if let Some(contact) = &mut next.contact {
-            contact.central.look_again();
+            contact.central.invalidate_neighbours();
             contact.find(&self.body, &self.u, self.interaction.as_ref());
             // those that attract each other, too
             let mut pairs = 0;
@@ -192,7 +192,7 @@ impl<const D: usize> System<D> {
         }
         let step = [self.clock.time(), self.clock.dt()];
         self.prescribed.start(&mut self.u, &mut self.v, step);
-        self.look_again();
+        self.invalidate_neighbours();
         self.forces(true, self.given());
         // velocities were given, not made by forces
         let given = self.energy_now().kinetic;

@@ -101,17 +101,17 @@ impl<const D: usize> Model<D> {
                 let (parts, columns) = self.parts(of, part, path, &column)?;
                 (Kind::Over(Fold::Sum, of.clone(), parts), columns)
             }
-            Measure::Indenter { indenter, of } => {
-                self.system.rigid_probe(&spec.name, indenter, *of, path)?
+            Measure::RigidBody { rigid_body, of } => {
+                self.system.rigid_probe(&spec.name, rigid_body, *of, path)?
             }
-            Measure::Contour(contour) => {
-                let contour = self.system.contour_of(contour, path)?;
+            Measure::JIntegral(j_integral) => {
+                let j_integral = self.system.j_integral_of(j_integral, path)?;
                 let columns = vec![
                     column("J", Dimension::FRACTURE_ENERGY),
                     // K² = J E′
                     column("K", Dimension::FRACTURE_ENERGY * Dimension::PRESSURE).rooted(),
                 ];
-                (Kind::Contour(Box::new(contour)), columns)
+                (Kind::JIntegral(Box::new(j_integral)), columns)
             }
             Measure::CrackTip(crack) => {
                 self.look().check_column("damage", &at("measure"))?;
@@ -237,7 +237,7 @@ impl<const D: usize> Model<D> {
                 Kind::Over(_, of, _) => &[of.as_str()],
                 Kind::Energy => &ENERGIES,
                 Kind::CrackTip(_) => &["damage"],
-                Kind::Contour(_)
+                Kind::JIntegral(_)
                 | Kind::Reaction
                 | Kind::Moment(_)
                 | Kind::Opening(_)
@@ -280,7 +280,7 @@ impl<const D: usize> Model<D> {
                         folded(*fold, &self.system.body, each)
                     }));
                 }
-                Kind::Contour(contour) => values.extend(self.integral(contour)),
+                Kind::JIntegral(j_integral) => values.extend(self.integral(j_integral)),
                 Kind::CrackTip(spec) => {
                     let damage = &named(&columns, "damage").values;
                     let points = { probe.ids.iter() }.map(|id| (*id, damage.at(*id as usize, 0)));

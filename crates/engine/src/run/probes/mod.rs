@@ -1,7 +1,7 @@
 //! Probes: what is measured of sets of points over time.
 
-mod contour;
 mod crack;
+mod j_integral;
 mod measure;
 mod rectangle;
 mod rigid;

@@ -1,16 +1,16 @@
 //! A rectangle around the tip of a crack.
 
-use crate::spec::ContourSpec;
+use crate::spec::JIntegralSpec;
 
 /// A rectangle, and the modulus of what is in it.
-pub(in crate::run) struct Contour {
-    pub(super) spec: ContourSpec,
+pub(in crate::run) struct JIntegral {
+    pub(super) spec: JIntegralSpec,
     /// `E′ = C₁₁ − C₁₂²/C₁₁` of the plane (pressure): E in plane stress, E/(1−ν²) in plane strain.
     pub(super) modulus: f64,
     pub(super) section: f64,
 }
 
-impl Contour {
+impl JIntegral {
     /// q at a place in the reference, and its gradient: a product of one function per axis, with two derivatives.
     pub(super) fn q(&self, x: [f64; 2]) -> (f64, [f64; 2]) {
         let mut each = [(0.0, 0.0); 2];
@@ -35,8 +35,8 @@ mod tests {
 
     #[test]
     fn q_falls_from_one_to_nothing_with_its_gradient() {
-        let contour = Contour {
-            spec: ContourSpec {
+        let j_integral = JIntegral {
+            spec: JIntegralSpec {
                 low: [-1.0, 2.0],
                 high: [3.0, 4.0],
                 direction: [1.0, 0.0],
@@ -44,18 +44,18 @@ mod tests {
             modulus: 1.0,
             section: 1.0,
         };
-        assert_eq!(contour.q([1.5, 3.2]), (1.0, [0.0, 0.0]));
+        assert_eq!(j_integral.q([1.5, 3.2]), (1.0, [0.0, 0.0]));
         for x in [[3.0, 3.0], [1.0, 2.0], [-4.0, 9.0]] {
-            assert_eq!(contour.q(x).0, 0.0);
+            assert_eq!(j_integral.q(x).0, 0.0);
         }
         let h = 1e-6;
         for x in [[2.3, 3.0], [-0.4, 3.8], [2.7, 2.1]] {
-            let (_, slope) = contour.q(x);
+            let (_, slope) = j_integral.q(x);
             for a in 0..2 {
                 let moved = |by: f64| {
                     let mut x = x;
                     x[a] += by;
-                    contour.q(x).0
+                    j_integral.q(x).0
                 };
                 let difference = (moved(h) - moved(-h)) / (2.0 * h);
                 assert!((slope[a] - difference).abs() < 1e-8, "{x:?}: {slope:?}");

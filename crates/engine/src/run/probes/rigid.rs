@@ -2,8 +2,8 @@
 
 use super::state::Kind;
 use crate::body::Body;
+use crate::boundary_condition::rigid_body::RigidBody;
 use crate::columns::{Dimension, Shape};
-use crate::condition::indenter::Indenter;
 use crate::error::BuildError;
 use crate::observe::ProbeColumn;
 use crate::run::system::System;
@@ -41,14 +41,18 @@ fn column(of: RigidQuantity, name: String) -> ProbeColumn {
 }
 
 /// Its numbers, in the order of its parts.
-fn values<const D: usize>(of: RigidQuantity, indenter: &Indenter<D>, body: &Body<D>) -> Vec<f64> {
-    let rigid = &indenter.rigid;
+fn values<const D: usize>(
+    of: RigidQuantity,
+    rigid_body: &RigidBody<D>,
+    body: &Body<D>,
+) -> Vec<f64> {
+    let rigid = &rigid_body.rigid;
     let part = |first: usize| -> Point {
-        let all = indenter.wrench(body);
+        let all = rigid_body.wrench(body);
         std::array::from_fn(|a| all[first + a])
     };
     let vector = match of {
-        RigidQuantity::Energy => return vec![rigid.kinetic(), indenter.dissipated(body)],
+        RigidQuantity::Energy => return vec![rigid.kinetic(), rigid_body.dissipated(body)],
         RigidQuantity::Force => part(0),
         RigidQuantity::Torque => part(3),
         RigidQuantity::Center => rigid.center,
@@ -69,20 +73,20 @@ impl<const D: usize> System<D> {
     pub(super) fn rigid_probe(
         &self,
         probe: &str,
-        indenter: &str,
+        name: &str,
         of: Option<RigidQuantity>,
         path: &str,
     ) -> Result<(Kind, Vec<ProbeColumn>), BuildError> {
-        let found = self.applied.rigid.iter().position(|i| i.name == indenter);
-        let Some(n) = found.filter(|_| !indenter.is_empty()) else {
+        let found = self.applied.rigid.iter().position(|i| i.name == name);
+        let Some(n) = found.filter(|_| !name.is_empty()) else {
             let named = self.applied.rigid.iter().filter(|i| !i.name.is_empty());
             let names: Vec<&str> = named.map(|i| i.name.as_str()).collect();
-            let message = format!("there is no indenter `{indenter}`");
+            let message = format!("there is no rigid body `{name}`");
             let help = match names.is_empty() {
-                true => "give the [[indenter]] a name: name = \"punch\"".into(),
+                true => "give the [[rigid_body]] a name: name = \"punch\"".into(),
                 false => format!("known are {}", names.join(", ")),
             };
-            let error = BuildError::unknown(format!("{path}.indenter"), indenter, message);
+            let error = BuildError::unknown(format!("{path}.rigid_body"), name, message);
             return Err(error.help(help));
         };
         let of = of.map_or(RigidQuantity::ALL.to_vec(), |of| vec![of]);
@@ -95,11 +99,11 @@ impl<const D: usize> System<D> {
         Ok((Kind::Rigid(n, of), columns))
     }
 
-    pub(super) fn rigid_values(&self, indenter: usize, of: &[RigidQuantity]) -> Vec<f64> {
-        let found = self.applied.rigid.get(indenter);
+    pub(super) fn rigid_values(&self, rigid_body: usize, of: &[RigidQuantity]) -> Vec<f64> {
+        let found = self.applied.rigid.get(rigid_body);
         // conditions that were replaced since took the body away
         let value = |q: &RigidQuantity| match found {
-            Some(indenter) => values(*q, indenter, &self.body),
+            Some(rigid_body) => values(*q, rigid_body, &self.body),
             None => vec![f64::NAN; parts::<D>(*q).len()],
         };
         of.iter().flat_map(value).collect()

@@ -1,6 +1,6 @@
 //! Probes as a model keeps them.
 
-use super::rectangle::Contour;
+use super::rectangle::JIntegral;
 use crate::observe::ProbeColumn;
 use crate::space::Point;
 use crate::spec::{CrackTipSpec, Fold, RigidQuantity};
@@ -26,7 +26,7 @@ pub(super) enum Kind {
     Energy,
     /// Components by number; `None`: the magnitude.
     Over(Fold, String, Vec<Option<usize>>),
-    Contour(Box<Contour>),
+    JIntegral(Box<JIntegral>),
     CrackTip(CrackTipSpec),
     /// Between two points, each on the rank that has it.
     Opening([Vec<u32>; 2]),

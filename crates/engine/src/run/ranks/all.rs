@@ -2,21 +2,22 @@
 
 use super::ask::{Ask, driven_of_numbers, ids, numbers_of_driven, of_ids, wall};
 use super::model::{RankModel, WriteShare};
+use crate::boundary_condition::driven::Drive;
+use crate::boundary_condition::kinematic::{Motion, motions, numbers};
+use crate::boundary_condition::reaction::Reaction;
 use crate::columns::Declaration;
-use crate::condition::carried::{Motion, motions, numbers};
-use crate::condition::driven::Drive;
-use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, StateHash};
 use crate::run::agreed::agreed_among;
 use crate::run::examined::{linear_of_all, modes_of_all};
-use crate::run::feasible::possible;
+use crate::run::initial::InitialState;
+use crate::run::sanity::possible;
 use crate::run::{
-    AtomBond, Examined, Families, Info, ModeShape, Now, Options, Prescription, Seen, Shelf,
-    Simulation, Steered, Summary, Wall, Watched,
+    AtomBond, CoSimulation, Examined, Families, Given, Info, ModeShape, Now, Options, Prescription,
+    Registry, Seen, Simulation, Summary, Wall, Watched,
 };
 use crate::space::Point;
-use crate::spec::{AnyLinearBody, ConditionSpec, IndenterSpec, Spec};
+use crate::spec::{AnyLinearBody, ConditionSpec, RigidBodySpec, Spec};
 use crate::state::{Archive, Owner};
 use crate::statics::Solved;
 use peridyne_comm::Comm;
@@ -31,11 +32,11 @@ fn heard(comm: &Comm, said: &[u8]) -> Vec<u8> {
 }
 
 impl<const D: usize> RankModel<D> {
-    /// Does what the first rank asks of all, until it leaves.
+    /// Does what the first rank asks of all, until it leaves; the model is as that leaves it.
     ///
     /// # Panics
     /// This is the first rank, or the first one is another program.
-    pub fn follow(mut self, write: WriteShare) {
+    pub fn follow(mut self, write: WriteShare) -> RankModel<D> {
         let comm = self.subdomain().comm().clone();
         assert!(comm.rank() > 0, "the first rank follows nobody");
         loop {
@@ -86,7 +87,7 @@ impl<const D: usize> RankModel<D> {
                 Ask::Load(path) => Archive::there(&comm, true, path, |archive| {
                     self.model.archive(archive);
                 }),
-                Ask::Leave => return,
+                Ask::Leave => return self,
             }
         }
     }
@@ -95,20 +96,33 @@ impl<const D: usize> RankModel<D> {
 /// The model of all ranks, on the first of them. The others [follow](RankModel::follow) until it is dropped.
 ///
 /// Columns, snapshots and states are gathered here; shares of frames are written by all ranks. Not shared yet, and answered by a panic: other conditions than a spec has
-/// ([`Steered::set_conditions`]) and most of what [`Examined`] asks.
+/// ([`CoSimulation::set_conditions`]) and most of what [`Examined`] asks.
 pub struct AllRanks<const D: usize> {
     own: RankModel<D>,
+    _leads: Leads,
     write: WriteShare,
     /// Components of columns that were read since something changed.
     read: RefCell<HashMap<(String, usize), Vec<f64>>>,
+}
+
+/// As long as it is there, others follow.
+struct Leads(Arc<Comm>);
+
+impl Drop for Leads {
+    fn drop(&mut self) {
+        // who has ended already hears nothing
+        let _ = self.0.all(&Ask::Leave.to_bytes());
+    }
 }
 
 impl<const D: usize> AllRanks<D> {
     /// # Panics
     /// This is not the first rank.
     pub fn new(own: RankModel<D>, write: WriteShare) -> AllRanks<D> {
-        assert_eq!(own.subdomain().comm().rank(), 0, "the first rank leads");
+        let comm = own.subdomain().comm().clone();
+        assert_eq!(comm.rank(), 0, "the first rank leads");
         AllRanks {
+            _leads: Leads(comm),
             own,
             write,
             read: RefCell::default(),
@@ -120,13 +134,6 @@ impl<const D: usize> AllRanks<D> {
             self.read.borrow_mut().clear();
         }
         heard(self.own.subdomain().comm(), &ask.to_bytes());
-    }
-}
-
-impl<const D: usize> Drop for AllRanks<D> {
-    fn drop(&mut self) {
-        // who has ended already hears nothing
-        let _ = self.own.subdomain().comm().all(&Ask::Leave.to_bytes());
     }
 }
 
@@ -250,15 +257,27 @@ impl<const D: usize> Simulation for AllRanks<D> {
     }
 }
 
-impl<const D: usize> Steered for AllRanks<D> {
-    fn depart(&mut self, carried: &[Motion]) -> Result<f64, RunError> {
-        self.ask(&Ask::Depart(&numbers(carried)));
-        self.own.depart(carried)
+impl<const D: usize> CoSimulation for AllRanks<D> {
+    fn begin_motion(&mut self) -> Result<bool, RunError> {
+        not_shared("the beginning of a motion")
+    }
+
+    fn depart(&mut self, kinematic: &[Motion]) -> Result<f64, RunError> {
+        self.ask(&Ask::Depart(&numbers(kinematic)));
+        self.own.depart(kinematic)
     }
 
     fn arrive(&mut self) -> Result<(), RunError> {
         self.ask(&Ask::Arrive);
         self.own.model.arrive()
+    }
+
+    fn turn_back(&mut self) {
+        not_shared("the way back from half a step")
+    }
+
+    fn give(&mut self, _: &[u32], _: Given) -> Result<(), BuildError> {
+        not_shared("conditions from outside")
     }
 
     fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>) {
@@ -288,7 +307,7 @@ impl<const D: usize> Steered for AllRanks<D> {
         &mut self,
         _: &[ConditionSpec],
         _: &[(String, Vec<u32>)],
-        _: &[IndenterSpec],
+        _: &[RigidBodySpec],
     ) -> Result<(), BuildError> {
         not_shared("conditions from outside")
     }
@@ -376,25 +395,84 @@ pub fn build(
     comm: &Arc<Comm>,
     write: WriteShare,
 ) -> Result<Option<Box<dyn Simulation>>, BuildError> {
-    agreed_among(comm, possible(spec, options.simd))?;
-    match spec.space.dimension {
-        1 => built::<1>(spec, options, comm, write),
-        2 => built::<2>(spec, options, comm, write),
-        _ => built::<3>(spec, options, comm, write),
-    }
+    build_from(None, spec, options, comm, write)
 }
 
-fn built<const D: usize>(
+/// A spec, and what brings its model to a state.
+pub type Before<'a> = (
+    &'a Spec,
+    &'a mut dyn FnMut(&mut dyn Simulation) -> Result<(), BuildError>,
+);
+
+/// The same, in the state of an earlier run that the first rank brings the model of another spec to.
+///
+/// # Errors
+/// As of [`build`] of both, of that state, and of [`InitialState::give`].
+pub fn build_from(
+    before: Option<Before<'_>>,
     spec: &Spec,
     options: Options,
     comm: &Arc<Comm>,
     write: WriteShare,
 ) -> Result<Option<Box<dyn Simulation>>, BuildError> {
-    let own = RankModel::<D>::new(spec, options, &Shelf::standard(), comm);
-    let own = agreed_among(comm, own)?;
+    agreed_among(comm, possible(spec, options.simd))?;
+    match spec.space.dimension {
+        1 => built::<1>(before, spec, options, comm, write),
+        2 => built::<2>(before, spec, options, comm, write),
+        _ => built::<3>(before, spec, options, comm, write),
+    }
+}
+
+fn built<const D: usize>(
+    before: Option<Before<'_>>,
+    spec: &Spec,
+    options: Options,
+    comm: &Arc<Comm>,
+    write: WriteShare,
+) -> Result<Option<Box<dyn Simulation>>, BuildError> {
+    let state = match before {
+        Some(before) => Some(state_of::<D>(before, options, comm, write)?),
+        None => None,
+    };
+    let own = RankModel::<D>::new(spec, options, &Registry::standard(), comm);
+    let mut own = agreed_among(comm, own)?;
+    if let Some(state) = state {
+        agreed_among(comm, state.give(&mut own.model))?;
+    }
     if comm.rank() == 0 {
         return Ok(Some(Box::new(AllRanks::new(own, write))));
     }
     own.follow(write);
     Ok(None)
+}
+
+/// This rank's part of a state.
+fn state_of<const D: usize>(
+    (spec, bring): Before<'_>,
+    options: Options,
+    comm: &Arc<Comm>,
+    write: WriteShare,
+) -> Result<InitialState, BuildError> {
+    let other = spec.space.dimension != D;
+    let same = match other {
+        true => Err(BuildError::invalid(
+            "space",
+            "the initial state is that of a body of other dimensions",
+        )),
+        false => Ok(()),
+    };
+    agreed_among(comm, same)?;
+    let own = RankModel::<D>::new(spec, options, &Registry::standard(), comm);
+    let own = agreed_among(comm, own)?;
+    let (mut own, brought) = match comm.rank() {
+        0 => {
+            let mut all = AllRanks::new(own, write);
+            let brought = bring(&mut all);
+            let AllRanks { own, .. } = all;
+            (own, brought)
+        }
+        _ => (own.follow(write), Ok(())),
+    };
+    agreed_among(comm, brought)?;
+    Ok(InitialState::of(&mut own.model))
 }

@@ -1,6 +1,6 @@
 //! What the first rank tells the others to do, as bytes.
 
-use crate::condition::driven::Drive;
+use crate::boundary_condition::driven::Drive;
 use crate::run::{Prescription, Wall, Watched};
 
 /// What all ranks do at once.
@@ -143,7 +143,7 @@ impl<'a> Ask<'a> {
                 Ask::Reflect(wall, (words.next()? == "true").then_some(values))
             }
             "prescribe" => {
-                let all = [Prescription::Still, Prescription::Carried];
+                let all = [Prescription::Still, Prescription::KinematicPoints];
                 let way = all.into_iter().find(|way| format!("{way:?}") == of)?;
                 Ask::Prescribe(way, values)
             }

@@ -45,7 +45,7 @@ impl Listed {
 /// The lists of those who lead a model.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Here {
-    pub carried: Listed,
+    pub kinematic: Listed,
     /// Of each driven condition.
     pub driven: Vec<Listed>,
 }

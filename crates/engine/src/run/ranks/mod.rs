@@ -5,13 +5,13 @@
 
 mod all;
 mod ask;
+mod co_simulation;
 mod here;
 mod model;
 mod plan;
 mod shared;
-mod steered;
 
-pub use all::{AllRanks, build};
+pub use all::{AllRanks, Before, build, build_from};
 pub use model::{RankModel, Share, WriteShare};
 pub use plan::{Meanwhile, Shares, StepCost, plan};
 pub use shared::shared;

@@ -9,7 +9,7 @@ use crate::fracture::fragments::Fragments;
 use crate::observe::{Column, Observed, PointForce, Snapshot, StateHash, Values};
 use crate::run::build::made_among;
 use crate::run::state_hash::hashed;
-use crate::run::{Examined, Model, Options, Seen, Shelf, Simulation, Steered, Watched};
+use crate::run::{CoSimulation, Examined, Model, Options, Registry, Seen, Simulation, Watched};
 use crate::spec::Spec;
 use peridyne_comm::{Comm, Traffic};
 use std::sync::Arc;
@@ -40,11 +40,11 @@ impl<const D: usize> RankModel<D> {
     pub fn new(
         spec: &Spec,
         options: Options,
-        shelf: &Shelf,
+        registry: &Registry,
         comm: &Arc<Comm>,
     ) -> Result<RankModel<D>, BuildError> {
         shared(spec)?;
-        let model = made_among(spec, options, shelf, Some(comm))?;
+        let model = made_among(spec, options, registry, Some(comm))?;
         let here = Here::default();
         Ok(RankModel { model, here })
     }
@@ -197,7 +197,7 @@ impl<const D: usize> RankModel<D> {
         done
     }
 
-    /// As [`Steered::watched`], of points of all ranks, on the first.
+    /// As [`CoSimulation::watched`], of points of all ranks, on the first.
     pub(super) fn watched(&mut self, what: Watched) -> Option<Seen> {
         let own = self.model.watched(what);
         // all ranks watched, or none

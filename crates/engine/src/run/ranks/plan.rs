@@ -6,7 +6,7 @@ use crate::run::build::made_among;
 use crate::run::interfaces;
 use crate::run::ranks::shared;
 use crate::run::reference::current_neighbours;
-use crate::run::{Info, Options, Shelf, Simulation};
+use crate::run::{Info, Options, Registry, Simulation};
 use crate::spec::{Spec, Stepper};
 use peridyne_comm::on_threads;
 use std::sync::Arc;
@@ -79,7 +79,7 @@ pub fn plan(
     }
     if current_neighbours(spec) {
         let message =
-            "atoms may come near to any others in time: what ranks tell each other is not foreseen";
+            "atoms may come near to any others in time: what ranks exchange cannot be predicted";
         return Err(BuildError::unsupported("bonds.family", message).help(
             "measure it by some steps on few ranks, or take family = \"stencil\" or \"reference\" where atoms stay",
         ));
@@ -92,8 +92,9 @@ pub fn plan(
 }
 
 fn went_wrong(error: &impl ToString) -> BuildError {
-    BuildError::ill_posed("run", error.to_string())
-        .help("a plan does the first steps of the run: mend them first, `peridyne run` says more")
+    BuildError::ill_posed("run", error.to_string()).help(
+        "a plan does the first steps of the run: correct them first, `peridyne run` says more",
+    )
 }
 
 fn planned<const D: usize>(
@@ -102,7 +103,7 @@ fn planned<const D: usize>(
     steps: usize,
     ranks: &[usize],
 ) -> Result<(Info, StepCost, Vec<Shares>), BuildError> {
-    let mut model = made_among::<D>(spec, options, &Shelf::standard(), None)?;
+    let mut model = made_among::<D>(spec, options, &Registry::standard(), None)?;
     model.start(true);
     let begun = Instant::now();
     for _ in 0..steps {
@@ -130,7 +131,7 @@ fn planned<const D: usize>(
         let pool = pool.map_err(|e| went_wrong(&e))?;
         pool.install(|| {
             let comm = Arc::new(comm);
-            let mut own = RankModel::<D>::new(spec, options, &Shelf::standard(), &comm)?;
+            let mut own = RankModel::<D>::new(spec, options, &Registry::standard(), &comm)?;
             own.start();
             let (before, copies) = own.halo();
             let begun = Instant::now();

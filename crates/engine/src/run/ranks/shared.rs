@@ -11,12 +11,12 @@ pub fn shared(spec: &Spec) -> Result<(), BuildError> {
     let bonds = |law: &LawSpec| match law {
         LawSpec::Pmb(_)
         | LawSpec::Lps(_)
-        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::Lps3d { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_)
         | LawSpec::Atoms(_)
         | LawSpec::Named(_) => true,
-        LawSpec::Micromoduli(linear) => !linear.couples_masses() && !linear.has_carriers(),
+        LawSpec::Micromoduli(linear) => !linear.couples_masses() && !linear.has_load_map(),
     };
     match spec.materials.iter().all(|m| bonds(&m.law)) {
         true => Ok(()),

@@ -5,7 +5,7 @@ use crate::body::{Body, Field, view, view_mut, zeros};
 use crate::error::{BuildError, RunError};
 use crate::interaction::Sweep;
 use crate::interaction::friction::Pressed;
-use crate::interaction::{cycles_to_wear, first_to_wear};
+use crate::interaction::{cycles_to_failure, first_to_fail};
 use crate::message;
 use crate::quantity::Dimension;
 use crate::run::clock::Clock;
@@ -40,7 +40,9 @@ impl<const D: usize> Stepper<D> for Increments<D> {
 
     /// The state before any load: displacements as they are, forces of bonds alone.
     fn start(&mut self, system: &mut System<D>, _: bool) {
-        system.start_transfers();
+        // others may be held than before
+        self.state.forget();
+        system.start_diffusions();
         system.v.iter_mut().for_each(|c| c.fill(0.0));
         system.stressed = None;
         forces_before(system);
@@ -54,10 +56,10 @@ impl<const D: usize> Stepper<D> for Increments<D> {
         let (t, dt) = (system.clock.time(), system.clock.dt());
         system.update_toughness(t + dt)?;
         system.spread(t, system.clock.passes(self.state.options.timed))?;
-        system.pay(0.5, 0.0);
+        system.account_work(0.5, 0.0);
         let pressed = system.pressed();
         let options = self.state.options;
-        wear(system, options.cycles);
+        accumulate_fatigue(system, options.cycles);
         let (u, f) = (system.u.clone(), system.f.clone());
         // nothing acts before the first increment
         let first = !system.clock.has_gone_on() && !options.control.follows_a_path();
@@ -68,7 +70,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
         system.acting_depart(Pressed::Held);
         let clock = system.clock;
         system.clock.forward();
-        if options.control == Control::Breaking {
+        if options.control == Control::SequentiallyLinear {
             return self.break_next(system, clock, u, f);
         }
         if options.timed {
@@ -84,7 +86,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
             Ok(found) => found,
             Err(error) => {
                 system.clock = clock;
-                system.retreat_transfers();
+                system.retreat_diffusions();
                 (system.u, system.f) = (u, f);
                 system.acting_retreat();
                 system.refresh_images();
@@ -100,7 +102,7 @@ impl<const D: usize> Stepper<D> for Increments<D> {
         system.accounts.past.conditions += work;
         system.acting_arrive(&u);
         system.heat_by_deformation(pressed);
-        system.pay(0.5, 0.0);
+        system.account_work(0.5, 0.0);
         Ok(())
     }
 
@@ -117,6 +119,11 @@ impl<const D: usize> Stepper<D> for Increments<D> {
         Some(self.state.solved)
     }
 
+    fn accepts(&self, system: &mut System<D>) -> Result<(), BuildError> {
+        system.check_statics(self.state.options)?;
+        check_control(system, self.state.options.control)
+    }
+
     fn split(&mut self) -> Option<&mut dyn SplitStep<D>> {
         None
     }
@@ -130,13 +137,7 @@ impl<const D: usize> Increments<D> {
     pub fn of(options: Statics, spec: &Spec, system: &mut System<D>) -> Result<Self, BuildError> {
         if spec.run.schedule.steps > 0 {
             system.check_statics(options)?;
-            match options.control {
-                Control::Load => {}
-                Control::Breaking => system.check_sequence()?,
-                Control::Opening(_) | Control::ArcLength(_) => {
-                    system.check_path()?;
-                }
-            }
+            check_control(system, options.control)?;
         }
         Ok(Increments::new(options))
     }
@@ -169,6 +170,18 @@ impl<const D: usize> Increments<D> {
     }
 }
 
+/// Can the load be led so?
+fn check_control<const D: usize>(
+    system: &mut System<D>,
+    control: Control,
+) -> Result<(), BuildError> {
+    match control {
+        Control::Load => Ok(()),
+        Control::SequentiallyLinear => system.check_sequence(),
+        Control::IndirectDisplacement(_) | Control::ArcLength(_) => system.check_path(),
+    }
+}
+
 /// Forces from which the next increment sets out; before the first one nothing acts but bonds.
 fn forces_before<const D: usize>(system: &mut System<D>) {
     system.refresh_images();
@@ -186,22 +199,24 @@ fn forces_before<const D: usize>(system: &mut System<D>) {
 }
 
 /// Cycles of the load that holds the body where it is; bonds that are worn out break at the first look for the next equilibrium.
-fn wear<const D: usize>(system: &mut System<D>, cycles: Option<Cycles>) {
+fn accumulate_fatigue<const D: usize>(system: &mut System<D>, cycles: Option<Cycles>) {
     let Some(cycles) = cycles.filter(|_| system.clock.has_gone_on()) else {
         return;
     };
     system.refresh_images();
     let (body, u) = (&system.body, view(&system.u));
-    let bonds = system.interaction.wearing(body, u, &cycles);
+    let bonds = system.interaction.fatigue_of_bonds(body, u, &cycles);
     if !body.exchange().any(bonds.is_some()) {
         return;
     }
     let bonds = bonds.unwrap_or_default();
     let left = (cycles.most - system.accounts.cycles).max(0.0);
-    let first = first_to_wear(&bonds, &cycles);
+    let first = first_to_fail(&bonds, &cycles);
     let first = system.body.all_of(&first).concat();
-    let passed = cycles_to_wear(first, &cycles, left);
-    system.interaction.wear(&mut bonds.into_iter(), passed);
+    let passed = cycles_to_failure(first, &cycles, left);
+    system
+        .interaction
+        .accumulate_fatigue(&mut bonds.into_iter(), passed);
     system.accounts.cycles += passed;
 }
 

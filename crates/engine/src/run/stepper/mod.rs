@@ -37,6 +37,11 @@ pub(super) trait Stepper<const D: usize>: Send {
     fn finish(&mut self, system: &mut System<D>);
     /// What a solver did in the last step; `None`: none is asked.
     fn solved(&self) -> Option<Solved>;
+    /// Can it move this system, on which more acts than it was made for?
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn accepts(&self, system: &mut System<D>) -> Result<(), BuildError>;
     /// Halves of a step, between which somebody may act; `None`: it has none.
     fn split(&mut self) -> Option<&mut dyn SplitStep<D>>;
 }
@@ -53,6 +58,8 @@ pub(super) trait SplitStep<const D: usize> {
     /// # Errors
     /// As for [`Stepper::step`].
     fn arrive(&mut self, system: &mut System<D>) -> Result<(), RunError>;
+    /// Instead of arriving: back to the step before, to rounding.
+    fn turn_back(&mut self, system: &mut System<D>);
 }
 
 /// The stepper that a spec asks for, of a system on which all acts that will, and whose steps are `dt` long (time).

@@ -16,7 +16,7 @@
 
 use super::{SplitStep, Stepper};
 use crate::body::{Body, Field};
-use crate::condition::rigid::Wrench;
+use crate::boundary_condition::rigid::Wrench;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::interaction::friction::Pressed;
 use crate::law::descriptor::Memory;
@@ -71,7 +71,7 @@ impl<const D: usize> Stepper<D> for NewmarkStepper<D> {
         let (t, dt) = (system.clock.time(), system.clock.dt());
         system.update_toughness(t + dt)?;
         system.spread(t, dt)?;
-        system.pay(0.5, 0.0);
+        system.account_work(0.5, 0.0);
         let pressed = system.pressed();
         let (u, v, f) = (system.u.clone(), system.v.clone(), system.f.clone());
         let (accelerations, bodies) = (self.acceleration.clone(), self.bodies.clone());
@@ -88,12 +88,12 @@ impl<const D: usize> Stepper<D> for NewmarkStepper<D> {
             (system.u, system.v) = (u, v);
             (self.acceleration, self.bodies) = (accelerations, bodies);
             self.equations.forget();
-            system.retreat_transfers();
+            system.retreat_diffusions();
             system.clock.back();
             system.acting_retreat();
             // and the forces of before are found from there
             system.acting_depart(Pressed::Now);
-            system.look_again();
+            system.invalidate_neighbours();
             system.forces_held(system.clock.trial());
             return Err(error);
         }
@@ -104,9 +104,9 @@ impl<const D: usize> Stepper<D> for NewmarkStepper<D> {
         system.account_constraints(end, dt, change.as_ref());
         system.accounts.numerical += self.taken(system, [&u, &v, &f], change.as_ref());
         if self.breaks {
-            self.let_go(system);
+            self.break_bonds(system);
         }
-        system.pay(0.5, 0.0);
+        system.account_work(0.5, 0.0);
         Ok(())
     }
 
@@ -121,6 +121,10 @@ impl<const D: usize> Stepper<D> for NewmarkStepper<D> {
 
     fn solved(&self) -> Option<Solved> {
         Some(self.equations.solved)
+    }
+
+    fn accepts(&self, system: &mut System<D>) -> Result<(), BuildError> {
+        system.check_implicit(self.options)
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitStep<D>> {
@@ -199,7 +203,7 @@ impl<const D: usize> NewmarkStepper<D> {
     }
 
     /// Heals bonds that the end of a step brought back, breaks those that it stretched too far, and lets forces and accelerations jump.
-    fn let_go(&mut self, system: &mut System<D>) {
+    fn break_bonds(&mut self, system: &mut System<D>) {
         let before = system.accounts.swept.broken;
         let whole = system.f.clone();
         let healed = system.heal(system.clock.time());
@@ -269,7 +273,7 @@ impl<const D: usize> NewmarkStepper<D> {
             p.whole_velocity(&mut system.v, [t, dt]);
         }
         system.applied.rigid.iter_mut().for_each(|i| i.place(t));
-        system.look_again();
+        system.invalidate_neighbours();
         let start = Tried {
             x: system.body.values(&system.u),
             v: system.body.values(&system.v),

@@ -2,7 +2,7 @@
 
 use super::{SplitStep, Stepper};
 use crate::body::Body;
-use crate::error::RunError;
+use crate::error::{BuildError, RunError};
 use crate::run::system::{Regime, System};
 use crate::state::Archive;
 use crate::statics::Solved;
@@ -35,6 +35,14 @@ impl<const D: usize> Stepper<D> for Rest {
 
     fn solved(&self) -> Option<Solved> {
         None
+    }
+
+    fn accepts(&self, _: &mut System<D>) -> Result<(), BuildError> {
+        Err(BuildError::unsupported(
+            "",
+            "points stand still in these steps: nothing moves or pushes them",
+        )
+        .help("take [run] with integrator = \"verlet\" or \"newmark\""))
     }
 
     fn split(&mut self) -> Option<&mut dyn SplitStep<D>> {

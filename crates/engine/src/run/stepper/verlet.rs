@@ -4,7 +4,7 @@ use super::{SplitStep, Stepper};
 use crate::body::{Body, view};
 use crate::constitutive::{ConstitutiveModel, Laws};
 use crate::dynamics::verlet::Verlet;
-use crate::error::RunError;
+use crate::error::{BuildError, RunError};
 use crate::execute::simd::Simd;
 use crate::interaction::PointEnergies;
 use crate::run::system::{Regime, System};
@@ -81,6 +81,10 @@ impl<const D: usize> Stepper<D> for VelocityVerlet {
         None
     }
 
+    fn accepts(&self, _: &mut System<D>) -> Result<(), BuildError> {
+        Ok(())
+    }
+
     fn split(&mut self) -> Option<&mut dyn SplitStep<D>> {
         Some(self)
     }
@@ -137,7 +141,7 @@ impl<const D: usize> SplitStep<D> for VelocityVerlet {
             self.step_back(system);
             return Err(error);
         }
-        system.pay(1.0, 0.5 * dt);
+        system.account_work(1.0, 0.5 * dt);
         Ok(self.path)
     }
 
@@ -152,7 +156,7 @@ impl<const D: usize> SplitStep<D> for VelocityVerlet {
         system.forces(true, system.clock.step_end());
         if let Some(fault) = system.fault {
             let error = fault.explained(system.clock.step());
-            system.retreat_transfers();
+            system.retreat_diffusions();
             system.acting_retreat();
             self.step_back(system);
             return Err(error);
@@ -161,6 +165,11 @@ impl<const D: usize> SplitStep<D> for VelocityVerlet {
         system.account_constraints(t, dt, change.as_ref());
         self.pending = true;
         Ok(())
+    }
+
+    fn turn_back(&mut self, system: &mut System<D>) {
+        system.retreat_diffusions();
+        self.step_back(system);
     }
 }
 
@@ -196,7 +205,7 @@ impl VelocityVerlet {
         let shortest = system.interaction.shortest(&system.body, view(&system.u));
         let most = fraction.max(HELD);
         let parts = (fraction / (most * shortest)).ceil().clamp(1.0, PARTS) as u32;
-        let parts = parts.max(parts_of_indenters(system, fraction));
+        let parts = parts.max(parts_of_rigid_bodies(system, fraction));
         system.body.most(f64::from(parts)) as u32
     }
 
@@ -227,7 +236,7 @@ impl VelocityVerlet {
 }
 
 /// In how many parts what touches rigid bodies asks for: the deeper a point is below a surface, the stiffer it is held.
-fn parts_of_indenters<const D: usize>(system: &System<D>, fraction: f64) -> u32 {
+fn parts_of_rigid_bodies<const D: usize>(system: &System<D>, fraction: f64) -> u32 {
     let dt = system.clock.dt();
     let bonds = (2.0 * fraction / dt).powi(2);
     let stiffest = system.applied.rigid.iter().map(|i| i.stiffened(bonds));

@@ -29,7 +29,9 @@ impl<const D: usize> Owner for System<D> {
         self.prescribed.archive(body, archive);
         archive.part("accounts", &mut self.accounts);
         archive.one("cut", &mut self.info.cut);
-        archive.within("transfers", |archive| self.transfers.archive(body, archive));
+        archive.within("transfers", |archive| {
+            self.diffusions.archive(body, archive)
+        });
         if archive.loads() {
             self.restored();
         }
@@ -42,13 +44,13 @@ impl<const D: usize> System<D> {
         self.info.time_step = self.clock.dt_of_motion();
         self.stressed = None;
         self.refresh_images();
-        self.look_again();
+        self.invalidate_neighbours();
         if let Some(contact) = &mut self.contact {
             contact.find(&self.body, &self.u, self.interaction.as_ref());
         }
-        for indenter in &mut self.applied.rigid {
-            indenter.look_around(&self.body, &self.u);
+        for rigid_body in &mut self.applied.rigid {
+            rigid_body.look_around(&self.body, &self.u);
         }
-        self.break_transfers();
+        self.break_diffusions();
     }
 }

@@ -57,7 +57,7 @@ impl<const D: usize> System<D> {
                 Sweep::Evolve {
                     v: view(&self.v),
                     steps,
-                    release: self.release,
+                    breakage: self.breakage,
                 },
                 seen.as_mut(),
             );
@@ -89,7 +89,7 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Forces of contact, indenters and loads, on top of those of bonds.
+    /// Forces of contact, rigid_bodies and loads, on top of those of bonds.
     pub fn other_forces(&mut self, at: Evaluation) {
         let t = self.clock.time();
         if let Some(contact) = &mut self.contact {
@@ -117,8 +117,8 @@ impl<const D: usize> System<D> {
     pub fn begin(&mut self, bonds: bool) {
         let step = [self.clock.time(), self.clock.dt()];
         self.prescribed.start(&mut self.u, &mut self.v, step);
-        self.start_transfers();
-        self.look_again();
+        self.start_diffusions();
+        self.invalidate_neighbours();
         self.forces(bonds, self.given());
         // energy that came in from outside counts as initial
         self.accounts.initial = Some(self.energy_now().base());
@@ -164,14 +164,14 @@ fn refresh_motion<const D: usize>(system: &mut System<D>, steps: [f64; 2], begin
     system.tell_toughness();
     let System {
         body,
-        release,
+        breakage,
         u,
         v,
         f,
         interaction,
         ..
     } = system;
-    let (body, release) = (&*body, *release);
+    let (body, breakage) = (&*body, *breakage);
     let mut moved = (u, v, f, interaction);
     body.exchange().fill_during(
         &mut moved,
@@ -179,7 +179,7 @@ fn refresh_motion<const D: usize>(system: &mut System<D>, steps: [f64; 2], begin
         |(u, v, f, interaction)| {
             if begin {
                 let v = view(v);
-                let sweep = Sweep::Evolve { v, steps, release };
+                let sweep = Sweep::Evolve { v, steps, breakage };
                 interaction.begin_forces(body, view(u), view_mut(f), sweep);
             }
         },

@@ -69,7 +69,7 @@ impl<const D: usize> System<D> {
             .body
             .most(peak.fold(0.0f64, |m, (a, i)| m.max(self.u[a][i].abs())));
         let small = match peak > 0.0 {
-            true => (SMALL * self.body.spacing() / peak).log2().floor().exp2(),
+            true => libm::exp2(libm::log2(SMALL * self.body.spacing() / peak).floor()),
             false => 1.0,
         };
         let mut u = self.body.at_rest();

@@ -14,20 +14,20 @@ use self::stressed::Stressed;
 use super::Info;
 use super::accounts::state::Accounts;
 use super::clock::Clock;
+use super::diffusions::state::Diffusions;
 use super::healing::state::Healing;
 use super::inertia::state::Inertia;
-use super::transfers::state::Transfers;
 use crate::body::{Body, Field};
-use crate::condition::applied::AppliedForces;
-use crate::condition::constraint::Constraint;
-use crate::condition::prescribed_motion::PrescribedMotion;
-use crate::condition::toughness::ToughnessField;
+use crate::boundary_condition::applied::AppliedForces;
+use crate::boundary_condition::constraint::Constraint;
+use crate::boundary_condition::prescribed_motion::PrescribedMotion;
+use crate::boundary_condition::toughness::SpatialToughness;
 use crate::constitutive::ConstitutiveModels;
+use crate::diffusion::Diffusion;
 use crate::interaction::{ContactForces, Interaction, PointEnergies};
 use crate::observe::Observed;
 use crate::run::fault::KnownFault;
-use crate::spec::Release;
-use crate::transfer::Transfer;
+use crate::spec::Breakage;
 
 /// A body in D dimensions, and all that acts on it.
 pub(super) struct System<const D: usize> {
@@ -37,7 +37,7 @@ pub(super) struct System<const D: usize> {
     /// Between points that are not in each other's family.
     pub contact: Option<ContactForces<D>>,
     /// `None`: that of the materials.
-    pub toughness: Option<ToughnessField>,
+    pub toughness: Option<SpatialToughness>,
     /// `None`: what is broken stays so.
     pub healing: Option<Healing>,
     pub u: Field<D>,
@@ -48,7 +48,7 @@ pub(super) struct System<const D: usize> {
     pub prescribed: PrescribedMotion<D>,
     pub applied: AppliedForces<D>,
     /// What spreads through the bonds.
-    pub transfers: Transfers,
+    pub diffusions: Diffusions,
     /// Laws and constants, for what is computed pair by pair.
     pub constitutive: ConstitutiveModels,
     pub clock: Clock,
@@ -56,7 +56,7 @@ pub(super) struct System<const D: usize> {
     /// What is kept of the next evaluation of forces.
     pub watch: Watch,
     /// When a bond past its critical stretch breaks.
-    pub release: Release,
+    pub breakage: Breakage,
     /// Has somebody had enough of a search for an equilibrium?
     pub stop: fn() -> bool,
     /// The last forces mean nothing.
@@ -76,10 +76,10 @@ impl<const D: usize> System<D> {
             + self.inertia.as_ref().map_or(0, |i| i.masses.bytes())
             + 3 * D * 8 * self.body.len()
             + self
-                .transfers
+                .diffusions
                 .all
                 .iter()
-                .map(Transfer::bytes)
+                .map(Diffusion::bytes)
                 .sum::<usize>()
     }
 
@@ -98,9 +98,9 @@ impl<const D: usize> System<D> {
     }
 
     /// Points may be anywhere now: whoever keeps track of what is near forgets it.
-    pub fn look_again(&mut self) {
+    pub fn invalidate_neighbours(&mut self) {
         if let Some(contact) = &mut self.contact {
-            contact.central.look_again();
+            contact.central.invalidate_neighbours();
         }
         self.applied.all().for_each(|x| x.moved(f64::INFINITY));
     }

@@ -1,32 +1,32 @@
 //! What the parts of a spec have not.
 
 use super::{Lack, Property};
-use crate::constitutive::{Shelf, Stiffness};
+use crate::constitutive::{Registry, Stiffness};
 use crate::law::descriptor::Memory;
 use crate::law::solid::eam_like::Solid;
 use crate::run::reference::{current_neighbours, listed};
 use crate::spec::{
-    BodySpec, Calibration, Control, CrackKind, Criterion, FamilyChoice, FractureSpec,
-    IndenterMotion, InterfaceSpec, LawSpec, MaterialSpec, Measure, Method, PreloadSpec, Quantity,
-    Release, Solver, Spec, Stepper, ToughnessFactor, TransferMethod, TransferSpec,
+    BodySpec, Breakage, Calibration, Control, CrackKind, Criterion, DiffusionMethod, DiffusionSpec,
+    FamilyChoice, FractureSpec, InterfaceSpec, LawSpec, MaterialSpec, Measure, Method, PreloadSpec,
+    Quantity, RigidBodyMotion, Solver, Spec, Stepper, ToughnessFactor,
 };
 
-pub(super) fn of(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
-    let mut all = of_bodies(spec, shelf);
+pub(super) fn of(spec: &Spec, registry: &Registry) -> Vec<Lack> {
+    let mut all = of_bodies(spec, registry);
     all.extend(of_families(spec));
-    all.extend(of_horizons(spec, shelf));
+    all.extend(of_horizons(spec, registry));
     all.extend(of_probes(spec));
-    all.extend(of_transfers(spec));
+    all.extend(of_diffusions(spec));
     all.extend(of_statics(spec));
     all.extend(of_atoms(spec));
     all.extend(of_strength(spec));
     for (n, m) in spec.materials.iter().enumerate() {
-        all.extend(of_material(n, m, spec, shelf));
+        all.extend(of_material(n, m, spec, registry));
     }
     all
 }
 
-fn of_bodies(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
+fn of_bodies(spec: &Spec, registry: &Registry) -> Vec<Lack> {
     let mut all = vec![];
     if !spec.interactions.pairs.is_empty() {
         let says = "the constants of pairs of materials are one table for all bonds of a body";
@@ -41,13 +41,16 @@ fn of_bodies(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
         all.push(Lack::new(Property::Symmetric, says, ""));
     }
     if spec.bonds.surface.is_some() {
-        let says = "factors of bonds near the surface are those of the points of one lattice";
+        let says = "surface corrections are those of the points of one lattice";
         let instead = "give each body its own";
         all.push(Lack::new(Property::SideBySide, says, instead).at("surface"));
     }
-    if spec.bonds.own_horizon.is_some() {
+    if spec.bonds.variable_horizon.is_some() {
         let says = "points have horizons of their own";
-        all.push(Lack::new(Property::OneHorizon, says, "leave own_horizon out").at("own_horizon"));
+        all.push(
+            Lack::new(Property::OneHorizon, says, "leave variable_horizon out")
+                .at("variable_horizon"),
+        );
     }
     if !spec.interactions.interfaces.is_empty() {
         let says = "an interface bonds points of two bodies";
@@ -64,35 +67,36 @@ fn of_bodies(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
         }
     }
     let lets_go = |i: &InterfaceSpec| {
-        let fades = matches!(&i.law, LawSpec::Named(law) if shelf.fades(&law.name));
+        let fades = matches!(&i.law, LawSpec::Named(law) if registry.softens_to_zero(&law.name));
         i.fracture.is_some() && !fades
     };
     if interfaces.iter().any(lets_go) {
-        let says = "bonds of an interface let go while they bear";
-        let instead = "leave the fracture of the interface out, or write control = \"breaking\"";
+        let says = "this interface breaks bonds abruptly: path following needs a softening law";
+        let instead =
+            "leave the fracture of the interface out, or write control = \"sequentially_linear\"";
         all.push(Lack::new(Property::Fades, says, instead).at("statics.control"));
     }
     if let BodySpec::Several(pieces) = &spec.body {
         if let Some(loose) = pieces.iter().find(|p| !p.bonded) {
-            let says = format!("the points of `{}` are loose", loose.name);
+            let says = format!("`{}` has unbonded particles", loose.name);
             all.push(Lack::new(Property::Faces, says, "leave bonded = false out"));
         }
         if spec.interactions.contact.is_some() {
-            let says = "bodies that touch answer to half a load by more or less than half";
+            let says = "contact forces are not proportional to the load";
             let instead = "write contact = false and bond them";
             all.push(Lack::new(Property::InProportion, says, instead));
         }
     }
-    if !spec.loading.indenters.is_empty() {
-        let says = "what touches an indenter answers to half a load by more or less than half";
+    if !spec.loading.rigid_bodies.is_empty() {
+        let says = "contact forces of a rigid body are not proportional to the load";
         all.push(Lack::new(
             Property::InProportion,
             says,
-            "leave the indenters out",
+            "leave the rigid bodies out",
         ));
     }
     if let Some(n) = (spec.loading.conditions.iter()).position(|c| c.kind.depends_on_time()) {
-        let says = "this condition depends on t";
+        let says = "this boundary condition depends on t";
         let instead = "leave t out of it; increments count cycles, whose number is in history.csv";
         let lack = Lack::new(Property::SameInCycles, says, instead);
         all.push(lack.at(format!("conditions[{n}]")));
@@ -116,7 +120,7 @@ fn of_families(spec: &Spec) -> Vec<Lack> {
         FamilyChoice::Auto | FamilyChoice::Stencil | FamilyChoice::Neighbours => {}
     }
     if current_neighbours(spec) {
-        let says = "atoms feel those that are near now, and who comes near again is a neighbour again: no bond can break or be cut";
+        let says = "atoms interact with their current neighbours, and who comes near again is a neighbour again: no bond can break or be cut";
         let instead =
             "write family = \"reference\" with a horizon, or remove fracture and pre-cracks";
         all.push(Lack::new(Property::Breaks, says, instead));
@@ -134,7 +138,7 @@ fn of_families(spec: &Spec) -> Vec<Lack> {
         let instead = "give the material a pair potential";
         all.push(Lack::new(Property::Solids, says, instead).at("bonded"));
         let says = "molecules have no stencil";
-        let instead = "remove family = \"stencil\": atoms feel those that are near now, or with family = \"reference\" those of the reference";
+        let instead = "remove family = \"stencil\": atoms interact with their current neighbours, or with family = \"reference\" those of the reference";
         all.push(Lack::new(Property::OfStencil, says, instead).at("bonded"));
         let says = "the bonds of a molecule are terms of its force field, which hold at any length";
         let instead = "remove fracture and pre-cracks";
@@ -144,10 +148,10 @@ fn of_families(spec: &Spec) -> Vec<Lack> {
 }
 
 /// Of what stands in the way of horizons of points.
-fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
+fn of_horizons(spec: &Spec, registry: &Registry) -> Vec<Lack> {
     let mut all = vec![];
     let mut lack = |path: &str, says: &str, instead| {
-        all.push(Lack::new(Property::OwnHorizons, says, instead).at(path));
+        all.push(Lack::new(Property::VariableHorizons, says, instead).at(path));
     };
     if !listed(spec)
         && matches!(
@@ -156,31 +160,31 @@ fn of_horizons(spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
         )
     {
         lack(
-            "own_horizon",
-            "horizons of points are those of a cloud: a lattice has one stencil",
+            "variable_horizon",
+            "a variable horizon belongs to a cloud: a lattice has one stencil",
             "write family = \"list\", or take the points from a file",
         );
     }
     for m in &spec.materials {
-        match shelf.stiffness(&m.law) {
+        match registry.stiffness(&m.law) {
             Some(Stiffness::Family | Stiffness::Bonds) => {}
             Some(Stiffness::Horizon(why)) => lack(
-                "own_horizon",
+                "variable_horizon",
                 why,
-                "take pmb, lps or another law of sums over families, or leave own_horizon out",
+                "take pmb, lps or another law of sums over families, or leave variable_horizon out",
             ),
             None => lack(
-                "own_horizon",
+                "variable_horizon",
                 "points with horizons of their own are a body of pmb, or of laws that their families normalise",
-                "take lps, or leave own_horizon out",
+                "take lps, or leave variable_horizon out",
             ),
         }
     }
-    if !spec.bonds.volume_scaling {
+    if !spec.bonds.partial_volume_correction {
         lack(
-            "volume_scaling",
+            "partial_volume_correction",
             "volumes fade at the horizon of a point: else its stiffness jumps wherever that passes another point",
-            "leave volume_scaling out",
+            "leave partial_volume_correction out",
         );
     }
     if spec.bonds.calibration != Calibration::Continuum {
@@ -212,7 +216,7 @@ fn of_probes(spec: &Spec) -> Vec<Lack> {
             "leave the probe out",
         )
     }));
-    let Some(lack) = first(&|m| matches!(m, Measure::Contour(_))) else {
+    let Some(lack) = first(&|m| matches!(m, Measure::JIntegral(_))) else {
         return all;
     };
     all.push(lack(
@@ -240,31 +244,31 @@ fn mirrored(spec: &Spec) -> bool {
     !fits || (0..n).all(|a| (0..a).all(|b| alike(a, b)))
 }
 
-fn of_transfers(spec: &Spec) -> Vec<Lack> {
+fn of_diffusions(spec: &Spec) -> Vec<Lack> {
     let mut all = vec![];
-    if !spec.interactions.transfers.is_empty() {
+    if !spec.interactions.diffusions.is_empty() {
         let says = "heat or a species spreads in time";
-        let instead = "leave out what spreads";
+        let instead = "leave out heat and species";
         all.push(Lack::new(Property::Proportional, says, instead));
     }
-    for t in &spec.interactions.transfers {
+    for t in &spec.interactions.diffusions {
         if t.conditions.iter().any(|c| c.kind.depends_on_time()) {
             let name = t.quantity.name();
-            let says = format!("a condition of {name} depends on t");
+            let says = format!("a boundary condition of {name} depends on t");
             let lack = Lack::new(Property::TwoStages, says, "leave t out of it");
             all.push(lack.at(name));
         }
     }
-    let mut transfers = spec.interactions.transfers.iter();
-    if transfers.any(TransferSpec::expands) {
+    let mut diffusions = spec.interactions.diffusions.iter();
+    if diffusions.any(DiffusionSpec::expands) {
         let says = "a body that expands has left its reference";
         let instead = "leave expansion and swelling out";
         all.push(Lack::new(Property::Memoryless, says, instead));
     }
-    let steady = |t: &TransferSpec| {
-        t.quantity == Quantity::Heat && matches!(t.method, TransferMethod::Steady { .. })
+    let steady = |t: &DiffusionSpec| {
+        t.quantity == Quantity::Heat && matches!(t.method, DiffusionMethod::Steady { .. })
     };
-    if spec.interactions.transfers.iter().any(steady) {
+    if spec.interactions.diffusions.iter().any(steady) {
         let says = "a steady temperature is that which the held places and the bonds of now say";
         let instead = "write method = \"implicit\" in [heat] with steps as long as you like";
         all.push(Lack::new(Property::Transient, says, instead));
@@ -277,12 +281,12 @@ fn of_statics(spec: &Spec) -> Vec<Lack> {
     let mut all = vec![];
     if let Some(preload) = &spec.run.preload {
         all.extend(of_preload(preload));
-        let free = |motion: &IndenterMotion| matches!(motion, IndenterMotion::Free(_));
-        if let Some(n) = (preload.indenters.iter()).position(|i| free(&i.motion)) {
-            let says = "an indenter with a mass goes where forces push it";
-            let instead = "leave mass and density out, or write stage = \"motion\"";
+        let free = |motion: &RigidBodyMotion| matches!(motion, RigidBodyMotion::Free(_));
+        if let Some(n) = (preload.rigid_bodies.iter()).position(|i| free(&i.motion)) {
+            let says = "a rigid body with a mass is moved by forces";
+            let instead = "leave mass and density out, or write stage = \"dynamics\"";
             let lack = Lack::new(Property::Motionless, says, instead);
-            all.push(lack.at(format!("preload.indenters[{n}]")));
+            all.push(lack.at(format!("preload.rigid_bodies[{n}]")));
         }
     }
     let Some(statics) = spec.run.schedule.statics() else {
@@ -334,16 +338,16 @@ fn of_preload(preload: &PreloadSpec) -> Vec<Lack> {
         all.push(lack.at("preload.statics.method"));
     }
     if preload.statics.control != Control::Load {
-        let says = "statics whose load is what the body bears ends anywhere";
+        let says = "statics that follows a path ends at any load";
         let lack = Lack::new(Property::TwoStages, says, "leave control out");
         all.push(lack.at("preload.statics.control"));
     }
     if preload.statics.cycles.is_some() {
-        let says = "cycles of load wear a body out that stays where it is";
+        let says = "cycles of fatigue do not move a body";
         let lack = Lack::new(Property::TwoStages, says, "leave cycles out");
         all.push(lack.at("preload.statics.cycles"));
     }
-    if let Some(n) = (preload.cuts.iter()).position(|c| c.kind == CrackKind::Absent) {
+    if let Some(n) = (preload.cuts.iter()).position(|c| c.kind == CrackKind::Excluded) {
         let says = "bonds that are loaded cannot be made never to have been";
         let instead = "write kind = \"broken\", or leave it out";
         let lack = Lack::new(Property::TwoStages, says, instead);
@@ -358,14 +362,21 @@ fn of_atoms(spec: &Spec) -> Vec<Lack> {
     if spec.materials.len() > 1 {
         let says = "several materials have no nodes in common";
         all.push(Lack::new(
-            Property::Carried,
+            Property::KinematicPoints,
             says,
             "give the atoms one material",
         ));
     }
     if spec.loading.thermal.is_some() {
         let says = "atoms that are carried along have no thermal motion of their own";
-        all.push(Lack::new(Property::Carried, says, "remove thermal").at("thermal"));
+        all.push(
+            Lack::new(
+                Property::KinematicPoints,
+                says,
+                "leave initial_velocities out",
+            )
+            .at("initial_velocities"),
+        );
     }
     let says = "what breaks are bonds between the atoms, and points are nodes";
     for (path, there) in [
@@ -373,13 +384,13 @@ fn of_atoms(spec: &Spec) -> Vec<Lack> {
         ("healing", spec.damage.healing.is_some()),
     ] {
         if there {
-            all.push(Lack::new(Property::Carried, says, "leave it out").at(path));
+            all.push(Lack::new(Property::KinematicPoints, says, "leave it out").at(path));
         }
     }
     if matches!(&spec.body, BodySpec::Cloud(cloud) if !cloud.velocity.is_empty()) {
         let says = "the file has velocities of atoms";
         let instead = "give the places alone; velocities of nodes are those of [[initial]]";
-        all.push(Lack::new(Property::Carried, says, instead));
+        all.push(Lack::new(Property::KinematicPoints, says, instead));
     }
     all
 }
@@ -403,9 +414,9 @@ fn of_strength(spec: &Spec) -> Vec<Lack> {
             .interfaces
             .iter()
             .any(|i| i.fracture.is_some());
-    if breaks && spec.damage.release == Release::AfterForce {
-        let says = "bonds that pull once more after they broke";
-        let lack = Lack::new(Property::EndsAtOnce, says, "leave release out");
+    if breaks && spec.damage.breakage == Breakage::AfterForce {
+        let says = "bonds that act once more in the step in which they break";
+        let lack = Lack::new(Property::EndsAtOnce, says, "leave breakage out");
         all.push(lack.at("materials[0].fracture"));
     }
     if spec.run.schedule.stepper == Stepper::Still {
@@ -418,7 +429,7 @@ fn of_strength(spec: &Spec) -> Vec<Lack> {
     all
 }
 
-fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, shelf: &Shelf) -> Vec<Lack> {
+fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, registry: &Registry) -> Vec<Lack> {
     let mut all = vec![];
     let name = match &m.law {
         LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
@@ -431,16 +442,16 @@ fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, shelf: &Shelf) -> Vec<La
         LawSpec::Named(law) => law.name.as_str(),
         LawSpec::Pmb(_)
         | LawSpec::Lps(_)
-        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::Lps3d { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_) => "",
     };
     all.extend(of_linear_laws(n, m, spec));
-    if shelf.ends(name) {
+    if registry.own_critical_stretch(name) {
         let says = format!("the law {name} has its critical stretch among its constants");
         all.push(Lack::new(Property::StrengthOfPoints, says, ""));
     }
-    if shelf.kinds(name) {
+    if registry.bond_classes(name) {
         let says = format!(
             "bonds of the law {name} break at stretches of two kinds, and a factor is of one"
         );
@@ -449,9 +460,9 @@ fn of_material(n: usize, m: &MaterialSpec, spec: &Spec, shelf: &Shelf) -> Vec<La
     if let Some(fracture) = m.fracture {
         let path = format!("materials[{n}].fracture");
         all.extend(of_fracture(fracture, &path));
-        if !shelf.fades(name) {
-            let says = "bonds of this law let go while they bear";
-            let instead = "take a law whose bonds soften to nothing, or control = \"breaking\", which follows linear bodies bond after bond";
+        if !registry.softens_to_zero(name) {
+            let says = "this law breaks bonds abruptly: path following needs a softening law";
+            let instead = "take a law whose bonds soften to nothing, or control = \"sequentially_linear\", which follows linear bodies bond after bond";
             all.push(Lack::new(Property::Fades, says, instead).at(path));
         }
     }
@@ -512,7 +523,7 @@ fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
         }
         LawSpec::Pmb(_)
         | LawSpec::Lps(_)
-        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::Lps3d { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Named(_) => {}
     }
@@ -520,7 +531,7 @@ fn of_linear_laws(n: usize, m: &MaterialSpec, spec: &Spec) -> Vec<Lack> {
 }
 
 /// Of the law of a material, for what its own bonds break by; `path` is where that is said.
-pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
+pub(super) fn of_law(m: &MaterialSpec, path: &str, registry: &Registry) -> Vec<Lack> {
     let mut all = vec![];
     let mut lack = |property, says: String, instead| {
         all.push(Lack::new(property, says, instead).at(path));
@@ -533,14 +544,14 @@ pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
     match &m.law {
         LawSpec::Named(law) => {
             let name = law.name.as_str();
-            if shelf.ends(name) || shelf.kinds(name) {
+            if registry.own_critical_stretch(name) || registry.bond_classes(name) {
                 let says = format!(
                     "the law {name} has a critical stretch among its constants: its bonds break by nothing else"
                 );
                 let instead = "leave criterion, rate and fatigue out";
                 lack(Property::OtherMeasures, says, instead);
             }
-            if shelf.ends(name) {
+            if registry.own_critical_stretch(name) {
                 let says = format!(
                     "the law {name} has its critical stretch among its constants, where its bonds have softened to nothing"
                 );
@@ -553,15 +564,15 @@ pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
                 let instead = "give critical_stretch instead";
                 lack(Property::EnergyOfStretch, says, instead);
             }
-            if shelf.turns(name) {
+            if registry.tangential_stiffness(name) {
                 let says = format!("bonds of the law {name} store energy by turning, too");
                 let instead =
                     "write criterion = \"bond_energy\" beside energy, or give critical_stretch";
                 lack(Property::EnergyOfStretch, says, instead);
             }
-            let memory = shelf.descriptor(name).map(|d| d.memory);
+            let memory = registry.descriptor(name).map(|d| d.memory);
             let elastic = law.isotropic && memory == Some(Memory::Nothing);
-            if !elastic && !shelf.across(name) {
+            if !elastic && !registry.across(name) {
                 let says = "the stress across plane strain does not follow from that in the plane: this law is anisotropic, or its bonds soften";
                 let instead = "give another criterion, or take three dimensions";
                 lack(Property::StressAcross, says.into(), instead);
@@ -584,7 +595,7 @@ pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
         }
         LawSpec::Pmb(_)
         | LawSpec::Lps(_)
-        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::Lps3d { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_)
         | LawSpec::Micromoduli(_) => {}
@@ -593,8 +604,8 @@ pub(super) fn of_law(m: &MaterialSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
 }
 
 /// Of bonds between bodies, for what they break by; `path` is where that is said.
-pub(super) fn of_interface(i: &InterfaceSpec, path: &str, shelf: &Shelf) -> Vec<Lack> {
-    let mut all = of_law(&i.material(), path, shelf);
+pub(super) fn of_interface(i: &InterfaceSpec, path: &str, registry: &Registry) -> Vec<Lack> {
+    let mut all = of_law(&i.material(), path, registry);
     let points = |f: FractureSpec| {
         matches!(
             f.criterion,
@@ -641,7 +652,7 @@ fn of_fracture(fracture: FractureSpec, path: &str) -> Vec<Lack> {
             all.push(Lack::new(Property::StrengthTimesFactor, says, ""));
         }
         Criterion::BondEnergy(_) => {
-            let says = "these bonds bear a work, their part of a fracture energy";
+            let says = "these bonds break by a work, their part of a fracture energy";
             let instead = "give critical_stretch, or energy without criterion";
             let lack = Lack::new(Property::StretchAtEveryHorizon, says, instead);
             all.push(lack.at(path));

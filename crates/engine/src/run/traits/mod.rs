@@ -7,7 +7,7 @@ mod system;
 
 pub(super) use system::{of_control, of_implicit_steps, of_statics};
 
-use crate::constitutive::Shelf;
+use crate::constitutive::Registry;
 use crate::error::BuildError;
 use crate::message;
 use crate::quantity::Message;
@@ -91,7 +91,7 @@ pub(super) enum Property {
     /// May be part of statics that motion follows.
     TwoStages,
     /// May be carried along by nodes.
-    Carried,
+    KinematicPoints,
     /// Bonds are those of a continuum.
     Continuum,
     /// Bonds may be weighed by an influence function.
@@ -99,7 +99,7 @@ pub(super) enum Property {
     /// All points have the horizon of the body.
     OneHorizon,
     /// Every point may have another horizon.
-    OwnHorizons,
+    VariableHorizons,
     /// Bonds are those of their points, not of a table of pairs.
     ConstantsOfPoints,
     /// May stand beside other bodies.
@@ -128,7 +128,7 @@ impl Property {
         matches!(
             self,
             Property::OneHorizon
-                | Property::OwnHorizons
+                | Property::VariableHorizons
                 | Property::OfStencil
                 | Property::Nonlinear
                 | Property::StretchAtEveryHorizon
@@ -214,20 +214,20 @@ pub(super) fn met(needs: Vec<Need>, lacks: &[Lack]) -> Result<(), BuildError> {
 
 /// Do the parts of a spec go together, and those of each of its materials and interfaces? Of several bodies what they share; each is asked alone what is
 /// its own, its materials among that.
-pub(super) fn agree(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
+pub(super) fn agree(spec: &Spec, registry: &Registry) -> Result<(), BuildError> {
     let several = matches!(spec.body, BodySpec::Several(_));
     let mut needs = needs::of(spec);
     needs.retain(|n| !(several && n.property.is_of_a_body()));
-    met(needs, &lacks::of(spec, shelf))?;
+    met(needs, &lacks::of(spec, registry))?;
     for (n, m) in spec.materials.iter().enumerate().filter(|_| !several) {
         let path = format!("materials[{n}].fracture");
         let needs = needs::of_fracture(spec, m.fracture, &path);
-        met(needs, &lacks::of_law(m, &path, shelf))?;
+        met(needs, &lacks::of_law(m, &path, registry))?;
     }
     for (n, i) in spec.interactions.interfaces.iter().enumerate() {
         let path = format!("interface[{n}].fracture");
         let needs = needs::of_fracture(spec, i.fracture, &path);
-        met(needs, &lacks::of_interface(i, &path, shelf))?;
+        met(needs, &lacks::of_interface(i, &path, registry))?;
     }
     Ok(())
 }

@@ -28,7 +28,7 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
         all.push(Need::new(Property::Meets, "body", why, ""));
     }
     if !spec.bonds.factors.is_empty() {
-        let why = ", and factors of bonds need a bond-based law";
+        let why = ", and bond stiffness scaling needs a bond-based law";
         all.push(Need::new(Property::BondByBond, "bonds[0]", why, ""));
     }
     if spec.bonds.influence != Influence::Constant {
@@ -45,21 +45,21 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
     if spec.bonds.family == FamilyChoice::Stencil {
         all.push(Need::new(Property::OfStencil, "family", "", ""));
     }
-    for transfer in &spec.interactions.transfers {
+    for diffusion in &spec.interactions.diffusions {
         let why = ", through which heat and species go";
-        let name = transfer.quantity.name();
+        let name = diffusion.quantity.name();
         all.push(Need::new(Property::Continuum, name, why, ""));
     }
     if spec.bonds.smooth.is_some() {
         let why = ", and these are carried along by nodes";
         all.push(Need::new(
-            Property::Carried,
+            Property::KinematicPoints,
             "smooth",
             why,
             "leave smooth out",
         ));
     }
-    if let Some(heat) = spec.interactions.transfers.iter().find(|t| t.deformation) {
+    if let Some(heat) = spec.interactions.diffusions.iter().find(|t| t.deformation) {
         all.push(Need::new(
             Property::Deformation,
             heat.quantity.name(),
@@ -70,19 +70,24 @@ fn of_bodies(spec: &Spec) -> Vec<Need> {
     let of_one = |path: &str, why, instead| Need::new(Property::OneHorizon, path, why, instead);
     if spec.bonds.surface.is_some() {
         let why = ", and exact surfaces are those of the stencil of a lattice";
-        all.push(of_one("own_horizon", why, "leave surface out"));
+        all.push(of_one("variable_horizon", why, "leave surface out"));
     }
     if !spec.interactions.pairs.is_empty() {
         let why = ", and so have pairs of materials: a bond has one";
-        all.push(of_one("own_horizon", why, ""));
+        all.push(of_one("variable_horizon", why, ""));
     }
-    if spec.bonds.own_horizon.is_some() {
-        all.push(Need::new(Property::OwnHorizons, "own_horizon", "", ""));
+    if spec.bonds.variable_horizon.is_some() {
+        all.push(Need::new(
+            Property::VariableHorizons,
+            "variable_horizon",
+            "",
+            "",
+        ));
         all.push(Need::new(
             Property::StretchAtEveryHorizon,
-            "own_horizon",
+            "variable_horizon",
             ", which follows from one horizon, and every point has another",
-            "leave own_horizon out",
+            "leave variable_horizon out",
         ));
     }
     all
@@ -104,7 +109,12 @@ fn of_atoms(spec: &Spec) -> Vec<Need> {
     }
     if spec.loading.thermal.is_some() {
         let why = ", which a Maxwell-Boltzmann distribution of points is";
-        all.push(Need::new(Property::Independent, "thermal", why, ""));
+        all.push(Need::new(
+            Property::Independent,
+            "initial_velocities",
+            why,
+            "",
+        ));
     }
     let linear = |l: &LawSpec| matches!(l, LawSpec::Springs(_) | LawSpec::Micromoduli(_));
     let mut laws = spec.materials.iter().map(|m| &m.law);
@@ -121,7 +131,7 @@ pub(super) fn of_fracture(spec: &Spec, fracture: Option<FractureSpec>, path: &st
         return all;
     };
     if fracture.remembers() {
-        let why = ", and more than the stretch of now is asked for";
+        let why = ", and the criterion needs more than the present stretch";
         all.push(Need::new(Property::OtherMeasures, path, why, ""));
     }
     if fracture.alpha != 0.0 {
@@ -210,12 +220,12 @@ fn of_strength(spec: &Spec) -> Vec<Need> {
     };
     // of several bodies each is asked alone
     let alone = spec.body.pieces().is_empty();
-    if alone && spec.bonds.own_horizon.is_some() && spec.materials.iter().any(energy) {
+    if alone && spec.bonds.variable_horizon.is_some() && spec.materials.iter().any(energy) {
         let why = ", and what a fracture energy means follows the horizon of each point";
-        let instead = "give critical_stretch, or leave own_horizon out";
+        let instead = "give critical_stretch, or leave variable_horizon out";
         all.push(Need::new(
             Property::StrengthOfPoints,
-            "own_horizon",
+            "variable_horizon",
             why,
             instead,
         ));
@@ -302,7 +312,7 @@ fn of_statics(statics: Statics) -> Vec<Need> {
             Need::new(
                 Property::BeyondReference,
                 "statics.method",
-                ", and cycles of load wear its bonds out: another body",
+                ", and fatigue changes its bonds",
                 "",
             ),
             Need::new(
@@ -314,7 +324,7 @@ fn of_statics(statics: Statics) -> Vec<Need> {
             Need::new(
                 Property::SameInCycles,
                 "statics.cycles",
-                ": in cycles of load conditions are the greatest of each cycle, and stay as they are",
+                ": boundary conditions are the greatest of each cycle, and stay as they are",
                 "",
             ),
         ]);
@@ -329,13 +339,13 @@ fn of_control(control: Control) -> Vec<Need> {
         Need::new(
             Property::Proportional,
             "statics.control",
-            ", and t is the factor of a load that is sought",
+            ", and t is the load factor, which is sought",
             leave,
         ),
         Need::new(
             Property::PresentStretch,
             "statics.control",
-            ", by which alone the load is known that they bear",
+            ", by which alone the load at which they break is known",
             leave,
         ),
         Need::new(
@@ -347,21 +357,21 @@ fn of_control(control: Control) -> Vec<Need> {
     ];
     let own = match control {
         Control::Load => return vec![],
-        Control::Breaking => vec![
+        Control::SequentiallyLinear => vec![
             Need::new(
                 Property::AboutReference,
                 "statics.control",
-                ", and bonds are broken in turn where the body is linear about the reference",
+                ", and sequentially linear analysis needs a body that is linear about the reference",
                 "",
             ),
             Need::new(
                 Property::ConstantStrength,
                 "statics.control",
-                ", and bonds that break in turn bear what they bear before any load",
+                ", and sequentially linear analysis needs strengths that are known before any load",
                 "",
             ),
         ],
-        Control::Opening(_) | Control::ArcLength(_) => vec![
+        Control::IndirectDisplacement(_) | Control::ArcLength(_) => vec![
             Need::new(
                 Property::Newton,
                 "statics.method",

@@ -1,7 +1,7 @@
 //! What laws and what acts on a system have not, once it is built, and what its steppers ask for.
 
 use super::{Lack, Need, Property, met};
-use crate::condition::load::{Load, LoadKind};
+use crate::boundary_condition::load::{Load, LoadKind};
 use crate::error::BuildError;
 use crate::law::descriptor::Memory;
 use crate::quantity::rounded;
@@ -24,7 +24,7 @@ pub(in crate::run) fn of_statics<const D: usize>(
         needs.push(Need::new(
             Property::Timeless,
             "statics",
-            ", and t of these increments is the factor of the load, no time",
+            ", and t of these increments is the load factor, not a time",
             "write duration, the time in which the load is applied; its increments are steps in time then",
         ));
     }
@@ -110,7 +110,7 @@ pub(in crate::run) fn of_control<const D: usize>(
         Need::new(
             Property::ForceFree,
             "statics.control",
-            ", and the factor of a load is counted from where nothing pulls",
+            ", and the load factor is counted from where nothing pulls",
             "leave control out",
         ),
         Need::new(
@@ -141,10 +141,10 @@ fn lacks<const D: usize>(system: &System<D>) -> Vec<Lack> {
     let mut lacks: Vec<Lack> = named.flat_map(|law| of_law(law.memory())).collect();
     let applied = &system.applied;
     if applied.free().next().is_some() {
-        let says = "an indenter with a mass goes where forces push it";
+        let says = "a rigid body with a mass is moved by forces";
         let instead =
             "leave mass and velocity out, and write center as a function of t from 0 to 1";
-        lacks.push(Lack::new(Property::Motionless, says, instead).at("indenter"));
+        lacks.push(Lack::new(Property::Motionless, says, instead).at("rigid_bodies"));
     }
     let mut constraints = system.prescribed.constraints.iter();
     if constraints.any(|c| c.is_velocity()) {
@@ -166,7 +166,7 @@ fn lacks<const D: usize>(system: &System<D>) -> Vec<Lack> {
         lacks.push(Lack::new(Property::Tangent, says, ""));
     }
     if system.contact.is_some() || !applied.rigid.is_empty() {
-        let says = "contact and indenters press while something touches, and not before";
+        let says = "contact forces begin when something touches";
         let instead = "write contact = false";
         lacks.push(Lack::new(Property::Continuous, says, instead));
     }
@@ -184,9 +184,9 @@ fn lacks<const D: usize>(system: &System<D>) -> Vec<Lack> {
 }
 
 fn of_law((memory, name): (Memory, &str)) -> Vec<Lack> {
-    let answers = format!("the law {name} answers to how fast it is deformed");
+    let answers = format!("the law {name} is rate-dependent");
     let remembers = || {
-        let says = format!("the law {name} remembers how it was deformed");
+        let says = format!("the law {name} is history-dependent");
         Lack::new(Property::Memoryless, says, "")
     };
     match memory {
@@ -194,7 +194,7 @@ fn of_law((memory, name): (Memory, &str)) -> Vec<Lack> {
         Memory::Path => vec![remembers()],
         Memory::Time => vec![Lack::new(Property::Timeless, answers, ""), remembers()],
         Memory::Shock => {
-            let says = format!("{answers} and bears no shear at rest");
+            let says = format!("{answers} and sustains no shear at rest");
             let instead = "write [run] with a duration, without integrator";
             vec![Lack::new(Property::Motionless, says, instead), remembers()]
         }

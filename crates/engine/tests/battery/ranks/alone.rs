@@ -1,7 +1,7 @@
 //! What one rank meets alone, and all must know: states without an answer, mistakes, bodies of which it has nothing.
 
 use super::heat::spreading;
-use super::{among, colliding, meeting, options, place, same, scattered, shelf, torn};
+use super::{among, colliding, meeting, options, place, registry, same, scattered, torn};
 use crate::atoms::{atoms, potentials};
 use crate::sample::*;
 use peridyne::error::{BuildErrorKind, RunError};
@@ -40,7 +40,7 @@ fn a_state_without_an_answer_is_known_to_all() {
         displacement: [Some(e("x > 1150 && x < 1151 ? 1.7 : 0")), None, None],
         velocity: [const { None }; 3],
     }];
-    let mut one = build_in::<1>(&spec, options(None), &shelf()).unwrap();
+    let mut one = build_in::<1>(&spec, options(None), &registry()).unwrap();
     let one = fault(&mut one);
     assert!(
         matches!(one[0], Some(RunError::Crossing { .. })),
@@ -49,7 +49,7 @@ fn a_state_without_an_answer_is_known_to_all() {
     );
     let all = on_threads(3, |comm| {
         let comm = Arc::new(comm);
-        let own = RankModel::<1>::new(&spec, options(None), &shelf(), &comm).unwrap();
+        let own = RankModel::<1>::new(&spec, options(None), &registry(), &comm).unwrap();
         match comm.rank() {
             0 => Some(fault(&mut AllRanks::new(own, |_, _, _| vec![]))),
             _ => {
@@ -66,7 +66,7 @@ fn a_state_without_an_answer_is_known_to_all() {
 fn a_mistake_in_a_law_is_known_to_all() {
     let kinds = |spec: &Spec| {
         on_threads(3, |comm| {
-            let made = RankModel::<2>::new(spec, options(None), &shelf(), &Arc::new(comm));
+            let made = RankModel::<2>::new(spec, options(None), &registry(), &Arc::new(comm));
             made.err().map(|e| e.kind)
         })
     };
@@ -96,7 +96,7 @@ fn what_ghosts_repel_by_is_theirs() {
     let Horizon::Length(longest) = spec.bonds.horizon else {
         panic!("a length");
     };
-    spec.bonds.own_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
+    spec.bonds.variable_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
     spec.bonds.calibration = Calibration::Continuum;
     same::<2>(&spec, &[2, 3], None);
 }
@@ -148,9 +148,9 @@ fn springs_expand_on_any_number_of_ranks() {
     };
     spec.materials[0].law = LawSpec::Springs(stiffness);
     spec.materials[0].fracture = None;
-    spec.interactions.transfers = vec![spreading(
+    spec.interactions.diffusions = vec![spreading(
         Quantity::Heat,
-        TransferMethod::Explicit { safety: 0.5 },
+        DiffusionMethod::Explicit { safety: 0.5 },
         0.02,
     )];
     same::<2>(&spec, &[2, 3], None);
@@ -198,7 +198,7 @@ fn tractions_of_statics_before_motion_have_the_areas_of_the_whole() {
                 },
             ),
         ],
-        indenters: vec![],
+        rigid_bodies: vec![],
         cuts: vec![],
     });
     same::<2>(&spec, &[2, 3], None);

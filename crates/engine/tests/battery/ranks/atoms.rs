@@ -1,7 +1,7 @@
 //! Atoms that ranks share: on current neighbours, on families of the reference, in molecules, and in equilibrium.
 
 use super::{place, same};
-use crate::atoms::{Noise, atoms, crystal, fans, potentials};
+use crate::atoms::{Noise, atoms, crystal, many_body, potentials};
 use crate::sample::{Case, H, build, e};
 use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::run::Options;
@@ -71,7 +71,7 @@ fn every_potential_has_the_same_bits_on_any_number_of_ranks() {
 
 #[test]
 fn every_fan_has_the_same_bits_on_any_number_of_ranks() {
-    for (n, (name, potential, edge, kinds)) in fans().into_iter().enumerate() {
+    for (n, (name, potential, edge, kinds)) in many_body().into_iter().enumerate() {
         for family in [FamilyChoice::Neighbours, FamilyChoice::Reference] {
             let mut spec = crystal(&potential, edge, kinds, 5, n % 2 == 0);
             spec.title = format!("{name}, {family:?}");
@@ -103,7 +103,7 @@ fn bonds_of_potentials_break_alike_on_any_number_of_ranks() {
         thrown(&mut spec, speed);
         broken += usize::from(same_of(&spec, &[2]));
     }
-    for (n, (name, potential, edge, kinds)) in fans().into_iter().enumerate() {
+    for (n, (name, potential, edge, kinds)) in many_body().into_iter().enumerate() {
         for criterion in [Criterion::Stretch(0.02), Criterion::BondEnergy(1e-3)] {
             let mut spec = crystal(&potential, edge, kinds, 5, n % 2 == 0);
             spec.title = format!("{name}, {criterion:?}");
@@ -131,11 +131,11 @@ fn smoothed(spec: &mut Spec, reach: f64) {
 
 #[test]
 fn fields_on_nodes_have_the_same_bits_on_any_number_of_ranks() {
-    let (all, fans) = (potentials(), fans());
+    let (all, many_body) = (potentials(), many_body());
     let (_, morse) = { all.iter() }
         .find(|(name, _)| *name == "morse, shifted force")
         .unwrap();
-    let (_, silicon, edge, kinds) = &fans[0];
+    let (_, silicon, edge, kinds) = &many_body[0];
     let mut broken = 0;
     for breaks in [false, true] {
         let mut flat = atoms(
@@ -296,7 +296,7 @@ fn micromoduli_have_the_same_bits_on_any_number_of_ranks() {
 
 #[test]
 fn atoms_in_equilibrium_have_the_same_bits_on_any_number_of_ranks() {
-    let [silicon, .., carbide] = &fans()[..] else {
+    let [silicon, .., carbide] = &many_body()[..] else {
         panic!("several");
     };
     let all = potentials();

@@ -1,7 +1,7 @@
 //! Friction of points that ranks share: who touches, how it turns, and what sticks.
 
 use super::interfaces::moved;
-use super::{STEPS, colliding, meeting, options, place, same, scattered, shelf};
+use super::{STEPS, colliding, meeting, options, place, registry, same, scattered};
 use crate::sample::*;
 use peridyne::run::build_with;
 use peridyne::space::lattice::LatticeKind;
@@ -31,7 +31,7 @@ fn rubs_the_same(spec: &Spec, ranks: &[usize]) {
     let mut smooth = spec.clone();
     smooth.interactions.contact.as_mut().unwrap().friction = None;
     let ends = [spec, &smooth].map(|spec| {
-        let mut sim = build_with(spec, options(None), &shelf()).unwrap();
+        let mut sim = build_with(spec, options(None), &registry()).unwrap();
         sim.start(true);
         (0..spec.run.schedule.steps.max(STEPS as u64)).for_each(|_| sim.step().unwrap());
         sim.state_hash()

@@ -7,18 +7,18 @@ use peridyne::spec::*;
 
 pub(super) fn spreading(
     quantity: Quantity,
-    method: TransferMethod,
+    method: DiffusionMethod,
     expansion: f64,
-) -> TransferSpec {
-    let on = |set: &str, kind: TransferKind| TransferCondition {
+) -> DiffusionSpec {
+    let on = |set: &str, kind: DiffusionKind| DiffusionCondition {
         set: set.into(),
         kind,
     };
     let mut conditions = vec![
-        on("low", TransferKind::Value(e("1 + 0.2*sin(30*t)"))),
+        on("low", DiffusionKind::Value(e("1 + 0.2*sin(30*t)"))),
         on(
             "high",
-            TransferKind::Exchange {
+            DiffusionKind::Exchange {
                 law: Exchange::Convection {
                     coefficient: e("0.7 + 0.1*x"),
                     ambient: e("0.2 + t"),
@@ -28,12 +28,12 @@ pub(super) fn spreading(
         ),
         on(
             "middle",
-            TransferKind::Flux {
+            DiffusionKind::Flux {
                 value: e("0.3"),
                 area: Some(2.0),
             },
         ),
-        on("all", TransferKind::Source(e("0.1*sin(x)*cos(40*t)"))),
+        on("all", DiffusionKind::Source(e("0.1*sin(x)*cos(40*t)"))),
     ];
     if quantity == Quantity::Heat {
         let law = Exchange::Radiation {
@@ -42,19 +42,19 @@ pub(super) fn spreading(
         };
         conditions.push(on(
             "high",
-            TransferKind::Exchange {
+            DiffusionKind::Exchange {
                 law,
                 area: Some(1.5),
             },
         ));
     }
-    TransferSpec {
+    DiffusionSpec {
         quantity,
         method,
         reference: 0.5,
         across_broken: quantity == Quantity::Species,
         deformation: false,
-        materials: vec![TransferMaterial {
+        materials: vec![DiffusionMaterial {
             conductivity: 1.3,
             capacity: 0.7,
             expansion,
@@ -88,12 +88,12 @@ pub(super) fn faced(spec: &mut Spec, case: &Case) {
 #[test]
 fn heat_and_species_spread_on_any_number_of_ranks() {
     let methods = [
-        TransferMethod::Explicit { safety: 0.5 },
-        TransferMethod::Implicit {
+        DiffusionMethod::Explicit { safety: 0.5 },
+        DiffusionMethod::Implicit {
             theta: 0.5,
             tolerance: 1e-9,
         },
-        TransferMethod::Steady { tolerance: 1e-9 },
+        DiffusionMethod::Steady { tolerance: 1e-9 },
     ];
     let kinds = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic];
     let mut n = 0;
@@ -105,15 +105,15 @@ fn heat_and_species_spread_on_any_number_of_ranks() {
             let case = Case::of(name, place(kind));
             let mut spec = torn(&case, false);
             faced(&mut spec, &case);
-            spec.interactions.transfers = vec![
+            spec.interactions.diffusions = vec![
                 spreading(Quantity::Heat, method, if still { 0.0 } else { 0.02 }),
                 spreading(Quantity::Species, methods[n % 3], 0.0),
             ];
             if n % 2 == 0 {
                 scattered(&mut spec);
-                for t in &mut spec.interactions.transfers {
+                for t in &mut spec.interactions.diffusions {
                     for c in &mut t.conditions {
-                        if let TransferKind::Exchange { area, .. } = &mut c.kind {
+                        if let DiffusionKind::Exchange { area, .. } = &mut c.kind {
                             *area = Some(3.0);
                         }
                     }
@@ -146,8 +146,8 @@ fn heat_crosses_contact_on_any_number_of_ranks() {
         volume: None,
     };
     let methods = [
-        TransferMethod::Explicit { safety: 0.5 },
-        TransferMethod::Implicit {
+        DiffusionMethod::Explicit { safety: 0.5 },
+        DiffusionMethod::Implicit {
             theta: 0.5,
             tolerance: 1e-9,
         },
@@ -163,7 +163,7 @@ fn heat_crosses_contact_on_any_number_of_ranks() {
         let mut heat = spreading(Quantity::Heat, method, 0.0);
         heat.conditions.clear();
         heat.initial = vec![("all".into(), e("1 + 0.3*sin(x) + 0.1*y"))];
-        spec.interactions.transfers = vec![heat];
+        spec.interactions.diffusions = vec![heat];
         spec.interactions.contact = Some(ContactSpec {
             conductance: Some(0.8),
             ..CONTACT

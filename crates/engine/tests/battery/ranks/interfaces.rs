@@ -116,15 +116,15 @@ fn heat_crosses_glue_on_any_number_of_ranks() {
     ]);
     let mut heat = spreading(
         Quantity::Heat,
-        TransferMethod::Explicit { safety: 0.5 },
+        DiffusionMethod::Explicit { safety: 0.5 },
         0.02,
     );
     for c in &mut heat.conditions {
-        if let TransferKind::Exchange { area, .. } = &mut c.kind {
+        if let DiffusionKind::Exchange { area, .. } = &mut c.kind {
             *area = Some(3.0);
         }
     }
-    spec.interactions.transfers = vec![heat];
+    spec.interactions.diffusions = vec![heat];
     same_of(&spec, &[3]);
 }
 
@@ -204,7 +204,7 @@ fn glued_bodies_have_the_same_equilibria_on_any_number_of_ranks() {
         ..Statics::default()
     };
     let control = Statics {
-        control: Control::Breaking,
+        control: Control::SequentiallyLinear,
         timed: false,
         ..statics(Method::Linear)
     };

@@ -2,6 +2,7 @@
 
 mod alone;
 mod atoms;
+mod counted;
 mod friction;
 mod heat;
 mod interfaces;
@@ -18,7 +19,7 @@ use peridyne::execute::simd::Simd;
 use peridyne::law::material::bonds::Bonds;
 use peridyne::observe::{Column, Ledger, StateHash, Values};
 use peridyne::run::ranks::{AllRanks, RankModel, shared};
-use peridyne::run::{Info, Options, Shelf, Simulation, build_in, build_with};
+use peridyne::run::{Info, Options, Registry, Simulation, build_in, build_with};
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
@@ -168,8 +169,8 @@ fn said(sim: &mut dyn Simulation, from: Option<&[u8]>, steps: usize) -> Said {
         made,
         dissipated,
         numerical,
-        work_conditions,
-        work_indenter,
+        work_boundary_conditions,
+        work_rigid_bodies,
         initial,
     } = ledger;
     let energies = [
@@ -180,8 +181,8 @@ fn said(sim: &mut dyn Simulation, from: Option<&[u8]>, steps: usize) -> Said {
         made,
         dissipated,
         numerical,
-        work_conditions,
-        work_indenter,
+        work_boundary_conditions,
+        work_rigid_bodies,
         initial,
     ];
     Said {
@@ -205,8 +206,8 @@ fn steps(spec: &Spec) -> usize {
     }
 }
 
-fn shelf() -> Shelf {
-    Shelf::standard().with::<Bonds<Stiffening, 1>>()
+fn registry() -> Registry {
+    Registry::standard().with::<Bonds<Stiffening, 1>>()
 }
 
 fn options(simd: Option<Simd>) -> Options {
@@ -225,7 +226,7 @@ fn among<const D: usize>(
 ) -> (Info, Said) {
     let all = on_threads(ranks, |comm| {
         let comm = Arc::new(comm);
-        let own = RankModel::<D>::new(spec, options(simd), &shelf(), &comm).unwrap();
+        let own = RankModel::<D>::new(spec, options(simd), &registry(), &comm).unwrap();
         if comm.rank() > 0 {
             own.follow(|_, _, _| vec![]);
             return None;
@@ -241,10 +242,10 @@ fn among<const D: usize>(
 fn same<const D: usize>(spec: &Spec, ranks: &[usize], simd: Option<Simd>) -> bool {
     shared(spec).unwrap();
     let name = &spec.title;
-    let mut sim = build_in::<D>(spec, options(None), &shelf()).unwrap();
+    let mut sim = build_in::<D>(spec, options(None), &registry()).unwrap();
     let one = said(&mut sim, None, steps(spec));
     if ranks.len() == 1 {
-        let mut again = build_in::<D>(spec, options(None), &shelf()).unwrap();
+        let mut again = build_in::<D>(spec, options(None), &registry()).unwrap();
         let again = said(&mut again, Some(&one.states[0]), steps(spec));
         one.is(&again, &format!("{name}, gone on with"));
     }
@@ -441,12 +442,12 @@ fn on_clouds(tries: impl Fn(usize) -> bool) {
                 let Horizon::Length(longest) = spec.bonds.horizon else {
                     panic!("a length");
                 };
-                spec.bonds.own_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
+                spec.bonds.variable_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
                 spec.bonds.calibration = Calibration::Continuum;
             }
         }
         // not every law is one of clouds, or bears being torn so fast
-        let mut sim = match build_with(&spec, options(None), &shelf()) {
+        let mut sim = match build_with(&spec, options(None), &registry()) {
             Ok(sim) => sim,
             Err(e) => {
                 println!("{}: {}", case.name(), e.message);
@@ -522,11 +523,11 @@ fn acted(case: &Case) -> Spec {
     let mut center = [2.0 * H; 3];
     center[last[0]] = middle;
     let place = center.map(|x| e(&x.to_string()));
-    spec.loading.indenters = vec![IndenterSpec {
+    spec.loading.rigid_bodies = vec![RigidBodySpec {
         name: String::new(),
         stiffness: 3.0,
         shape: RigidShape::Sphere { radius: 2.3 * H },
-        motion: IndenterMotion::Kinematic(place),
+        motion: RigidBodyMotion::Kinematic(place),
         turn: None,
         friction: (d > 1).then(|| FrictionSpec::constant(0.2)),
         cohesion: None,
@@ -541,13 +542,13 @@ fn acted(case: &Case) -> Spec {
     if d > 1 {
         free.spin = [0.0, 0.0, 0.4];
     }
-    spec.loading.indenters.push(IndenterSpec {
+    spec.loading.rigid_bodies.push(RigidBodySpec {
         name: "stone".into(),
         friction: (d > 1).then(|| FrictionSpec::constant(0.3)),
-        ..IndenterSpec::new(
+        ..RigidBodySpec::new(
             2.0,
             RigidShape::Sphere { radius: 1.9 * H },
-            IndenterMotion::Free(free),
+            RigidBodyMotion::Free(free),
         )
     });
     let crack = |kind, at: f64| PrecrackSpec {
@@ -566,7 +567,7 @@ fn acted(case: &Case) -> Spec {
         },
     };
     spec.damage.precracks = vec![
-        crack(CrackKind::Absent, 0.7 * middle + 0.13),
+        crack(CrackKind::Excluded, 0.7 * middle + 0.13),
         crack(CrackKind::Broken, 1.3 * middle + 0.17),
     ];
     let probe = |name: &str, set: &str, measure| ProbeSpec {
@@ -599,8 +600,8 @@ fn acted(case: &Case) -> Spec {
     spec.run.probes.push(probe(
         "stone",
         "all",
-        Measure::Indenter {
-            indenter: "stone".into(),
+        Measure::RigidBody {
+            rigid_body: "stone".into(),
             of: None,
         },
     ));
@@ -769,7 +770,7 @@ fn meeting(case: &Case, periodic: bool) -> Spec {
 
 /// They touch from the beginning, and everything is as on one.
 fn touching<const D: usize>(spec: &Spec, ranks: &[usize]) {
-    let mut sim = build_in::<D>(spec, options(None), &shelf()).unwrap();
+    let mut sim = build_in::<D>(spec, options(None), &registry()).unwrap();
     sim.start(true);
     let contact = sim.ledger().unwrap().contact;
     assert!(contact > 0.0, "{}", spec.title);
@@ -818,11 +819,11 @@ fn forces_of_pairs_beside_contact_come_in_one_order() {
         }));
         all
     };
-    let mut one = build_in::<2>(&spec, options(None), &shelf()).unwrap();
+    let mut one = build_in::<2>(&spec, options(None), &registry()).unwrap();
     let one = told(&mut one);
     let all = on_threads(3, |comm| {
         let comm = Arc::new(comm);
-        let own = RankModel::<2>::new(&spec, options(None), &shelf(), &comm).unwrap();
+        let own = RankModel::<2>::new(&spec, options(None), &registry(), &comm).unwrap();
         match comm.rank() {
             0 => Some(told(&mut AllRanks::new(own, |_, _, _| vec![]))),
             _ => {
@@ -974,11 +975,11 @@ fn a_run_that_goes_bad_does_so_on_all_ranks() {
         let error = (0..1000).find_map(|_| sim.step().err()).unwrap();
         (error, sim.state_hash(), sim.step_number())
     }
-    let mut sim = build_in::<3>(&spec, options(None), &shelf()).unwrap();
+    let mut sim = build_in::<3>(&spec, options(None), &registry()).unwrap();
     let one = end(&mut sim);
     assert!(matches!(one.0, RunError::TooFast { .. }));
     // what is left is the state before
-    let mut before = build_in::<3>(&spec, options(None), &shelf()).unwrap();
+    let mut before = build_in::<3>(&spec, options(None), &registry()).unwrap();
     before.start(true);
     (0..one.2).for_each(|_| before.step().unwrap());
     let [sim, before]: [&mut dyn Simulation; 2] = [&mut sim, &mut before];
@@ -991,7 +992,7 @@ fn a_run_that_goes_bad_does_so_on_all_ranks() {
     }
     let all = on_threads(3, |comm| {
         let comm = Arc::new(comm);
-        let own = RankModel::<3>::new(&spec, options(None), &shelf(), &comm).unwrap();
+        let own = RankModel::<3>::new(&spec, options(None), &registry(), &comm).unwrap();
         match comm.rank() {
             0 => Some(end(&mut AllRanks::new(own, |_, _, _| vec![]))),
             _ => {
@@ -1013,7 +1014,7 @@ fn a_mistake_of_one_rank_is_known_to_all() {
         velocity: [Some(e("1/max(20 - y, 0)")), None, None],
     }];
     let ends = on_threads(3, |comm| {
-        let made = RankModel::<2>::new(&spec, options(None), &shelf(), &Arc::new(comm));
+        let made = RankModel::<2>::new(&spec, options(None), &registry(), &Arc::new(comm));
         made.err().map(|e| e.kind)
     });
     use peridyne::error::BuildErrorKind::{Elsewhere, Invalid};
@@ -1024,13 +1025,13 @@ fn a_mistake_of_one_rank_is_known_to_all() {
     faced(&mut spec, &case);
     let mut heat = spreading(
         Quantity::Heat,
-        TransferMethod::Explicit { safety: 0.5 },
+        DiffusionMethod::Explicit { safety: 0.5 },
         0.0,
     );
     heat.initial = vec![("all".into(), e("1/max(20 - y, 0)"))];
-    spec.interactions.transfers = vec![heat];
+    spec.interactions.diffusions = vec![heat];
     let ends = on_threads(3, |comm| {
-        let made = RankModel::<2>::new(&spec, options(None), &shelf(), &Arc::new(comm));
+        let made = RankModel::<2>::new(&spec, options(None), &registry(), &Arc::new(comm));
         made.err().map(|e| e.kind)
     });
     assert_eq!(ends, [Some(Elsewhere), Some(Elsewhere), Some(Invalid)]);
@@ -1068,7 +1069,7 @@ fn what_is_sent_is_what_the_law_says_of_the_copies() {
         }
         let halos = on_threads(3, |comm| {
             let comm = Arc::new(comm);
-            let mut sim = RankModel::<2>::new(&spec, options(None), &shelf(), &comm).unwrap();
+            let mut sim = RankModel::<2>::new(&spec, options(None), &registry(), &comm).unwrap();
             sim.start();
             let (before, _) = sim.halo();
             (0..STEPS).for_each(|_| sim.step().unwrap());
@@ -1106,7 +1107,7 @@ fn messages_on_their_way_while_ranks_work() {
                 pool.unwrap().install(|| {
                     let comm = Arc::new(comm);
                     let mut sim =
-                        RankModel::<3>::new(&spec, options(None), &shelf(), &comm).unwrap();
+                        RankModel::<3>::new(&spec, options(None), &registry(), &comm).unwrap();
                     sim.start();
                     let (begun, before) = (Instant::now(), sim.halo().0);
                     (0..STEPS).for_each(|_| sim.step().unwrap());

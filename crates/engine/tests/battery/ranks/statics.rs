@@ -1,6 +1,6 @@
 //! Equilibria of bodies that ranks share.
 
-use super::{acted, meeting, options, same, scattered, shelf};
+use super::{acted, meeting, options, registry, same, scattered};
 use crate::sample::*;
 use peridyne::run::{Simulation, build_in};
 use peridyne::space::lattice::LatticeKind;
@@ -87,7 +87,7 @@ fn same_of(case: &Case, spec: &Spec, ranks: &[usize]) -> bool {
 
 /// Why there are no equilibria.
 fn found<const D: usize>(spec: &Spec) -> Result<(), String> {
-    let made = build_in::<D>(spec, options(None), &shelf());
+    let made = build_in::<D>(spec, options(None), &registry());
     let mut sim = made.map_err(|e| e.to_string())?;
     sim.start(true);
     (0..spec.run.schedule.steps).try_for_each(|_| sim.step().map_err(|e| e.to_string()))
@@ -205,14 +205,22 @@ fn bonds_break_in_equilibrium_on_any_number_of_ranks() {
         ("pmb", solid, relaxed(Method::Relaxation)),
         ("elastic-plastic", flat, relaxed(Method::Relaxation)),
         ("lps", flat, relaxed(Method::Fire)),
-        ("pmb", flat, controlled(linear, Control::Breaking)),
-        ("lps", solid, controlled(linear, Control::Breaking)),
+        ("pmb", flat, controlled(linear, Control::SequentiallyLinear)),
+        (
+            "lps",
+            solid,
+            controlled(linear, Control::SequentiallyLinear),
+        ),
         (
             "pmb",
             flat,
             controlled(newton(), Control::ArcLength(0.01 * H)),
         ),
-        ("lps", flat, controlled(newton(), Control::Opening(1e-3))),
+        (
+            "lps",
+            flat,
+            controlled(newton(), Control::IndirectDisplacement(1e-3)),
+        ),
         (
             "pmb",
             flat,
@@ -225,7 +233,10 @@ fn bonds_break_in_equilibrium_on_any_number_of_ranks() {
     ];
     for (n, (name, kind, statics)) in all.into_iter().enumerate() {
         let case = Case::of(name, place(kind));
-        let path = matches!(statics.control, Control::ArcLength(_) | Control::Opening(_));
+        let path = matches!(
+            statics.control,
+            Control::ArcLength(_) | Control::IndirectDisplacement(_)
+        );
         let breaks = name != "elastic-plastic" && !path;
         let mut spec = drawn(&case, statics, if breaks { 0.01 } else { 0.004 });
         if breaks {

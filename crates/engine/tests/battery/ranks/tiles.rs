@@ -1,6 +1,6 @@
 //! What points are walked together with.
 
-use super::{STEPS, options, place, said, shelf, torn};
+use super::{STEPS, options, place, registry, said, torn};
 use crate::sample::*;
 use peridyne::run::{Simulation, build_in};
 use peridyne::space::lattice::LatticeKind;
@@ -38,9 +38,9 @@ fn what_the_others_of_a_tile_do_does_not_show() {
             spec.interactions.contact = None;
             let run = |sim: &mut dyn Simulation| (said(sim, None, STEPS), points, sim.info().parts);
             match case.d() {
-                1 => run(&mut build_in::<1>(&spec, options(None), &shelf()).unwrap()),
-                2 => run(&mut build_in::<2>(&spec, options(None), &shelf()).unwrap()),
-                _ => run(&mut build_in::<3>(&spec, options(None), &shelf()).unwrap()),
+                1 => run(&mut build_in::<1>(&spec, options(None), &registry()).unwrap()),
+                2 => run(&mut build_in::<2>(&spec, options(None), &registry()).unwrap()),
+                _ => run(&mut build_in::<3>(&spec, options(None), &registry()).unwrap()),
             }
         });
         let [(alone, points, parts), (beside, _, parts_beside)] = ends;

@@ -156,7 +156,7 @@ pub fn materials() -> Vec<Material> {
         one(
             "pmb conical",
             LawSpec::Pmb(PmbStiffness::Bulk(2.0)),
-            Influence::Conical,
+            Influence::Linear,
         ),
         two("pmb mixed", young(3.0), young(1.0), Influence::Gaussian),
         one("lps", lps(3.0, 0.2), Influence::Inverse),
@@ -180,7 +180,7 @@ pub fn materials() -> Vec<Material> {
         ),
         one(
             "lps as typed",
-            LawSpec::LpsAsTyped {
+            LawSpec::Lps3d {
                 bulk: 2.0,
                 shear: 1.0,
             },
@@ -211,8 +211,8 @@ pub fn materials() -> Vec<Material> {
             lives: |d, _| d > 1,
             ..two(
                 "position-aware",
-                LawSpec::named("position_aware", elastic(3.0, 0.2)),
-                LawSpec::named("position_aware", elastic(1.0, 0.4)),
+                LawSpec::named("pals", elastic(3.0, 0.2)),
+                LawSpec::named("pals", elastic(1.0, 0.4)),
                 Influence::Inverse,
             )
         },
@@ -230,10 +230,10 @@ pub fn materials() -> Vec<Material> {
                 "bond rotation mixed",
                 LawSpec::named("bond_rotation", elastic(3.0, 0.2)),
                 LawSpec::named("bond_rotation", elastic(1.0, -0.3)),
-                Influence::Conical,
+                Influence::Linear,
             )
         },
-        one("viscoelastic", relaxing(0.5), Influence::Conical),
+        one("viscoelastic", relaxing(0.5), Influence::Linear),
         two(
             "viscoelastic mixed",
             relaxing(0.5),
@@ -254,7 +254,7 @@ pub fn materials() -> Vec<Material> {
                 "neo-hookean mixed",
                 correspondence(3.0, "neo_hookean"),
                 correspondence(1.0, "neo_hookean"),
-                Influence::Conical,
+                Influence::Linear,
             )
         },
         Material {
@@ -281,7 +281,7 @@ pub fn materials() -> Vec<Material> {
                 "of written energies",
                 of_energy("0.6*(I1*J^(-2/3) - 3) + 0.2*(I1*J^(-2/3) - 3)^2 + 1.2*(J - 1)^2"),
                 of_energy("0.2*(I1 - 3 - 2*ln(J)) + 0.1*(I2 - 3 - 4*ln(J)) + 0.3*ln(J)^2"),
-                Influence::Conical,
+                Influence::Linear,
             )
         },
         Material {

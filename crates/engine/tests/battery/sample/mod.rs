@@ -6,7 +6,7 @@ use crate::own_law::Stiffening;
 use peridyne::error::BuildError;
 use peridyne::expression::Expression;
 use peridyne::law::material::bonds::Bonds;
-use peridyne::run::{Options, Shelf, Simulation, build_with};
+use peridyne::run::{Options, Registry, Simulation, build_with};
 use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
@@ -157,7 +157,7 @@ impl Case {
                 .collect(),
             bonds: BondsSpec {
                 horizon: Horizon::Ratio(ratio),
-                volume_scaling: true,
+                partial_volume_correction: true,
                 influence: self.material.influence,
                 ..BondsSpec::default()
             },
@@ -214,7 +214,7 @@ pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, Build
     build_with(
         spec,
         options,
-        &Shelf::standard().with::<Bonds<Stiffening, 1>>(),
+        &Registry::standard().with::<Bonds<Stiffening, 1>>(),
     )
 }
 

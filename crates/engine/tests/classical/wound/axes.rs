@@ -257,10 +257,13 @@ fn a_direction_that_is_none_is_refused_with_its_place() {
         assert!(found.starts_with(expected), "{found}");
     }
     let mut timely = Parameters::default().with("fibre", of_place(["1", "t", "0"]));
-    let shelf = peridyne::run::Shelf::standard();
-    let law = shelf.descriptor("anisotropic").unwrap();
+    let registry = peridyne::run::Registry::standard();
+    let law = registry.descriptor("anisotropic").unwrap();
     let (key, why) = law.check(&mut timely).unwrap_err();
-    assert!(key == "fibre" && why.contains("knows no t"), "{why}");
+    assert!(
+        key == "fibre" && why.contains("does not depend on t"),
+        "{why}"
+    );
 }
 
 /// The stable step of a large lattice is looked for on the body, not on a block of it at other places.

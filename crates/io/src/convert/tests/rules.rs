@@ -319,7 +319,7 @@ fn flat_bodies_of_perilab_without_symmetry_have_constants_of_a_solid() {
             .parse::<f64>()
             .unwrap()
     });
-    assert!(text.contains("lps_as_typed"), "{text}");
+    assert!(text.contains("lps_3d"), "{text}");
     near(k, 10.0 / 1.5);
     near(g, 4.0);
     // c = 12 E/(π δ⁴), and E = K of Poisson's ratio 1/3
@@ -538,7 +538,7 @@ fn ends_of_a_bond_between_materials_give_half_of_their_constants() {
     let pmb = "      Material Model: Elastic Bond Based";
     let (found, _) = two_blocks(pmb, pmb);
     assert!(
-        found.text.contains("\ninterface = \"parallel\"\n"),
+        found.text.contains("\nbond_mixing = \"arithmetic\"\n"),
         "{}",
         found.text
     );

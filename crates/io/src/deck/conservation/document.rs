@@ -1,8 +1,8 @@
 //! The deck of a conservation law as written.
 
 use crate::deck::document::{UnitName, Units};
-use crate::deck::units::Dim;
-use crate::deck::value::{At, Number, Or, Vector, Written};
+use crate::deck::quantity::{Diffusivity, Length, Positive, Time, Velocity};
+use crate::deck::value::{At, Measured, Number, Or, Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ pub struct LawDocument {
     pub kind: KindName,
     /// One line for headers and pictures.
     pub title: Option<String>,
-    /// What plain numbers mean: "si" when left out.
+    /// What plain numbers mean: "si" by default.
     pub units: Option<At<Or<UnitName, Units>>>,
     /// Named numbers for use in any number.
     #[serde(default)]
@@ -35,8 +35,7 @@ pub struct LawDocument {
     /// "periodic", or what u is in the collars beyond the ends: { left = "1", right = "0" } on a line, { around = "0" } in a plane.
     pub boundary: At<Or<BoundaryName, Collars>>,
     /// δ, of both kernels.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub horizon: Option<Number>,
+    pub horizon: Option<Quantity<Positive<Length>>>,
     /// u at t = 0, of x (in a plane of x and y).
     #[schemars(extend("dimension" = "that of u"))]
     pub initial: Number,
@@ -56,19 +55,19 @@ pub struct LawDocument {
 #[serde(deny_unknown_fields)]
 pub struct Domain {
     /// Lower and upper end.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub x: At<[Number; 2]>,
+    pub x: At<[Quantity<Length>; 2]>,
     /// Of a plane.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub y: Option<At<[Number; 2]>>,
+    pub y: Option<At<[Quantity<Length>; 2]>>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BoundaryName {
+    /// The grid goes on from its other end.
     Periodic,
 }
 
+/// What u is outside of a grid that does not go on periodically: a boundary condition on a collar as wide as the horizon.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Collars {
@@ -83,6 +82,7 @@ pub struct Collars {
     pub around: Option<Number>,
 }
 
+/// The transport term: flux, kernel, direction.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Transport {
@@ -91,44 +91,42 @@ pub struct Transport {
     /// Odd; its first moment is 2.
     pub kernel: At<KernelForm>,
     /// Its own, instead of that of the deck.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub horizon: Option<Number>,
-    /// Where it carries: components, which may depend on x and y; along x when left out.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub horizon: Option<Quantity<Positive<Length>>>,
+    /// Where it carries: components, which may depend on x and y; along x by default.
     pub direction: Option<Vector>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FluxName {
+    /// u²/2 of the mean of both ends.
     Burgers,
+    /// (u² + uv + v²)/6, which conserves ∫u², too.
     EnergyConserving,
 }
 
+/// The flux ψ, in one of these ways.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FluxForm {
     /// The speed c of ψ = c u.
-    #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
-    pub linear: Option<Number>,
+    pub linear: Option<Quantity<Velocity>>,
     /// ψ = c0 + c1 u + c2 u² + …, up to u⁸.
-    #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
-    pub polynomial: Option<At<Vec<Number>>>,
+    pub polynomial: Option<At<Vec<Quantity<Velocity>>>>,
     /// ψ as an expression of u, in plain numbers of the deck. Polynomials up to u⁸ are found and expanded, the rest is evaluated many values at a time.
     pub expression: Option<At<String>>,
 }
 
+/// The diffusion term: viscosity and kernel.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spreading {
     /// ε
-    #[schemars(extend("dimension" = (Dim::AREA / Dim::TIME).to_string()))]
-    pub viscosity: Number,
+    pub viscosity: Quantity<Diffusivity>,
     /// Even; its second moment is 2.
     pub kernel: At<KernelForm>,
     /// Its own, instead of that of the deck.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub horizon: Option<Number>,
+    pub horizon: Option<Quantity<Positive<Length>>>,
 }
 
 /// A kernel of z = y − x, 0 beyond the horizon.
@@ -137,9 +135,9 @@ pub struct Spreading {
 pub struct KernelForm {
     /// Of transport: −2b′ of this bump b; of diffusion as `form` says.
     pub bump: Option<BumpName>,
-    /// p of the bump (1 − s²)^p; 2 when left out.
+    /// p of the bump (1 − s²)^p; 2 by default.
     pub power: Option<At<u32>>,
-    /// Of diffusion: value when left out.
+    /// Of diffusion: value by default.
     pub form: Option<At<FormName>>,
     /// An expression of z and delta (the horizon), in plain numbers of the deck.
     pub expression: Option<At<String>>,
@@ -174,33 +172,31 @@ pub enum FormName {
     SecondDerivative,
 }
 
+/// How long, with which method, and how closely.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawRun {
     /// Until t is this.
-    #[schemars(extend("dimension" = Dim::TIME.name()))]
-    pub duration: Number,
-    /// A time, or { safety = 0.8 } of what is stable, step by step (when left out), or shorter where `tolerance` asks for it.
-    #[schemars(extend("dimension" = Dim::TIME.name()))]
-    pub time_step: Option<At<Or<Written, LawSafety>>>,
-    /// What steps may add to u until the end, over its largest |u|: 1e-6 when left out, from 1e-12 on; inf: steps are as long as they are stable. Not beside a time_step that is a time. What they do add is estimated in any case.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub tolerance: Option<Number>,
+    pub duration: Quantity<Positive<Time>>,
+    /// A time, or a part of what is stable, step by step, or shorter where `tolerance` asks for it; { safety = 0.8 } by default.
+    pub time_step: Option<At<Or<Measured<Positive<Time>>, LawSafety>>>,
+    /// What steps may add to u until the end, over its largest |u|: 1e-6 by default, from 1e-12 on; inf: steps are as long as they are stable. Not beside a time_step that is a time. What they do add is estimated in any case.
+    pub tolerance: Option<Quantity>,
     /// Run even if the step is above the stability limit.
     #[serde(default)]
     pub force_unstable: bool,
-    /// rk4 when left out.
+    /// Method of the steps in time; rk4 by default.
     pub method: Option<MethodName>,
-    /// auto when left out: the faster one.
+    /// auto by default: the faster one.
     pub evaluation: Option<At<EvaluationName>>,
 }
 
+/// The time step as a part of what is stable.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawSafety {
     /// Part of what is stable, above 0, at most 1.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub safety: Number,
+    pub safety: Quantity<Positive>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -217,6 +213,7 @@ pub enum MethodName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EvaluationName {
+    /// The faster one.
     Auto,
     /// Sums over bonds.
     Direct,
@@ -235,22 +232,23 @@ pub enum CompareName {
     ColeHopf,
 }
 
+/// Which files a run writes, how often.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawOutput {
-    /// Folder of the results, relative to the deck; when left out, out/NAME in the working folder for the deck NAME.toml.
+    /// Folder of the results, relative to the deck; out/NAME for NAME.toml, in the working folder, by default.
     pub dir: Option<String>,
-    /// Frames of frames.npz after the first, at equal times; 100 when left out.
+    /// Frames of frames.npz after the first, at equal times; 100 by default.
     pub frames: Option<At<u64>>,
-    /// Rows of history.csv after the first, at equal times; 100 when left out.
+    /// Rows of history.csv after the first, at equal times; 100 by default.
     pub history: Option<At<u64>>,
     /// The solution of the local law u_t + f(u)_x = ε u_xx, to which the nonlocal one tends, beside u: `exact` in frames.npz, dashed in the profiles, and how far u is from it, over
     /// it, in the mean, the mean square and at most (`error_l1`, `error_l2`, `error_max` of history.csv, a line at the end). Refused where there is none. On a line.
     pub compare: Option<At<CompareName>>,
-    /// Noll's flux, what flows through the faces of the cells, in frames.npz: `flux`, of places `faces`; u_t is −1 times its differences over the spacing. On a line; false when left out.
+    /// Noll's flux, what flows through the faces of the cells, in frames.npz: `flux`, of places `faces`; u_t is −1 times its differences over the spacing. On a line; false by default.
     pub flux: Option<At<bool>>,
-    /// space_time.png (in a plane: last.png) and profiles.png; true when left out.
+    /// space_time.png (in a plane: last.png) and profiles.png; true by default.
     pub pictures: Option<bool>,
-    /// report.html at the end, the run in one file for browsers; true when left out.
+    /// report.html at the end, the run in one file for browsers; true by default.
     pub report: Option<bool>,
 }

@@ -6,9 +6,10 @@ use super::{LawDeck, explain};
 use crate::deck::error::DeckError;
 use crate::deck::lower;
 use crate::deck::lower::context::{Context, Result};
+use crate::deck::quantity::{Length, Positive};
 use crate::deck::source::Source;
 use crate::deck::units::Dim;
-use crate::deck::value::{At, Number, Or, Written};
+use crate::deck::value::{At, Measured, Number, Or, Quantity, Written};
 use peridyne::error::BuildError;
 use peridyne::execute::memory::afford;
 use peridyne::expression::Expression;
@@ -21,9 +22,6 @@ use peridyne_transport::{
 };
 use std::ops::Range;
 use std::sync::Arc;
-
-/// length²/time
-pub(super) const VISCOSITY: Dim = Dim([2, 0, -1, 0]);
 
 /// Safety of steps that nobody gives.
 const SAFETY: f64 = 0.8;
@@ -65,7 +63,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
     .map_err(explained)?;
     let place = places(&grid);
     only_names(&context, &document.initial, place, "u at t = 0")?;
-    let initial = context.expression(&document.initial, dimension)?;
+    let initial = context.expression_of(&document.initial, dimension)?;
     let initial: Values = Arc::new(move |x, t| initial.eval(x, t));
     let u = sampled(&context, document, &grid, &initial)?;
     let ends = measure::extremes(&u);
@@ -88,7 +86,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
             horizon,
             "diffusion.kernel",
         )?;
-        Ok((context.finite(&d.value.viscosity, VISCOSITY)?, kernel))
+        Ok((context.value(&d.value.viscosity)?, kernel))
     });
     let diffusion = diffusion.transpose()?;
     let law = Law::new(
@@ -114,7 +112,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         Some(MethodName::Rk4) | None => Method::Rk4,
         Some(MethodName::Imex) => Method::Imex,
     };
-    let duration = context.positive(&run.duration, Dim::TIME, "the duration")?;
+    let duration = context.value(&run.duration)?;
     let size = step_size(&context, run, duration)?;
     let evolution = Evolution::new(operator, u, method, size);
     if let (Err(e), Some(at)) = (evolution.next_step(duration), &run.time_step) {
@@ -279,12 +277,9 @@ fn count(context: &Context, written: &Option<At<u64>>, what: &str) -> Result<u64
 }
 
 fn grid(context: &Context, document: &LawDocument) -> Result<Grid> {
-    let ends = |at: &At<[Number; 2]>| -> Result<[f64; 2]> {
+    let ends = |at: &At<[Quantity<Length>; 2]>| -> Result<[f64; 2]> {
         let [a, b] = &at.value;
-        Ok([
-            context.finite(a, Dim::LENGTH)?,
-            context.finite(b, Dim::LENGTH)?,
-        ])
+        Ok([context.value(a)?, context.value(b)?])
     };
     let domain = &document.domain.value;
     let x = ends(&domain.x)?;
@@ -299,9 +294,13 @@ fn grid(context: &Context, document: &LawDocument) -> Result<Grid> {
     made.map_err(|e| explain(context.source, &e))
 }
 
-fn horizon(context: &Context, written: Option<&Number>, span: &Range<usize>) -> Result<f64> {
+fn horizon(
+    context: &Context,
+    written: Option<&Quantity<Positive<Length>>>,
+    span: &Range<usize>,
+) -> Result<f64> {
     match written {
-        Some(number) => context.positive(number, Dim::LENGTH, "the horizon"),
+        Some(number) => context.value(number),
         None => Err(context.error_with(
             span,
             "the key `horizon` is missing",
@@ -335,7 +334,7 @@ fn boundary(
     };
     let given = |number: &Number, names: &[&str]| -> Result<Expression> {
         only_names(context, number, names, "u in this collar")?;
-        let expression = context.expression(number, dimension)?;
+        let expression = context.expression_of(number, dimension)?;
         match expression.eval(&grid.place(0), 0.0).is_finite() {
             true => Ok(expression),
             false => Err(context.error(&number.span, "u in the collar is no finite number")),
@@ -381,10 +380,10 @@ fn direction(context: &Context, transport: &Transport, place: &[&str]) -> Result
     let Some(written) = &transport.direction else {
         return Ok(Direction::Constant([1.0, 0.0]));
     };
-    let [x, y, _] = context.expressions(written, Dim::NUMBER)?;
+    let [x, y, _] = context.expressions(written)?;
     for number in &written.value.0 {
         let number = At {
-            value: number.value.clone(),
+            value: number.value.written.clone(),
             span: written.span.clone(),
         };
         only_names(context, &number, place, "the direction")?;
@@ -411,13 +410,10 @@ fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>, [low, high]: [f64; 2
     ];
     context.one_of(&at.span, "flux", &given)?;
     if let Some(speed) = &form.linear {
-        return Ok(Flux::linear(context.finite(speed, Dim::VELOCITY)?));
+        return Ok(Flux::linear(context.value(speed)?));
     }
     if let Some(written) = &form.polynomial {
-        let each = written
-            .value
-            .iter()
-            .map(|c| context.finite(c, Dim::VELOCITY));
+        let each = written.value.iter().map(|c| context.value(c));
         let coefficients: Vec<f64> = each.collect::<Result<_>>()?;
         if coefficients.len() > peridyne_transport::flux::HIGHEST + 1 {
             return Err(context.error_with(
@@ -518,7 +514,7 @@ fn step_size(
         let tolerance = match &run.tolerance {
             None => TOLERANCE,
             Some(written) => {
-                let tolerance = context.number(written, Dim::NUMBER)?;
+                let tolerance = context.limit(written)?;
                 if !(tolerance >= LEAST_TOLERANCE) {
                     return Err(context.error_with(
                         &written.span,
@@ -542,7 +538,10 @@ fn step_size(
         return within(SAFETY);
     };
     match &at.value {
-        Or::Bare(Written::Text(text)) if text == "auto" => within(SAFETY),
+        Or::Bare(Measured {
+            written: Written::Text(text),
+            ..
+        }) if text == "auto" => within(SAFETY),
         Or::Bare(number) => {
             if let Some(written) = &run.tolerance {
                 return Err(context.error_with(
@@ -556,12 +555,12 @@ fn step_size(
                 span: at.span.clone(),
             };
             Ok(StepSize::Fixed {
-                step: context.positive(&number, Dim::TIME, "the time step")?,
+                step: context.value(&number)?,
                 force_unstable: run.force_unstable,
             })
         }
         Or::Table(LawSafety { safety }) => {
-            let part = context.positive(safety, Dim::NUMBER, "the safety factor")?;
+            let part = context.value(safety)?;
             match part <= 1.0 || run.force_unstable {
                 true => within(part),
                 false => Err(context.error_with(

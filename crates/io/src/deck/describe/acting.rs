@@ -3,7 +3,8 @@
 use super::shape::rigid;
 use crate::deck::units::{Dim, UnitSystem, counted, short};
 use peridyne::spec::{
-    ContactSpec, IndenterMotion, IndenterSpec, Spec, ToughnessFactor, TransferMethod, TransferSpec,
+    ContactSpec, DiffusionMethod, DiffusionSpec, RigidBodyMotion, RigidBodySpec, Spec,
+    ToughnessFactor,
 };
 
 pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
@@ -30,13 +31,13 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
         ));
     }
     lines.extend(spec.interactions.contact.iter().map(|c| touching(c, units)));
-    let rigid = spec.loading.indenters.iter();
-    lines.extend(rigid.map(|i| indenter(i, units, spec.space.dimension)));
-    lines.extend(spec.interactions.transfers.iter().map(spreading));
+    let rigid = spec.loading.rigid_bodies.iter();
+    lines.extend(rigid.map(|i| rigid_body(i, units, spec.space.dimension)));
+    lines.extend(spec.interactions.diffusions.iter().map(spreading));
     lines.push(format!(
         "acting     {}, {}, {}",
         counted(spec.loading.initial.len() as u64, "initial value"),
-        counted(spec.loading.conditions.len() as u64, "condition"),
+        counted(spec.loading.conditions.len() as u64, "boundary condition"),
         counted(spec.damage.precracks.len() as u64, "pre-crack")
     ));
     lines
@@ -70,51 +71,51 @@ fn touching(contact: &ContactSpec, units: UnitSystem) -> String {
     )
 }
 
-fn indenter(indenter: &IndenterSpec, units: UnitSystem, dimension: usize) -> String {
-    let motion = match &indenter.motion {
-        IndenterMotion::Kinematic(center) => {
+fn rigid_body(rigid_body: &RigidBodySpec, units: UnitSystem, dimension: usize) -> String {
+    let motion = match &rigid_body.motion {
+        RigidBodyMotion::Kinematic(center) => {
             let center: Vec<&str> = center.iter().take(dimension).map(|c| c.source()).collect();
             format!("moved along ({})", center.join(", "))
         }
-        IndenterMotion::Free(free) => {
+        RigidBodyMotion::Free(free) => {
             format!("free with {}", units.write(free.mass, Dim::MASS))
         }
     };
-    let name = match indenter.name.is_empty() {
+    let name = match rigid_body.name.is_empty() {
         true => String::new(),
-        false => format!("{}: ", indenter.name),
+        false => format!("{}: ", rigid_body.name),
     };
-    let friction = { indenter.friction.as_ref() }.map_or(String::new(), |f| {
+    let friction = { rigid_body.friction.as_ref() }.map_or(String::new(), |f| {
         format!(", friction {}", f.kinetic.source())
     });
-    let cohesion = { indenter.cohesion.as_ref() }.map_or(String::new(), |c| {
+    let cohesion = { rigid_body.cohesion.as_ref() }.map_or(String::new(), |c| {
         format!(", sticky up to {}", units.write(c.range(), Dim::LENGTH))
     });
     format!(
-        "indenter   {name}{}, {motion}{friction}{cohesion}",
-        rigid(&indenter.shape, units, dimension)
+        "rigid body {name}{}, {motion}{friction}{cohesion}",
+        rigid(&rigid_body.shape, units, dimension)
     )
 }
 
 /// What spreads, and how.
-fn spreading(t: &TransferSpec) -> String {
+fn spreading(t: &DiffusionSpec) -> String {
     let how = match t.method {
-        TransferMethod::Explicit { safety } => {
+        DiffusionMethod::Explicit { safety } => {
             format!("explicit, in parts of {safety} of its stable step")
         }
-        TransferMethod::Implicit { theta, tolerance } => {
+        DiffusionMethod::Implicit { theta, tolerance } => {
             let name = match theta < 1.0 {
                 true => "Crank and Nicolson",
                 false => "backward Euler",
             };
             format!("implicit ({name}), tolerance {}", short(tolerance))
         }
-        TransferMethod::Steady { tolerance } => format!("steady, tolerance {}", short(tolerance)),
+        DiffusionMethod::Steady { tolerance } => format!("steady, tolerance {}", short(tolerance)),
     };
     format!(
         "{:<11}{how}, {}, {}",
         t.quantity.name(),
         counted(t.initial.len() as u64, "initial value"),
-        counted(t.conditions.len() as u64, "condition")
+        counted(t.conditions.len() as u64, "boundary condition")
     )
 }

@@ -5,8 +5,8 @@ use super::shape::body;
 use super::{acting, family, probe, schedule};
 use crate::deck::units::{Dim, UnitSystem};
 use crate::excerpt::one_line;
-use peridyne::run::Shelf;
-use peridyne::spec::{LawSpec, Plane, Release, Spec};
+use peridyne::run::Registry;
+use peridyne::spec::{Breakage, LawSpec, Plane, Spec};
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
 pub fn describe(spec: &Spec, units: UnitSystem) -> String {
@@ -58,11 +58,9 @@ fn of_what(spec: &Spec, units: UnitSystem) -> Vec<String> {
             .map(|m| format!("material   {}", material(m, units))),
     );
     if spec.materials.iter().any(|m| m.fracture.is_some()) {
-        lines.push(match spec.damage.release {
-            Release::AtOnce => "release    bonds let go at once past their critical stretch".into(),
-            Release::AfterForce => {
-                "release    bonds pull once more past their critical stretch".into()
-            }
+        lines.push(match spec.damage.breakage {
+            Breakage::BeforeForce => "breakage   bonds break before the force evaluation".into(),
+            Breakage::AfterForce => "breakage   bonds break after the force evaluation".into(),
         });
     }
     if !spec.interactions.pairs.is_empty() {
@@ -77,13 +75,13 @@ fn of_what(spec: &Spec, units: UnitSystem) -> Vec<String> {
 
 /// Names of the laws of a spec and where they come from, each once.
 pub fn sources(spec: &Spec) -> Vec<String> {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let own = spec.materials.iter().map(|m| m.law.clone());
     let pairs =
         { spec.interactions.potentials.iter() }.map(|a| LawSpec::Atoms(a.potential.clone()));
     let mut all = vec![];
     for law in own.chain(pairs) {
-        if let Some((descriptor, _)) = shelf.written(&law) {
+        if let Some((descriptor, _)) = registry.written(&law) {
             let name = descriptor.name.replace('_', "-");
             let line = format!("{name}: {}", descriptor.source);
             if !descriptor.source.is_empty() && !all.contains(&line) {

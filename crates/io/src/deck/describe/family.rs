@@ -35,14 +35,14 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
             )
         }));
     }
-    if let Some(own) = &spec.bonds.own_horizon {
+    if let Some(own) = &spec.bonds.variable_horizon {
         lines.push(format!(
             "           of each point {}, at most that: dual horizon",
             own.source()
         ));
     }
     for piece in spec.body.pieces() {
-        if let Some(own) = &piece.own_horizon {
+        if let Some(own) = &piece.variable_horizon {
             lines.push(format!(
                 "           of each point of {} {}, at most that: dual horizon",
                 piece.name,
@@ -59,7 +59,7 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
             ));
         }
     }
-    let spreads = !spec.interactions.transfers.is_empty();
+    let spreads = !spec.interactions.diffusions.is_empty();
     let surfaces = spec.bonds.surface.iter().map(|f| ("", f));
     let pieces = spec.body.pieces().iter();
     let each = pieces.filter_map(|p| Some((p.name.as_str(), p.surface.as_ref()?)));
@@ -110,9 +110,9 @@ fn reach(spec: &Spec, units: UnitSystem) -> String {
             )
         }
         None => format!(
-            "horizon    {horizon}, influence {}, volume scaling {}, constants {}",
+            "horizon    {horizon}, influence {}, partial-volume correction {}, constants {}",
             influence(spec.bonds.influence),
-            if spec.bonds.volume_scaling {
+            if spec.bonds.partial_volume_correction {
                 "on"
             } else {
                 "off"
@@ -168,7 +168,7 @@ fn surface(body: &str, surface: &SurfaceFactors, spreads: bool) -> String {
         others += &beside("conductances", range(|x| x.conductance));
     }
     format!(
-        "surface    {of}{}: {} kinds of points, factors of bonds {low:.2} to {high:.2}{others}",
+        "surface    {of}{}: {} kinds of points, bond stiffness factors {low:.2} to {high:.2}{others}",
         words(&surface.method),
         surface.rows.len() - 1
     )

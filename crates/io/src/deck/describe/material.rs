@@ -2,7 +2,7 @@
 
 use crate::deck::units::{Dim, UnitSystem, short};
 use peridyne::law::descriptor::Value;
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::spec::{Acting, Criterion, LawSpec, MaterialSpec, Parameter, PotentialSpec, Spec};
 
 /// All potentials between atoms that a spec names.
@@ -36,8 +36,8 @@ fn law(law: &LawSpec, units: UnitSystem) -> String {
 
 /// A law with its constants.
 fn constants(law: &LawSpec, units: UnitSystem) -> String {
-    let shelf = Shelf::standard();
-    let Some((descriptor, parameters)) = shelf.written(law) else {
+    let registry = Registry::standard();
+    let Some((descriptor, parameters)) = registry.written(law) else {
         return "a law of its own".into();
     };
     let mut said = descriptor.name.replace('_', "-");

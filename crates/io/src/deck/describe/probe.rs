@@ -50,11 +50,14 @@ fn measured(measure: &Measure, set: &str, units: UnitSystem, dimension: usize) -
                 place(at)
             )
         }
-        Measure::Indenter { indenter, of } => format!(
-            "{} of the indenter {indenter}",
+        Measure::RigidBody {
+            rigid_body: name,
+            of,
+        } => format!(
+            "{} of the rigid body {name}",
             of.map_or("all", RigidQuantity::name)
         ),
-        Measure::Contour(c) => format!(
+        Measure::JIntegral(c) => format!(
             "J and K by the rectangle {} to {}",
             place(&c.low),
             place(&c.high)

@@ -13,7 +13,7 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
         lines.push(format!(
             "{}, under {}",
             equilibrium(&preload.statics, preload.increments, units),
-            counted(preload.conditions.len() as u64, "condition")
+            counted(preload.conditions.len() as u64, "boundary condition")
         ));
         if !preload.cuts.is_empty() {
             lines.push(format!(
@@ -25,7 +25,7 @@ pub(super) fn lines(spec: &Spec, units: UnitSystem) -> Vec<String> {
     let step = match spec.run.schedule.time_step {
         TimeStep::Fixed(step) => units.write(step, Dim::TIME),
         TimeStep::Auto if spec.run.schedule.stepper == Stepper::Still => {
-            "the longest explicit one of what spreads".into()
+            "the longest explicit one of heat and species".into()
         }
         TimeStep::Auto if spec.potential().is_some() => {
             "a tenth of the stability limit, less for fast atoms".into()
@@ -75,8 +75,8 @@ fn equilibrium(statics: &Statics, increments: u64, units: UnitSystem) -> String 
     };
     let each = match statics.control {
         Control::Load => String::new(),
-        Control::Breaking => ", each where the next bond breaks".into(),
-        Control::Opening(by) => format!(", bonds open by {} in each", short(by)),
+        Control::SequentiallyLinear => ", each where the next bond breaks".into(),
+        Control::IndirectDisplacement(by) => format!(", bonds open by {} in each", short(by)),
         Control::ArcLength(by) => {
             let by = units.write(by, Dim::LENGTH);
             format!(", points go by {by} in each")

@@ -72,7 +72,7 @@ pub(super) fn body(body: &BodySpec, units: UnitSystem, dimension: usize) -> Stri
         }
         BodySpec::Several(pieces) => {
             let each = pieces.iter().map(|p| {
-                let loose = if p.bonded { "" } else { ", loose points" };
+                let loose = if p.bonded { "" } else { ", unbonded particles" };
                 format!(
                     "\n           {}: {}{loose}",
                     p.name,

@@ -1,8 +1,9 @@
 //! Cracks, and bonds with factors.
 
 use super::{CrackName, StageName};
+use crate::deck::quantity::{Length, Positive};
 use crate::deck::units::Dim;
-use crate::deck::value::{At, Number, Vector};
+use crate::deck::value::{At, Number, Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -10,41 +11,37 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BondFactor {
-    /// Expression of x, y, z; a bond gets the mean of both ends by the rule of `interface`. With crossing: a number.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub value: Number,
+    /// Expression of x, y, z; a bond gets the mean of both ends by the rule of `bond_mixing`. With crossing: a number.
+    pub factor: Quantity,
     /// Only bonds that cross this shape.
     pub crossing: Option<At<FlatShape>>,
 }
 
-/// Toughness that depends on place, time and temperature: one of stretch_factor, energy_factor, temperature, no_failure.
+/// Toughness that depends on place, time and temperature: one of critical_stretch_factor, energy_factor, temperature, no_failure.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Toughness {
-    /// Points whose bonds are meant; all when left out. A bond breaks at the lower one of its ends' critical stretches.
+    /// Points whose bonds are meant; all by default. A bond breaks at the lower one of its ends' critical stretches.
     pub set: Option<At<String>>,
     /// Factor of the critical stretch, a number or an expression of x, y, z, t.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub stretch_factor: Option<Number>,
+    pub critical_stretch_factor: Option<Quantity>,
     /// Factor of the fracture energy, a number or an expression of x, y, z, t: the critical stretch is multiplied with its root.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub energy_factor: Option<Number>,
+    pub energy_factor: Option<Quantity>,
     /// Rows [T, factor] of the critical stretch, T rising: lines between them, and the outer factors beyond. With [heat].
     #[schemars(extend("dimension" = Dim::TEMPERATURE.name()))]
     pub temperature: Option<At<Vec<Vec<Number>>>>,
-    /// true: bonds of these points never break, whatever their other ends bear.
+    /// true: bonds of these points never break, whatever the strength of their other ends.
     pub no_failure: Option<At<bool>>,
 }
 
-/// Broken bonds that become whole again.
+/// Broken bonds that become intact again.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Healing {
-    /// Both ends of the bond are of this set; all when left out.
+    /// Both ends of the bond are of this set; all by default.
     pub set: Option<At<String>>,
-    /// Size of the stretch below which a broken bond is whole again, a number or an expression of t; 0: none.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub below: Number,
+    /// Size of the stretch below which a broken bond is intact again, a number or an expression of t; 0: none.
+    pub below: Quantity,
 }
 
 /// One of segment, disk, polygon, point.
@@ -56,11 +53,9 @@ pub struct FlatShape {
     /// 3-D.
     pub disk: Option<Disk>,
     /// Three or more corners.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub polygon: Option<At<Vec<Vector>>>,
+    pub polygon: Option<At<Vec<Vector<Length>>>>,
     /// 1-D.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub point: Option<Number>,
+    pub point: Option<Quantity<Length>>,
 }
 
 /// One of segment, disk, polygon, point, stl.
@@ -72,43 +67,37 @@ pub struct Precrack {
     /// 3-D.
     pub disk: Option<Disk>,
     /// Three or more corners.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub polygon: Option<At<Vec<Vector>>>,
+    pub polygon: Option<At<Vec<Vector<Length>>>>,
     /// 1-D.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub point: Option<Number>,
+    pub point: Option<Quantity<Length>>,
     /// A surface of triangles, open or closed; 3-D.
     pub stl: Option<At<Stl>>,
-    /// absent (never there; when left out) or broken (counted as damage).
+    /// excluded (from the families; by default) or broken (at the start, counted as damage).
     pub kind: Option<CrackName>,
-    /// Of a deck with [statics] and [run]: motion cuts the loaded body when motion begins, and its bonds are then broken; before statics when
-    /// left out.
+    /// Of a deck with [statics] and [run]: dynamics cuts the loaded body when motion begins, and its bonds are then broken; before statics by default.
     pub stage: Option<At<StageName>>,
 }
 
+/// A line in the plane from one place to another; in 2-D a crack.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Segment {
     /// One end.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub from: Vector,
+    pub from: Vector<Length>,
     /// The other.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub to: Vector,
+    pub to: Vector<Length>,
 }
 
+/// A flat round crack in space.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disk {
     /// Its middle.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub center: Vector,
+    pub center: Vector<Length>,
     /// Direction across it, of any length.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub normal: Vector,
     /// Radius.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub radius: Number,
+    pub radius: Quantity<Positive<Length>>,
 }
 
 /// Triangles of a file.
@@ -117,7 +106,6 @@ pub struct Disk {
 pub struct Stl {
     /// A binary or text file, relative to the deck.
     pub file: At<String>,
-    /// What 1 in the file is; the deck's unit of length when left out.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub unit: Option<Number>,
+    /// What 1 in the file is; the deck's unit of length by default.
+    pub unit: Option<Quantity<Positive<Length>>>,
 }

@@ -1,9 +1,9 @@
-//! What a deck names of the shelf, the law of a material or a force on points: a name, and its keys by its descriptor.
+//! What a deck names of the registry, the law of a material or a force on points: a name, and its keys by its descriptor.
 
 use crate::deck::value::{At, Number, Written};
 use peridyne::columns::Dimension;
 use peridyne::law::descriptor::{Descriptor, Key, Need, Value};
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
 use serde_json::json;
@@ -11,14 +11,16 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// One of a list of the shelf.
+/// One of a list of the registry.
 pub trait Listed {
     /// `"law"`, the key that takes it.
     const WHAT: &'static str;
     /// Who has one of them.
     const OF: &'static str;
     const SCHEMA: &'static str;
-    fn all(shelf: &Shelf) -> Vec<&Descriptor>;
+    /// What the list is, for its page.
+    const DOC: &'static str;
+    fn all(registry: &Registry) -> Vec<&Descriptor>;
 }
 
 #[derive(Debug)]
@@ -28,8 +30,9 @@ impl Listed for OfMaterials {
     const WHAT: &'static str = "law";
     const OF: &'static str = "a material";
     const SCHEMA: &'static str = "Law";
-    fn all(shelf: &Shelf) -> Vec<&Descriptor> {
-        shelf.descriptors().collect()
+    const DOC: &'static str = "The law of a material, `law = { NAME = { … } }`: peridynamic solids, then potentials of atoms.";
+    fn all(registry: &Registry) -> Vec<&Descriptor> {
+        registry.descriptors().collect()
     }
 }
 
@@ -40,8 +43,9 @@ impl Listed for OnPoints {
     const WHAT: &'static str = "force";
     const OF: &'static str = "a condition";
     const SCHEMA: &'static str = "Force";
-    fn all(shelf: &Shelf) -> Vec<&Descriptor> {
-        shelf.forces().collect()
+    const DOC: &'static str = "A force on the points of the set, `force = { NAME = { … } }`.";
+    fn all(registry: &Registry) -> Vec<&Descriptor> {
+        registry.forces().collect()
     }
 }
 
@@ -75,13 +79,15 @@ impl<L: Listed> OfShelf<L> {
         }
     }
 
-    /// What the shelf says of one of these names.
-    pub fn descriptor<'a>(shelf: &'a Shelf, name: &str) -> Option<&'a Descriptor> {
-        L::all(shelf).into_iter().find(|d| d.name == name)
+    /// What the registry says of one of these names.
+    pub fn descriptor<'a>(registry: &'a Registry, name: &str) -> Option<&'a Descriptor> {
+        L::all(registry).into_iter().find(|d| d.name == name)
     }
 
-    fn unknown<E: Error>(shelf: &Shelf, name: &str) -> E {
-        let known = L::all(shelf).into_iter().map(|d| format!("`{}`", d.name));
+    fn unknown<E: Error>(registry: &Registry, name: &str) -> E {
+        let known = L::all(registry)
+            .into_iter()
+            .map(|d| format!("`{}`", d.name));
         let known: Vec<String> = known.collect();
         E::custom(format!(
             "unknown variant `{name}`, expected one of {}",
@@ -109,21 +115,21 @@ impl<'de, L: Listed> Deserialize<'de> for OfShelf<L> {
         impl<'de, L: Listed> Visitor<'de> for OfShelfVisitor<L> {
             type Value = OfShelf<L>;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                let shelf = Shelf::standard();
-                let all = L::all(&shelf);
+                let registry = Registry::standard();
+                let all = L::all(&registry);
                 let name = all.iter().map(|d| &*d.name).find(|n| *n == "lps");
                 let name = name.or(all.first().map(|d| &*d.name)).unwrap_or("name");
                 write!(f, "a {} such as {{ {name} = {{ … }} }}", L::WHAT)
             }
             fn visit_str<E: Error>(self, name: &str) -> Result<OfShelf<L>, E> {
-                let shelf = Shelf::standard();
-                match OfShelf::<L>::descriptor(&shelf, name) {
+                let registry = Registry::standard();
+                match OfShelf::<L>::descriptor(&registry, name) {
                     Some(descriptor) if plain(descriptor) => Ok(OfShelf::new(name, vec![])),
                     Some(_) => {
                         let what = L::WHAT;
                         Err(E::custom(format!("the {what} {name} needs its constants")))
                     }
-                    None => Err(OfShelf::<L>::unknown(&shelf, name)),
+                    None => Err(OfShelf::<L>::unknown(&registry, name)),
                 }
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<OfShelf<L>, A::Error> {
@@ -132,15 +138,15 @@ impl<'de, L: Listed> Deserialize<'de> for OfShelf<L> {
                     let message = format!("a {what} has a name: {{ NAME = {{ … }} }}");
                     return Err(A::Error::custom(message));
                 };
-                let shelf = Shelf::standard();
-                let given = match OfShelf::<L>::descriptor(&shelf, &name) {
+                let registry = Registry::standard();
+                let given = match OfShelf::<L>::descriptor(&registry, &name) {
                     Some(descriptor) if plain(descriptor) => {
                         return Err(A::Error::custom(format!(
                             "this {what} has no constants: write its name alone"
                         )));
                     }
                     Some(descriptor) => map.next_value_seed(Constants(descriptor))?,
-                    None => return Err(OfShelf::<L>::unknown(&shelf, &name)),
+                    None => return Err(OfShelf::<L>::unknown(&registry, &name)),
                 };
                 match map.next_key::<String>()? {
                     None => Ok(OfShelf::new(&name, given)),
@@ -220,8 +226,8 @@ impl<L: Listed> JsonSchema for OfShelf<L> {
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let number = generator.subschema_for::<Written>();
-        let shelf = Shelf::standard();
-        let laws = L::all(&shelf).into_iter().map(|d| {
+        let registry = Registry::standard();
+        let laws = L::all(&registry).into_iter().map(|d| {
             let description = d.doc.trim();
             if plain(d) {
                 let source = &d.source;
@@ -296,6 +302,6 @@ impl<L: Listed> JsonSchema for OfShelf<L> {
             })
         });
         let laws: Vec<serde_json::Value> = laws.collect();
-        json_schema!({ "oneOf": laws })
+        json_schema!({ "description": L::DOC, "oneOf": laws })
     }
 }

@@ -9,6 +9,6 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Molecules {
-    /// What is left of the potential between atoms that are one, two and three bonds apart; [0, 0, 0] when left out.
+    /// What is left of the potential between atoms that are one, two and three bonds apart; [0, 0, 0] by default.
     pub special: Option<At<Vec<f64>>>,
 }

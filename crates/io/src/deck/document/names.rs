@@ -57,11 +57,11 @@ names! {
         /// From the star of a term's centre.
         Differences,
     }
-    InterfaceName {
+    BondMixingName {
         /// Harmonic mean: the two half bonds in series.
-        Series,
-        /// Arithmetic mean: side by side.
-        Parallel,
+        Harmonic,
+        /// Arithmetic mean: the two half bonds in parallel.
+        Arithmetic,
         /// The weaker of both, as LAMMPS does.
         Minimum,
     }
@@ -71,7 +71,7 @@ names! {
         /// 1/ξ
         Inverse,
         /// 1 − ξ/δ
-        Conical,
+        Linear,
         /// exp(−(2ξ/δ)²)
         Gaussian,
         /// Cubic B-spline with support δ, 1 at ξ = 0.
@@ -91,7 +91,7 @@ names! {
         Volume,
         /// By the strain energy under uniaxial stretch.
         Energy,
-        /// By the stiffness that a point feels when the rest stands still.
+        /// By the stiffness of a point while the others are fixed.
         Force,
     }
     FamilyName {
@@ -110,11 +110,11 @@ names! {
     ControlName {
         /// t, of which loads are functions.
         Load,
-        /// The next bond: loads are proportional to t, an increment goes to where a bond is at its critical stretch, however little t is
+        /// The next bond (sequentially linear analysis): loads are proportional to t, an increment goes to where a bond is at its critical stretch, however little t is
         /// there, and the next one begins without it.
-        Breaking,
-        /// How far bonds open, `opening`: loads are proportional to t, and t is what the body bears, which may rise and fall.
-        Opening,
+        SequentiallyLinear,
+        /// How far bonds open, `opening`: loads are proportional to t, the load factor, which may rise and fall (indirect displacement control).
+        IndirectDisplacement,
         /// How far points go, `arc_length`: the same, of bodies that snap through or buckle.
         ArcLength,
     }
@@ -123,10 +123,10 @@ names! {
         /// While the body is loaded.
         Statics,
         /// From its last equilibrium on.
-        Motion,
+        Dynamics,
     }
-    /// How what spreads goes on in time.
-    TransferName {
+    /// How diffusion is integrated in time.
+    DiffusionName {
         /// Forward Euler, in as many equal parts of a step as its own stable step asks for.
         Explicit,
         /// Backward Euler: first order in the step, stable at any.
@@ -153,10 +153,10 @@ names! {
         Sum,
         /// A field at the point of the set that is nearest to a place.
         Value,
-        /// Force on a rigid body, torque, centre, velocity, turn, spin, kinetic energy and what its friction took.
-        Indenter,
+        /// Force on a rigid body, torque, centre, velocity, rotation, angular velocity, kinetic energy and what its friction took.
+        RigidBody,
         /// J-integral and stress intensity K of a crack tip (2-D statics), by a rectangle around it.
-        Contour,
+        JIntegral,
         /// Where a crack ends, its length, its speed (in motion), and its branches.
         CrackTip,
         /// How much farther two points are apart than in the reference, and how far they have moved apart along each axis.
@@ -165,9 +165,9 @@ names! {
         Fragments,
     }
     CrackName {
-        /// Bonds that never were.
-        Absent,
-        /// Bonds that count as damage.
+        /// Excluded from the families.
+        Excluded,
+        /// Broken at the start: they count as damage.
         Broken,
     }
 }
@@ -184,8 +184,8 @@ impl MeasureName {
             MeasureName::Max => "max",
             MeasureName::Sum => "sum",
             MeasureName::Value => "value",
-            MeasureName::Indenter => "indenter",
-            MeasureName::Contour => "contour",
+            MeasureName::RigidBody => "rigid_body",
+            MeasureName::JIntegral => "j_integral",
             MeasureName::CrackTip => "crack_tip",
             MeasureName::Opening => "opening",
             MeasureName::Fragments => "fragments",

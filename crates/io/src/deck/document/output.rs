@@ -1,25 +1,27 @@
 //! What is written.
 
-use crate::deck::units::Dim;
-use crate::deck::value::{At, Number, Or};
+use crate::deck::quantity::{Length, Positive, Time};
+use crate::deck::value::{At, Or, Quantity};
+use crate::write::picture::animate::FilmFormat;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 use std::borrow::Cow;
 use std::fmt;
 
+/// Which files a run writes, how often, and with which fields.
 #[derive(Debug, Default, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// Folder of the results, relative to the deck; when left out, out/NAME in the working folder for the deck NAME.toml.
+    /// Folder of the results, relative to the deck; out/NAME for NAME.toml, in the working folder, by default.
     pub dir: Option<String>,
-    /// Steps between frames; only the first and the last state when left out.
+    /// Steps between frames; only the first and the last state by default.
     pub every: Option<At<u64>>,
     /// Frames after the first, evenly in steps, in place of `every`; one fewer or a few fewer where steps are no multiple.
     pub frames: Option<At<u64>>,
     /// Point fields of a frame, by name (`peridyne laws` lists them), displacements always; displacement, velocity, damage,
-    /// energy_density, dilatation, mark when left out.
+    /// energy_density, dilatation, block by default.
     pub fields: Option<Vec<At<String>>>,
-    /// VTU series for ParaView; true when left out.
+    /// VTU series for ParaView; true by default.
     pub vtu: Option<bool>,
     /// Exodus II file of this name (.e), in the folder of the results: all frames with their fields, for ParaView and the tools of
     /// Sandia.
@@ -27,7 +29,7 @@ pub struct Output {
     /// VTKHDF file of this name (.vtkhdf), in the folder of the results: the points of all frames with their fields in one file, as the VTU
     /// series has them, for ParaView, pyvista and h5py; `vtu = false` leaves the series out.
     pub vtkhdf: Option<At<String>>,
-    /// Unbroken bonds as lines, too.
+    /// Intact bonds as lines, too.
     #[serde(default)]
     pub bonds: bool,
     /// The linear body about the last state as linear_body.npz (NumPy): points and micromoduli.
@@ -39,10 +41,10 @@ pub struct Output {
     /// LAMMPS dump of this name, in the folder of the results: frames of points with their fields, of atoms with velocities,
     /// forces and energies.
     pub dump: Option<At<String>>,
-    /// Steps between rows of history.csv; a hundredth of the run when left out.
+    /// Steps between rows of history.csv; a hundredth of the run by default.
     pub history: Option<At<u64>>,
     /// PNG of the last state, named after the field that it shows: damage if bonds broke, else displacement in statics and velocity in
-    /// motion. When left out true, and false for atoms or where pictures are listed.
+    /// motion. By default true, and false for atoms or where pictures are listed.
     pub picture: Option<bool>,
     /// Pictures of fields of your choice.
     #[serde(default)]
@@ -51,10 +53,10 @@ pub struct Output {
     /// space_time_FIELD.npz. "density" is 1/y', reference over current distance of the points beside a point; or the name of a field of points.
     /// Of several a list of tables.
     pub space_time: Option<At<Or<SpaceTimes, SpaceTime>>>,
-    /// report.html at the end, the run in one file for browsers; true when left out.
+    /// report.html at the end, the run in one file for browsers; true by default.
     pub report: Option<bool>,
     /// How often a state is written from which `peridyne resume` goes on, in the folder `checkpoint` of the results: { every = "10 min",
-    /// keep = 2 } when left out, so that runs which are shorter write none; false: only where a run is ended early.
+    /// keep = 2 } by default, so that runs which are shorter write none; false: only where a run is ended early.
     pub checkpoint: Option<At<Or<bool, Checkpoint>>>,
     /// Atoms only: one file with all frames, positions, velocities, forces and energies; .extxyz, or .lammpstrj for a
     /// LAMMPS dump.
@@ -67,9 +69,9 @@ pub struct Output {
 #[derive(Debug, Default, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint {
-    /// Time on the clock of the machine between two, such as "10 min" or "2 h"; 10 min when left out.
+    /// Time on the clock of the machine between two, such as "10 min" or "2 h"; 10 min by default.
     pub every: Option<At<String>>,
-    /// How many stay, the newest; 2 when left out.
+    /// How many stay, the newest; 2 by default.
     pub keep: Option<At<u64>>,
 }
 
@@ -122,38 +124,74 @@ impl JsonSchema for SpaceTimes {
 pub struct SpaceTime {
     /// "density", or the name of a field of points (`peridyne laws` lists them).
     pub field: At<String>,
-    /// xx, … of a tensor; when left out, of vectors x, of tensors the magnitude.
+    /// xx, … of a tensor; of vectors x, of tensors the magnitude by default.
     pub component: Option<At<String>>,
-    /// What the ends of the colours mean, in plain numbers of the field; when left out those of its values, of the density as far from 1 on
+    /// What the ends of the colours mean, in plain numbers of the field; by default those of its values, of the density as far from 1 on
     /// either side.
     #[schemars(extend("dimension" = "that of the field"))]
     pub range: Option<At<[f64; 2]>>,
-    /// From where to where in the reference; the whole body when left out.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub x: Option<At<[Number; 2]>>,
-    /// From when to when; the whole motion when left out.
-    #[schemars(extend("dimension" = Dim::TIME.name()))]
-    pub t: Option<At<[Number; 2]>>,
+    /// From where to where in the reference; the whole body by default.
+    pub x: Option<At<[Quantity<Length>; 2]>>,
+    /// From when to when; the whole motion by default.
+    pub t: Option<At<[Quantity<Time>; 2]>>,
 }
 
-/// A PNG of a field at the end, FIELD.png or FIELD_COMPONENT.png, with cracks, indenters, supports and loads.
+/// A PNG of a field at the end, FIELD.png or FIELD_COMPONENT.png, with cracks, rigid bodies, supports and loads.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Picture {
-    /// Name of a field of points (`peridyne laws` lists them); when left out what the run is about, as `picture` says.
+    /// Name of a field of points (`peridyne laws` lists them); by default what the run is about, as `picture` says.
     pub field: Option<At<String>>,
-    /// x, xy, … or magnitude; the magnitude when left out.
+    /// x, xy, … or magnitude; the magnitude by default.
     pub component: Option<At<String>>,
-    /// Displacements are drawn so many times as large; when left out 1, in statics so that they are seen.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub scale: Option<Number>,
-    /// What the ends of the colours mean, in plain numbers of the field; those of its values when left out.
+    /// Displacements are drawn so many times as large; by default 1, in statics so that they are seen.
+    pub scale: Option<Quantity<Positive>>,
+    /// What the ends of the colours mean, in plain numbers of the field; those of its values by default.
     #[schemars(extend("dimension" = "that of the field"))]
     pub range: Option<At<[f64; 2]>>,
-    /// Name of a vector field that is drawn as arrows over the colours, in 2-D and 3-D: displacement, velocity, …; none when left
-    /// out.
+    /// Name of a vector field that is drawn as arrows over the colours, in 2-D and 3-D: displacement, velocity, …; none by
+    /// default.
     pub arrows: Option<At<String>>,
-    /// All frames as an animated PNG, too: FIELD_film.png.
+    /// All frames as a film, too: true or "png" for an animated PNG, FIELD_film.png, "gif" for FIELD_film.gif.
     #[serde(default)]
-    pub film: bool,
+    pub film: Film,
+}
+
+/// Whether there is a film, and what it is written as.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Film(pub Option<FilmFormat>);
+
+impl<'de> Deserialize<'de> for Film {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Asked;
+        impl Visitor<'_> for Asked {
+            type Value = Film;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("true or false, \"png\" or \"gif\"")
+            }
+            fn visit_bool<E: serde::de::Error>(self, v: bool) -> Result<Film, E> {
+                Ok(Film(v.then_some(FilmFormat::Png)))
+            }
+            fn visit_str<E: serde::de::Error>(self, v: &str) -> Result<Film, E> {
+                let known = [FilmFormat::Png, FilmFormat::Gif];
+                let found = known.into_iter().find(|format| format.ending() == v);
+                found
+                    .map(|format| Film(Some(format)))
+                    .ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(v), &self))
+            }
+        }
+        deserializer.deserialize_any(Asked)
+    }
+}
+
+impl JsonSchema for Film {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "Film".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [{ "type": "boolean" }, { "enum": ["png", "gif"] }] })
+    }
 }

@@ -1,8 +1,8 @@
 //! Regions, sets of points, and periods.
 
 use super::AxisName;
-use crate::deck::units::Dim;
-use crate::deck::value::{At, Number, Or, Vector};
+use crate::deck::quantity::{Fraction, Length, Positive};
+use crate::deck::value::{At, Or, Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -15,45 +15,35 @@ pub enum Shape {
     /// A box along the axes.
     Block {
         /// Lowest corner; an axis may be -inf.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        low: Vector,
+        low: Vector<Length>,
         /// Highest corner; an axis may be inf.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        high: Vector,
+        high: Vector<Length>,
     },
     /// A cylinder along an axis.
     Cylinder {
         /// Axis along which it lies.
         axis: AxisName,
-        /// A point on its axis; the origin when left out.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        center: Option<Vector>,
+        /// A point on its axis; the origin by default.
+        center: Option<Vector<Length>>,
         /// Radius.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        radius: Number,
-        /// Where it begins along its axis; endless when left out.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        low: Option<Number>,
-        /// Where it ends; endless when left out.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        high: Option<Number>,
+        radius: Quantity<Positive<Length>>,
+        /// Where it begins along its axis; endless by default.
+        low: Option<Quantity<Length>>,
+        /// Where it ends; endless by default.
+        high: Option<Quantity<Length>>,
     },
     /// In 2-D a disk.
     Sphere {
-        /// Its middle; the origin when left out.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        center: Option<Vector>,
+        /// Its middle; the origin by default.
+        center: Option<Vector<Length>>,
         /// Radius.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        radius: Number,
+        radius: Quantity<Positive<Length>>,
     },
     /// Where normal · (x − point) ≤ 0.
     HalfSpace {
         /// A point on its boundary.
-        #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-        point: Vector,
+        point: Vector<Length>,
         /// Points out of it; of any length.
-        #[schemars(extend("dimension" = Dim::NUMBER.name()))]
         normal: Vector,
     },
     /// Where any of them is.
@@ -69,18 +59,18 @@ pub enum Shape {
     Intersection(Vec<At<Shape>>),
 }
 
+/// Points with a name, for materials, boundary conditions, probes: those that meet all that is given here.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Set {
-    /// Only points of this one of several bodies; marks are those of its file.
+    /// Only points of this one of several bodies; blocks are those of its file.
     pub body: Option<At<String>>,
     /// Points in this region.
     pub region: Option<At<Shape>>,
-    /// Number or name of a mark in the file.
-    pub mark: Option<At<Mark>>,
+    /// Number or name of a block in the file.
+    pub block: Option<At<Block>>,
     /// Points where this expression of x, y, z is not 0, such as "noise(x/l, y/l, 0) > 0.2".
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub r#where: Option<Number>,
+    pub r#where: Option<Quantity>,
     /// Points of a lattice on these sites of its cell, counted from 1: of bcc the corner and the middle; of fcc the corner and the
     /// middles of the faces x, y and z; of diamond those four, then the same moved by a quarter.
     pub basis: Option<At<Vec<At<usize>>>>,
@@ -88,19 +78,19 @@ pub struct Set {
     pub random: Option<At<Drawn>>,
 }
 
+/// A part of the points, drawn at random; the same for any number of threads and ranks.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Drawn {
     /// How many of all points, from 0 to 1; the nearest whole number of them.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub part: Number,
+    pub part: Quantity<Fraction>,
     /// The same number draws the same points.
     pub seed: u64,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Mark {
+pub enum Block {
     Number(i32),
     Name(String),
 }
@@ -108,16 +98,14 @@ pub enum Mark {
 /// Axes whose period is the region, or the period of each.
 pub type Periodic = Or<Vec<At<AxisName>>, Periods>;
 
+/// Boundary conditions of a periodic box: the period along each axis that has one.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Periods {
     /// Period along x.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub x: Option<Number>,
+    pub x: Option<Quantity<Length>>,
     /// Period along y.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub y: Option<Number>,
+    pub y: Option<Quantity<Length>>,
     /// Period along z.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub z: Option<Number>,
+    pub z: Option<Quantity<Length>>,
 }

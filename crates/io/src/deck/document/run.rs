@@ -1,8 +1,8 @@
 //! How a body moves or comes to rest, and what is measured of it.
 
 use super::{ControlName, MeasureName};
-use crate::deck::units::Dim;
-use crate::deck::value::{At, Number, Or, Vector, Written};
+use crate::deck::quantity::{Hht, Length, LoadRatio, Part, Positive, Time};
+use crate::deck::value::{At, Measured, Or, Quantity, Vector};
 use peridyne::spec::{Integrator, Method, Stepper};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -10,87 +10,79 @@ use serde::de::{Deserializer, Error};
 use serde_json::json;
 use std::borrow::Cow;
 
+/// Motion: how long, with which time step and integrator.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
     /// Number of time steps.
     pub steps: Option<At<u64>>,
     /// Instead of steps.
-    #[schemars(extend("dimension" = Dim::TIME.name()))]
-    pub duration: Option<Number>,
-    /// A time, or { safety = 0.8 } of the estimated limit (when left out).
-    #[schemars(extend("dimension" = Dim::TIME.name()))]
-    pub time_step: Option<At<Or<Written, Safety>>>,
+    pub duration: Option<Quantity<Positive<Time>>>,
+    /// A time, or a part of the estimated limit; { safety = 0.8 } by default.
+    pub time_step: Option<At<Or<Measured<Positive<Time>>, Safety>>>,
     /// Run even if the step is above the stability limit.
     #[serde(default)]
     pub force_unstable: bool,
-    /// verlet when left out. newmark and hht are implicit: stable at any step, which must be given; bonds break at the end of a step. still: no
+    /// verlet by default. newmark and hht are implicit: stable at any step, which must be given; bonds break at the end of a step. none: no
     /// point moves while heat or a species spreads.
     pub integrator: Option<At<IntegratorName>>,
-    /// newmark: 1/4 when left out.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub beta: Option<Number>,
-    /// newmark: 1/2 when left out; more damps what is fast beside the step.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub gamma: Option<Number>,
-    /// hht: -0.1 when left out, from -1/3 (most damping of what is fast) to 0 (none); sets beta and gamma.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub alpha: Option<Number>,
-    /// newmark, hht: auto when left out, factors of small systems, conjugate gradients of large ones.
+    /// newmark: 1/4 by default.
+    pub beta: Option<Quantity<Positive>>,
+    /// newmark: 1/2 by default; more damps what is fast beside the step.
+    pub gamma: Option<Quantity<Positive>>,
+    /// hht: -0.1 by default, from -1/3 (most damping of what is fast) to 0 (none); sets beta and gamma.
+    pub alpha: Option<Quantity<Hht>>,
+    /// newmark, hht: auto by default, factors of small systems, conjugate gradients of large ones.
     pub solver: Option<At<SolverName>>,
-    /// newmark, hht: residual force over loads, reactions and inertia; 1e-10 when left out.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub tolerance: Option<Number>,
-    /// newmark, hht: iterations of conjugate gradients; 100,000 when left out.
+    /// newmark, hht: residual force over loads, reactions and inertia; 1e-10 by default.
+    pub tolerance: Option<Quantity<Positive>>,
+    /// newmark, hht: iterations of conjugate gradients; 100,000 by default.
     pub iterations: Option<At<usize>>,
-    /// All cores when left out; results do not depend on it.
+    /// Threads to compute on, whose number no result depends on; all cores by default.
     pub threads: Option<At<usize>>,
 }
 
-/// When a bond past its critical stretch lets go.
+/// When a bond past its critical stretch breaks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum ReleaseName {
-    /// In the force evaluation that finds it there, as in CabanaPD.
-    AtOnce,
-    /// After the force of that evaluation, as in LAMMPS: it pulls once more.
+pub enum BreakageName {
+    /// Before the force evaluation, in which it no longer acts, as in CabanaPD.
+    BeforeForce,
+    /// After the force evaluation, in which it acts once more, as in LAMMPS.
     AfterForce,
 }
 
+/// Equilibrium: method, load increments, and how closely it is solved.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Statics {
-    /// linear (about the reference) when left out, newton before [run]; newton for large deformation, relaxation or fire for contact.
+    /// linear (about the reference) by default, newton before [run]; newton for large deformation, relaxation or fire for contact.
     pub method: Option<MethodName>,
-    /// load when left out; breaking follows bond after bond, also where load and displacement fall (snap-back), with method = "linear";
-    /// opening and arc_length follow softening and large deformation there, with method = "newton".
+    /// load by default; sequentially_linear breaks one bond in each increment, also where load and displacement fall (snap-back), with method = "linear";
+    /// indirect_displacement and arc_length follow softening and large deformation there, with method = "newton".
     pub control: Option<At<ControlName>>,
-    /// control = "opening": growth of the stretch of the bonds that open fastest, per increment. A part of the critical stretch less that
+    /// control = "indirect_displacement": growth of the stretch of the bonds that open fastest, per increment. A part of the critical stretch less that
     /// at which bonds begin to soften, a tenth, say.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub opening: Option<Number>,
+    pub opening: Option<Quantity<Positive>>,
     /// control = "arc_length": how far points go in an increment, the root of the mean square of all.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub arc_length: Option<Number>,
-    /// auto when left out: factors of small systems, conjugate gradients of large ones.
+    pub arc_length: Option<Quantity<Positive<Length>>>,
+    /// auto by default: factors of small systems, conjugate gradients of large ones.
     pub solver: Option<SolverName>,
-    /// Increments of load while t goes from 0 to 1 (or to `duration`); 1 when left out, and 0 looks at modes only. With control =
-    /// "breaking" so many equilibria, in each of which the next bonds are about to break.
+    /// Increments of load while t goes from 0 to 1 (or to `duration`); 1 by default, and 0 looks at modes only. With control =
+    /// "sequentially_linear" so many equilibria, in each of which the next bonds are about to break.
     pub increments: Option<At<u64>>,
-    /// Increments are cycles of load, for materials with fatigue: conditions are the greatest load and stay as they are.
+    /// Increments are cycles of load, for materials with fatigue: boundary conditions are the greatest load and stay as they are.
     pub cycles: Option<At<LoadCycles>>,
-    /// t is a time that goes to this one, in which heat or a species spreads; t is a number that goes to 1 when left out. Before [run] the
-    /// stage is as long in records, which count time from the beginning of motion; when left out an increment is as long as a step.
-    #[schemars(extend("dimension" = Dim::TIME.name()))]
-    pub duration: Option<Number>,
-    /// Residual force over loads and reactions; 1e-10 when left out, 1e-8 with newton, 1e-6 with relaxation.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub tolerance: Option<Number>,
-    /// Iterations of conjugate gradients or of relaxation; 100,000 when left out.
+    /// t is a time that goes to this one, in which heat or a species spreads; t is a number that goes to 1 by default. Before [run] the
+    /// stage is as long in records, which count time from the beginning of motion; by default an increment is as long as a step.
+    pub duration: Option<Quantity<Positive<Time>>>,
+    /// Residual force over loads and reactions, of linear, newton and relaxation; 1e-10, 1e-8 and 1e-6 by default.
+    pub tolerance: Option<Quantity<Positive>>,
+    /// Iterations of conjugate gradients or of relaxation; 100,000 by default.
     pub iterations: Option<At<usize>>,
     /// So many lowest modes of vibration about the last state, before [run] those of the motion that follows; modes.csv and modes.pvd.
     pub modes: Option<At<usize>>,
-    /// All cores when left out; results do not depend on it.
+    /// Threads to compute on, whose number no result depends on; all cores by default.
     pub threads: Option<At<usize>>,
 }
 
@@ -98,14 +90,12 @@ pub struct Statics {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadCycles {
-    /// Least over greatest load, R, from -1 to below 1; 0 when left out.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub load_ratio: Option<Number>,
-    /// Bonds that are worn out in an increment, with those that last no longer; 1 when left out.
+    /// Least over greatest load, R, from -1 to below 1; 0 by default.
+    pub load_ratio: Option<Quantity<LoadRatio>>,
+    /// Bonds that are worn out in an increment, with those that last no longer; 1 by default.
     pub bonds: Option<At<usize>>,
-    /// Number of cycles after which no bond wears any more; no end when left out.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub most: Option<Number>,
+    /// Number of cycles after which fatigue damage stops; no end by default.
+    pub most: Option<Quantity<Positive>>,
 }
 
 /// A method of the engine's list.
@@ -172,17 +162,20 @@ impl JsonSchema for IntegratorName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverName {
+    /// Factors of small systems, conjugate gradients of large ones.
     Auto,
+    /// Sparse factors.
     Direct,
+    /// Conjugate gradients.
     Cg,
 }
 
+/// The time step as a part of the estimated limit of stability.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Safety {
     /// Part of the estimated limit of stability, above 0, at most 1.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub safety: Number,
+    pub safety: Quantity<Positive>,
 }
 
 /// A measurement of a set of points; its columns of history.csv begin with its name.
@@ -191,38 +184,31 @@ pub struct Safety {
 pub struct Probe {
     /// Its columns of history.csv begin with it.
     pub name: At<String>,
-    /// All points when left out.
+    /// Set that is measured; all points by default.
     pub set: Option<At<String>>,
     /// What is measured.
     pub measure: At<MeasureName>,
-    /// Field that is measured (`peridyne laws` lists them); of mean, min, max, sum and value. Of an indenter one of force, torque, center, velocity,
-    /// turn, spin, energy; all when left out.
+    /// Field that is measured (`peridyne laws` lists them); of mean, min, max, sum and value. Of a rigid body one of force, torque, center, velocity,
+    /// rotation, angular_velocity, energy; all by default.
     pub of: Option<At<String>>,
-    /// x, xy, … or magnitude; all components when left out.
+    /// x, xy, … or magnitude; all components by default.
     pub component: Option<At<String>>,
-    /// Name of an [[indenter]]; of the measure of that name.
-    pub indenter: Option<At<String>>,
+    /// Name of a [[rigid_body]]; of the measure of that name.
+    pub rigid_body: Option<At<String>>,
     /// Fixed point of a moment.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub about: Option<Vector>,
+    pub about: Option<Vector<Length>>,
     /// Place in the reference; of value.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub at: Option<Vector>,
-    /// Two opposite corners of a rectangle around the tip of a crack, three horizons to every side at least; of contour.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub corners: Option<At<Vec<Vector>>>,
-    /// Where the crack grows to; of contour and crack_tip, [1, 0] when left out.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub at: Option<Vector<Length>>,
+    /// Two opposite corners of a rectangle around the tip of a crack, three horizons to every side at least; of j_integral.
+    pub corners: Option<At<Vec<Vector<Length>>>>,
+    /// Where the crack grows to, of j_integral and crack_tip; [1, 0] by default.
     pub direction: Option<Vector>,
     /// Where the crack starts, in the reference: damage counts that is connected with it by steps of at most a horizon; of crack_tip.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub from: Option<Vector>,
-    /// Points with at least this damage are part of the crack, above 0, at most 1; of crack_tip, 0.3 when left out.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub damage: Option<Number>,
+    pub from: Option<Vector<Length>>,
+    /// Points with at least this damage are part of the crack, above 0, at most 1, of crack_tip; 0.3 by default.
+    pub damage: Option<Quantity<Part>>,
     /// Two places in the reference: the points nearest to them are measured; of opening.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub between: Option<At<Vec<Vector>>>,
-    /// Fragments of fewer points do not count, 1 when left out; of fragments.
+    pub between: Option<At<Vec<Vector<Length>>>>,
+    /// Fragments of fewer points do not count, of fragments; 1 by default.
     pub points: Option<At<u32>>,
 }

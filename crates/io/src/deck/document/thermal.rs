@@ -1,7 +1,7 @@
 //! Temperatures, as written.
 
-use crate::deck::units::Dim;
-use crate::deck::value::Number;
+use crate::deck::quantity::{Positive, Temperature};
+use crate::deck::value::Quantity;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -10,8 +10,7 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub struct Thermal {
     /// In kelvin; k_B T, an energy, in reduced or no units. An expression of x, y, z at the start: "300 K + 30 K * cos(2*pi*x/80)".
-    #[schemars(extend("dimension" = Dim::TEMPERATURE.name()))]
-    pub temperature: Number,
+    pub temperature: Quantity<Positive<Temperature>>,
     /// The same number gives the same velocities.
     pub seed: u64,
 }

@@ -1,7 +1,7 @@
 //! What acts between surfaces that touch.
 
-use crate::deck::units::Dim;
-use crate::deck::value::Number;
+use crate::deck::quantity::{FractureEnergy, Positive, Pressure, Velocity};
+use crate::deck::value::Quantity;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -10,15 +10,12 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub struct Friction {
     /// Coefficient of fast sliding, a number or an expression of t.
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub kinetic: Number,
-    /// Coefficient at rest, a number or an expression of t; kinetic when left out.
+    pub kinetic: Quantity<Positive>,
+    /// Coefficient at rest, a number or an expression of t; kinetic by default.
     #[serde(rename = "static")]
-    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub at_rest: Option<Number>,
+    pub at_rest: Option<Quantity<Positive>>,
     /// Speed at which the difference is 1/e of that at rest; goes with static.
-    #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
-    pub speed: Option<Number>,
+    pub speed: Option<Quantity<Positive<Velocity>>>,
 }
 
 /// What pulls points that are near. Of a rigid surface a traction of `27/4 strength s (1 − s)²` at a gap of s times its range 16 energy/(9 strength);
@@ -27,10 +24,8 @@ pub struct Friction {
 #[serde(deny_unknown_fields)]
 pub struct Cohesion {
     /// Work of adhesion: energy per area that pulling off takes.
-    #[schemars(extend("dimension" = Dim::FRACTURE_ENERGY.name()))]
-    pub energy: Number,
+    pub energy: Quantity<Positive<FractureEnergy>>,
     /// Greatest traction of a rigid surface, whose range is then at most the spacing of the points; of bodies that of faces that touch, whose range is
     /// then 2 to 20 times their distance.
-    #[schemars(extend("dimension" = Dim::PRESSURE.name()))]
-    pub strength: Number,
+    pub strength: Quantity<Positive<Pressure>>,
 }

@@ -36,6 +36,6 @@ impl UnitName {
 pub struct Units {
     /// Name of the system.
     pub system: UnitName,
-    /// Of metal: codata2018 when left out; lammps gives LAMMPS's kinetic energies, temperatures and pressures.
+    /// Of metal: codata2018 by default; lammps gives LAMMPS's kinetic energies, temperatures and pressures.
     pub constants: Option<At<Constants>>,
 }

@@ -1,13 +1,13 @@
 //! What acts on a body, each entry in its stage.
 
 use super::context::{Context, Result};
+use super::diffusion::Said;
 use super::stage::{Staged, Stages, moves, of_time};
-use super::transfer::Said;
-use super::{Files, indenter, motion, transfer};
+use super::{Files, diffusion, motion, rigid_body};
 use crate::deck::document::{Document, StageName};
 use peridyne::expression::Expression;
 use peridyne::spec::{
-    ConditionSpec, IndenterSpec, InitialSpec, PrecrackSpec, SetSpec, TransferCondition,
+    ConditionSpec, DiffusionCondition, InitialSpec, PrecrackSpec, RigidBodySpec, SetSpec,
 };
 
 /// Initial values of points, and those of what spreads.
@@ -19,7 +19,7 @@ pub(super) fn initial(
     let (mut initial, mut starts) = (Vec::new(), Vec::new());
     for (index, at) in document.initial.iter().enumerate() {
         let made = motion::initial(context, index, at, sets)?;
-        transfer::initial(context, &at.value, &made.set, &mut starts)?;
+        diffusion::initial(context, &at.value, &made.set, &mut starts)?;
         initial.push(made);
     }
     Ok((initial, starts))
@@ -31,10 +31,10 @@ pub(super) fn conditions(
     document: &Document,
     stages: &Stages,
     sets: &mut Vec<SetSpec>,
-) -> Result<(Staged<ConditionSpec>, Vec<Said<TransferCondition>>)> {
+) -> Result<(Staged<ConditionSpec>, Vec<Said<DiffusionCondition>>)> {
     let mut conditions = Staged::default();
     let mut exchanged = Vec::new();
-    for (index, at) in document.condition.iter().enumerate() {
+    for (index, at) in document.boundary_condition.iter().enumerate() {
         let stage = stages.named(context, &at.value.stage)?;
         context.set_time(stages.time(stage));
         let already = exchanged.len();
@@ -42,7 +42,7 @@ pub(super) fn conditions(
         if let (Some(_), Some(spreads)) = (stage, exchanged.get(already)) {
             return Err(context.error_with(
                 &spreads.span,
-                "this entry names a stage, and what spreads goes on through both",
+                "this entry names a stage, and diffusion goes on through both",
                 "leave stage out of it; what moves or loads points in one stage is an entry of its own",
             ));
         }
@@ -54,24 +54,24 @@ pub(super) fn conditions(
     Ok((conditions, exchanged))
 }
 
-pub(super) fn indenters(
+pub(super) fn rigid_bodies(
     context: &mut Context,
     document: &Document,
     stages: &Stages,
     section: f64,
     files: &Files,
-) -> Result<Staged<IndenterSpec>> {
-    let mut indenters = Staged::default();
-    for (index, at) in document.indenter.iter().enumerate() {
+) -> Result<Staged<RigidBodySpec>> {
+    let mut rigid_bodies = Staged::default();
+    for (index, at) in document.rigid_body.iter().enumerate() {
         let stage = stages.named(context, &at.value.stage)?;
         context.set_time(stages.time(stage));
-        let made = indenter::indenter(context, at, section, files)?;
+        let made = rigid_body::rigid_body(context, at, section, files)?;
         if stages.both && stage.is_none() && moves(&made) {
             return Err(stages.whose(context, &at.span));
         }
-        indenters.put(stage, stages.both, index, vec![made]);
+        rigid_bodies.put(stage, stages.both, index, vec![made]);
     }
-    Ok(indenters)
+    Ok(rigid_bodies)
 }
 
 /// Cracks of the body, and those that are cut when motion begins.
@@ -83,10 +83,10 @@ pub(super) fn precracks(
 ) -> Result<Staged<PrecrackSpec>> {
     let mut precracks = Staged::default();
     for (index, at) in document.precrack.iter().enumerate() {
-        let late = stages.named(context, &at.value.stage)? == Some(StageName::Motion);
+        let late = stages.named(context, &at.value.stage)? == Some(StageName::Dynamics);
         let made = motion::precrack(context, at, late, files)?;
         let when = if late {
-            StageName::Motion
+            StageName::Dynamics
         } else {
             StageName::Statics
         };

@@ -5,12 +5,12 @@ use super::context::{Context, Result};
 use crate::deck::document::{Document, Given, Law, Material, MixingName, Thermal};
 use crate::deck::error::nearest;
 use crate::deck::units::{BOLTZMANN, Constants, Dim, UnitSystem};
-use crate::deck::value::{At, Number, Written};
+use crate::deck::value::{At, Number, Quantity, Written};
 use crate::read::eam::EamFile;
 use crate::read::tag;
 use peridyne::law::descriptor::{Key, Need, Value};
-use peridyne::law::{fan, scaled};
-use peridyne::run::Shelf;
+use peridyne::law::{many_body, scaled};
+use peridyne::run::Registry;
 use peridyne::spec::{
     Acting, ActingSpec, BodySpec, BondedSpec, LawSpec, Mixing, Parameter, PartnerTable,
     PotentialSpec, TableSpec, ThermalSpec,
@@ -37,8 +37,8 @@ pub(super) fn potentials(
     body: &BodySpec,
     files: &Files,
 ) -> Result<AtomsPotentials> {
-    let shelf = Shelf::standard();
-    let is_potential = |m: &At<Material>| shelf.is_potential(&m.value.law.value.name);
+    let registry = Registry::standard();
+    let is_potential = |m: &At<Material>| registry.is_potential(&m.value.law.value.name);
     if !written.values().any(is_potential) {
         return Ok(AtomsPotentials::new());
     }
@@ -65,7 +65,7 @@ fn potential(
     body: &BodySpec,
     tables: &Tables,
 ) -> Result<AtomsPotential> {
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let of_file = RefCell::new((None, None));
     let element = law.value.word("element");
     let mut read = super::law::read(context, law, |file, key| {
@@ -79,7 +79,7 @@ fn potential(
         Ok(Parameter::Table(Arc::new(table)))
     })?;
     if let BodySpec::Lattice { kind, spacing, .. } | BodySpec::Sites { kind, spacing, .. } = body {
-        shelf.on_lattice(&mut read.law, *kind, *spacing);
+        registry.on_lattice(&mut read.law, *kind, *spacing);
     }
     if matches!(read.law.parameters.get("file"), Some(Parameter::Rows(_))) {
         // the rows know the elements of all materials, which are alike so
@@ -357,7 +357,7 @@ pub(super) fn pairs(
                 context.error_with(&name.span, message, help)
             })
         };
-        if !Shelf::standard().is_potential(&pair.law.value.name) {
+        if !Registry::standard().is_potential(&pair.law.value.name) {
             return Err(context.error_with(
                 &pair.law.span,
                 format!("{} is no potential between atoms", pair.law.value.name),
@@ -405,27 +405,27 @@ pub(super) fn units_are_said(context: &Context, document: &Document) -> Result<(
     if document.units.is_some() {
         return Ok(());
     }
-    let shelf = Shelf::standard();
+    let registry = Registry::standard();
     let mut numbers = vec![];
     let of_materials = document.material.values().map(|m| &m.value.law.value);
     for law in of_materials.chain(document.pair.iter().map(|p| &p.value.law.value)) {
-        let Some(descriptor) = shelf.descriptor(&law.name) else {
+        let Some(descriptor) = registry.descriptor(&law.name) else {
             continue;
         };
         for (name, given) in &law.given {
-            let needed = |k: &&Key| k.need == Need::Given || fan::is_known(&law.name);
+            let needed = |k: &&Key| k.need == Need::Given || many_body::is_known(&law.name);
             let key = descriptor.key(name).filter(needed);
             let dimension = key.and_then(Key::dimension);
             if let (Given::Number(number), Some(Dim::ENERGY | Dim::LENGTH)) = (given, dimension) {
-                numbers.push(number);
+                numbers.push(number.clone());
             }
         }
     }
-    let plain = |n: &&Number| match &n.value {
+    let plain = |n: &Number| match &n.value {
         Written::Plain(_) => true,
         Written::Text(text) => text.trim().parse::<f64>().is_ok(),
     };
-    numbers.extend(&document.body.value.spacing);
+    numbers.extend(document.body.value.spacing.as_ref().map(Quantity::number));
     match numbers.into_iter().find(plain) {
         Some(number) => Err(context.error_with(
             &number.span,
@@ -536,13 +536,10 @@ pub fn boltzmann(units: UnitSystem) -> f64 {
 }
 
 pub(super) fn thermal(context: &Context, thermal: &Thermal) -> Result<ThermalSpec> {
-    let temperature = context.expression(&thermal.temperature, Dim::TEMPERATURE)?;
+    let temperature = context.expression(&thermal.temperature)?;
     if temperature.depends_on_time() {
         let message = "a temperature at the start does not depend on t";
         return Err(context.error(&thermal.temperature.span, message));
-    }
-    if temperature.as_constant().is_some() {
-        context.positive(&thermal.temperature, Dim::TEMPERATURE, "the temperature")?;
     }
     Ok(ThermalSpec {
         energy: temperature.times(boltzmann(context.units)),

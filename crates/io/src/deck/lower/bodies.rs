@@ -8,7 +8,6 @@ use super::sets;
 use super::{Files, points};
 use crate::deck::document::{Body, Document, FamilyName, SurfaceName};
 use crate::deck::error::nearest;
-use crate::deck::units::Dim;
 use crate::deck::value::At;
 use peridyne::run::materials_of_bodies;
 use peridyne::spec::{
@@ -182,8 +181,8 @@ pub(super) fn own(
             at.value.influence.as_ref().or(document.influence.as_ref()),
             material.map_or(&[], std::slice::from_ref),
         )?);
-        if let Some(own) = &at.value.own_horizon {
-            piece.own_horizon = Some(context.expression(own, Dim::LENGTH)?);
+        if let Some(own) = &at.value.variable_horizon {
+            piece.variable_horizon = Some(context.expression(own)?);
         }
         piece.family = match &at.value.family {
             None => None,
@@ -245,8 +244,8 @@ pub(super) fn check(context: &Context, document: &Document) -> Result<()> {
             ("influence", at.value.influence.as_ref().map(|i| &i.span)),
             ("family", at.value.family.as_ref().map(|f| &f.span)),
             (
-                "own_horizon",
-                at.value.own_horizon.as_ref().map(|e| &e.span),
+                "variable_horizon",
+                at.value.variable_horizon.as_ref().map(|e| &e.span),
             ),
             ("surface", at.value.surface.as_ref().map(|s| &s.span)),
         ];

@@ -10,7 +10,7 @@ use crate::deck::units::{Dim, UnitSystem};
 use crate::deck::value::{At, Or};
 use crate::read::{AtomsFile, Cells};
 use peridyne::quantity;
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::space::lattice::{Ends, Lattice, LatticeKind};
 use peridyne::space::region::Region;
 use peridyne::spec::{BodySpec, Cloud, Perturbation};
@@ -101,7 +101,7 @@ fn points_of_file(
         points::lie_flat(context, &cloud, file)?;
     }
     if let Some(spacing) = &written.spacing {
-        cloud.spacing = Some(context.positive(spacing, Dim::LENGTH, "the spacing")?);
+        cloud.spacing = Some(context.value(spacing)?);
     }
     if context.micromoduli.is_some()
         && let Some(unit) = &written.file_unit
@@ -117,7 +117,7 @@ fn points_of_file(
     };
     cloud.density.iter_mut().for_each(|d| *d *= density);
     if let Some(unit) = &written.file_unit {
-        let unit = context.positive(unit, Dim::LENGTH, "the unit of the file")?;
+        let unit = context.value(unit)?;
         scale(context, &mut cloud, &mut cells, unit, natural);
     }
     // cells of a plane mesh have areas, and edges lengths: the thickness makes more of them
@@ -132,9 +132,9 @@ fn points_of_file(
     if natural.is_none()
         && context.atoms.is_none()
         && let Some(file) = &written.file
-        && let Some(doubt) = points::odd_volumes(context, document, &cloud, file)?
+        && let Some(lint) = points::odd_volumes(context, document, &cloud, file)?
     {
-        context.doubts.push(doubt);
+        context.lints.push(lint);
     }
     if let (Some(atoms), Some(file)) = (&context.atoms, &written.file) {
         atoms_fit(context, atoms, file)?;
@@ -298,9 +298,9 @@ pub(super) struct Filling {
 
 impl Filling {
     pub fn of(document: &Document, body: &Body) -> Filling {
-        let shelf = Shelf::standard();
+        let registry = Registry::standard();
         let mut materials = document.material.values();
-        let atoms = materials.any(|m| shelf.is_potential(&m.value.law.value.name));
+        let atoms = materials.any(|m| registry.is_potential(&m.value.law.value.name));
         let surface = body.surface.as_ref().or(document.surface.as_ref());
         let exact = surface.is_some_and(|s| s.value == SurfaceName::Exact);
         let periodic = document.periodic.as_ref().map(|p| match &p.value {
@@ -363,9 +363,9 @@ fn lattice(
         .spacing
         .as_ref()
         .ok_or_else(|| missing("spacing", "\"0.5 mm\""))?;
-    let spacing = context.positive(spacing, Dim::LENGTH, "the spacing")?;
+    let spacing = context.value(spacing)?;
     let given = { written.origin.as_ref() }
-        .map(|o| context.finite_vector(o, Dim::LENGTH))
+        .map(|o| context.finite_vector(o))
         .transpose()?;
     let (region, origin) = match (&written.region, &written.cells) {
         (Some(shape), None) => {
@@ -386,7 +386,7 @@ fn lattice(
     let perturb = match &written.perturb {
         None => None,
         Some(perturb) => {
-            let amplitude = context.finite(&perturb.amplitude, Dim::LENGTH)?;
+            let amplitude = context.value(&perturb.amplitude)?;
             let half = 0.5 * spacing * kind.nearest();
             if !(0.0..half).contains(&amplitude) {
                 let message = format!(

@@ -1,17 +1,20 @@
 //! From written numbers to numbers: units, constants, expressions, components.
 
 use crate::deck::error::{DeckError, nearest};
+use crate::deck::quantity::Measure;
 use crate::deck::source::Source;
 use crate::deck::units::{self, Dim, Dimensions, Kind, UnitSystem, Variables};
-use crate::deck::value::{At, Number, Written};
+use crate::deck::value::{At, Number, Quantity, Written};
 use crate::read::{AtomsFile, Cells};
 use peridyne::expression::{Expression, ExpressionError};
+use peridyne::law::descriptor::Bounds;
 use peridyne::spec::AnyLinearBody;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+mod temperature;
 mod vectors;
 
 pub(in crate::deck) type Result<T> = std::result::Result<T, DeckError>;
@@ -33,9 +36,10 @@ pub(in crate::deck) struct Context<'a> {
     /// What was passed over in files.
     pub notes: Vec<String>,
     /// What looks wrong in files, with the line that names them.
-    pub doubts: Vec<String>,
+    pub lints: Vec<String>,
     /// Numbers in quotes that carry no unit: where, and what was taken.
     pub unitless: RefCell<Vec<(Range<usize>, String)>>,
+    scales: temperature::Scales,
     /// What `t` is: a time, in statics a number.
     time: Dim,
     /// Dimension if units say it, and the value: as computed with a dimension, else a plain number of the deck.
@@ -60,8 +64,9 @@ impl<'a> Context<'a> {
             ends: None,
             cells: Cells::default(),
             notes: Vec::new(),
-            doubts: Vec::new(),
+            lints: Vec::new(),
             unitless: RefCell::default(),
+            scales: temperature::Scales::default(),
             constants: BTreeMap::new(),
         };
         // constants may use each other in any order; each round settles at least one, or an error is real
@@ -201,7 +206,18 @@ impl<'a> Context<'a> {
         if kind.has_bare_factor() {
             help += "; a number without unit beside a quantity is a pure number";
         }
-        let message = format!("expected {dim}, \"{text}\" is {found}");
+        let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        let hides = |name: &&str| self.constants.contains_key(*name) && units::unit(name).is_ok();
+        let mut message = format!("expected {dim}, \"{text}\" is {found}");
+        // it would be right if the unit were one
+        let unit = units::split(text).and_then(|(_, unit)| units::unit(unit).ok());
+        if let Some(name) = words
+            .find(hides)
+            .filter(|_| unit.is_some_and(|unit| unit.dim == dim))
+        {
+            message += &format!(": `{name}` is a constant of this deck, not the unit {name}");
+            help = "give the constant another name".into();
+        }
         Err(self.error_with(span, message, help))
     }
 
@@ -278,14 +294,15 @@ impl<'a> Context<'a> {
         let alone = name.len() > 1 || name == text.trim();
         let unknown = error.message.starts_with("unknown name");
         let unit = unknown && alone && units::unit(name).is_ok();
-        if unit && self.units.has_units() {
+        if unit && self.units.has_units() && temperature::of_roots(text).is_none() {
             let message = format!("the unit \"{name}\" has no number");
             let help = format!(
                 "write the number before it: \"1 {name}\"; if a constant is meant, give it in [constants]"
             );
             return self.source.error(Some(inner), message, Some(help));
         }
-        self.source.error(Some(inner), error.message, error.help)
+        let help = temperature::of_roots(text).or(error.help);
+        self.source.error(Some(inner), error.message, help)
     }
 
     /// An expression in plain numbers of the deck, with more constants besides the deck's.
@@ -319,6 +336,9 @@ impl<'a> Context<'a> {
 
     /// A number of this dimension, as it is computed with; NaN is refused.
     pub fn number(&self, number: &Number, dim: Dim) -> Result<f64> {
+        if let Some(kelvin) = self.celsius(number, dim)? {
+            return Ok(kelvin);
+        }
         let value = match &number.value {
             Written::Plain(value) => *value * self.units.plain_factor(dim),
             Written::Text(text) => {
@@ -341,20 +361,55 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// A number above zero; `what` names it.
-    pub fn positive(&self, number: &Number, dim: Dim, what: &str) -> Result<f64> {
-        let value = self.finite(number, dim)?;
-        if value > 0.0 {
-            Ok(value)
-        } else {
-            Err(self.error(
-                &number.span,
-                format!(
-                    "{what} must be positive, it is {}",
-                    self.units.write(value, dim)
-                ),
-            ))
+    /// A number that lies where its measure allows.
+    pub fn value<K: Measure>(&self, quantity: &Quantity<K>) -> Result<f64> {
+        let value = self.finite(&quantity.number(), K::DIM)?;
+        self.within::<K>(value, &quantity.span)?;
+        Ok(value)
+    }
+
+    /// The same, or what stands for one that is left out.
+    pub fn value_or<K: Measure>(&self, quantity: &Option<Quantity<K>>, or: f64) -> Result<f64> {
+        quantity.as_ref().map_or(Ok(or), |q| self.value(q))
+    }
+
+    /// The same, where nothing stands for it.
+    pub fn optional<K: Measure>(&self, quantity: &Option<Quantity<K>>) -> Result<Option<f64>> {
+        quantity.as_ref().map(|q| self.value(q)).transpose()
+    }
+
+    /// A number that may be infinite.
+    pub fn limit<K: Measure>(&self, quantity: &Quantity<K>) -> Result<f64> {
+        self.number(&quantity.number(), K::DIM)
+    }
+
+    /// An expression of x, y, z, t of a measure; a number among its bounds.
+    pub fn expression<K: Measure>(&self, quantity: &Quantity<K>) -> Result<Expression> {
+        let expression = self.expression_of(&quantity.number(), K::DIM)?;
+        if let Some(value) = expression.as_constant() {
+            self.within::<K>(value, &quantity.span)?;
         }
+        Ok(expression)
+    }
+
+    /// An expression that may be left out, and its place.
+    pub fn said<K: Measure>(
+        &self,
+        quantity: &Option<Quantity<K>>,
+    ) -> Result<Option<(Expression, Range<usize>)>> {
+        let Some(quantity) = quantity else {
+            return Ok(None);
+        };
+        Ok(Some((self.expression(quantity)?, quantity.span.clone())))
+    }
+
+    fn within<K: Measure>(&self, value: f64, span: &Range<usize>) -> Result<()> {
+        if K::BOUNDS == Bounds::ANY || K::BOUNDS.hold(value) {
+            return Ok(());
+        }
+        let key = (self.source.key(span.start)).map_or("this".into(), |key| format!("`{key}`"));
+        let (must, is) = (K::BOUNDS.words(), self.units.write(value, K::DIM));
+        Err(self.error(span, format!("{key} must be {must}, it is {is}")))
     }
 
     /// An expression of variables that are plain numbers, of this dimension.
@@ -392,7 +447,10 @@ impl<'a> Context<'a> {
     }
 
     /// An expression of x, y, z, t of this dimension.
-    pub fn expression(&self, number: &Number, dim: Dim) -> Result<Expression> {
+    pub fn expression_of(&self, number: &Number, dim: Dim) -> Result<Expression> {
+        if let Some(kelvin) = self.celsius(number, dim)? {
+            return Ok(Expression::constant(kelvin));
+        }
         let Written::Text(text) = &number.value else {
             return Ok(Expression::constant(self.finite(number, dim)?));
         };
@@ -457,7 +515,7 @@ impl<'a> Context<'a> {
 }
 
 /// A lone number in the place of a vector has no place of its own.
-fn placed(number: &Number, span: &Range<usize>) -> Number {
+fn placed<K>(number: &Quantity<K>, span: &Range<usize>) -> Quantity<K> {
     let span = if number.span.is_empty() {
         span.clone()
     } else {

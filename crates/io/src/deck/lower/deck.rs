@@ -7,14 +7,13 @@ use super::section::{plane, section};
 use super::stage::{Entries, Stages};
 use super::units::{measured_constants, units};
 use super::{
-    Files, acting, atoms, bodies, contact, family, fields, indenter, interface, material, motion,
-    names, periods, probes, schedule, sets, transfer, warnings,
+    Files, acting, atoms, bodies, contact, diffusion, family, fields, interface, material, motion,
+    names, periods, probes, rigid_body, schedule, sets, warnings,
 };
 use crate::continuum::plan::FieldsSpec;
 use crate::deck::document::Document;
 use crate::deck::error::DeckError;
 use crate::deck::source::Source;
-use crate::deck::units::Dim;
 use crate::read::Cells;
 use peridyne::spec::{
     BondsSpec, DamageSpec, InteractionsSpec, LoadingSpec, PreloadSpec, RunSpec, SpaceSpec, Spec,
@@ -68,10 +67,10 @@ pub(in crate::deck) fn lower(
     let (initial, starts) = acting::initial(&context, document, &mut sets)?;
     let (conditions, exchanged) = acting::conditions(&mut context, document, &stages, &mut sets)?;
     let section = section(&context, document)?;
-    let indenters = acting::indenters(&mut context, document, &stages, section, files)?;
+    let rigid_bodies = acting::rigid_bodies(&mut context, document, &stages, section, files)?;
     context.set_time(stages.time(None));
     let precracks = acting::precracks(&context, document, &stages, files)?;
-    let transfers = transfer::transfers(&context, document, &materials, starts, exchanged)?;
+    let diffusions = diffusion::diffusions(&context, document, &materials, starts, exchanged)?;
     let probes = all(&document.probe, |at| probes::probe(&context, at, &sets))?;
     let first = bodies::own(&context, document, &mut body, &materials, &sets)?;
     let run = schedule::schedule(&context, document)?;
@@ -92,13 +91,13 @@ pub(in crate::deck) fn lower(
         materials,
         bonds: BondsSpec {
             horizon,
-            volume_scaling: document.volume_scaling.unwrap_or(true),
+            partial_volume_correction: document.partial_volume_correction.unwrap_or(true),
             calibration: family::calibration(document),
             family: family::choice(document),
             ..BondsSpec::default()
         },
         interactions: InteractionsSpec {
-            transfers,
+            diffusions,
             ..InteractionsSpec::default()
         },
         damage: DamageSpec {
@@ -110,7 +109,7 @@ pub(in crate::deck) fn lower(
             boltzmann: atoms::boltzmann(units),
             thermal: None,
             conditions: conditions.then,
-            indenters: indenters.then,
+            rigid_bodies: rigid_bodies.then,
         },
         run: RunSpec {
             preload: run.preload.map(|p| PreloadSpec {
@@ -118,7 +117,7 @@ pub(in crate::deck) fn lower(
                 increments: p.increments,
                 duration: p.duration,
                 conditions: conditions.before,
-                indenters: indenters.before,
+                rigid_bodies: rigid_bodies.before,
                 cuts: precracks.then,
             }),
             schedule: run.schedule,
@@ -128,7 +127,7 @@ pub(in crate::deck) fn lower(
     };
     between_points(&context, document, files, &potentials, &mut spec)?;
     bodies::surfaces(&context, document, &mut spec)?;
-    indenter::of_material(&mut context, document, &mut spec)?;
+    rigid_body::of_material(&mut context, document, &mut spec)?;
     let species = potentials.into_values().map(|p| p.element);
     names::folders(&context, &document.output, &document.fields)?;
     let moves = spec.run.schedule.statics().is_none();
@@ -148,7 +147,7 @@ pub(in crate::deck) fn lower(
         cells: context.cells,
         entries: Entries {
             conditions: conditions.entries,
-            indenters: indenters.entries,
+            rigid_bodies: rigid_bodies.entries,
             precracks: precracks.entries,
         },
     })
@@ -164,18 +163,18 @@ fn between_points(
 ) -> Result<()> {
     let (bonds, interactions, damage) = (&mut spec.bonds, &mut spec.interactions, &mut spec.damage);
     let (body, sets, materials) = (&spec.body, &spec.sets, &spec.materials);
-    bonds.own_horizon = optional(&document.own_horizon, |e| {
-        context.expression(e, Dim::LENGTH)
-    })?;
+    bonds.variable_horizon = optional(&document.variable_horizon, |e| context.expression(e))?;
     interactions.bonded = atoms::molecules(context, document, files)?;
-    spec.loading.thermal = optional(&document.thermal, |t| atoms::thermal(context, t))?;
+    spec.loading.thermal = optional(&document.initial_velocities, |t| atoms::thermal(context, t))?;
     interactions.interface = interface::rule(context, document, materials)?;
     interactions.interfaces = interface::interfaces(context, document, body)?;
     interactions.potentials = atoms::pairs(context, document, body, potentials, files)?;
     interactions.mixing = atoms::mixing(context, document, potentials)?;
-    damage.release = material::release(context, &document.material)?;
+    damage.breakage = material::breakage(context, &document.material)?;
     bonds.influence = family::influence(context, document.influence.as_ref(), materials)?;
-    bonds.factors = all(&document.bond_factor, |b| motion::bond_factor(context, b))?;
+    bonds.factors = all(&document.bond_stiffness, |b| {
+        motion::bond_factor(context, b)
+    })?;
     damage.toughness = all(&document.toughness, |t| motion::toughness(context, t, sets))?;
     damage.healing = optional(&document.healing, |h| motion::healing(context, h, sets))?;
     interactions.contact = contact::contact(context, document, materials)?;

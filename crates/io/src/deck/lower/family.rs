@@ -5,9 +5,10 @@ use crate::deck::document::{
     CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, InfluenceWritten,
     SurfaceName,
 };
+use crate::deck::quantity::{Length, Positive};
 use crate::deck::units::{Dim, short};
-use crate::deck::value::{At, Or, Written};
-use peridyne::run::Shelf;
+use crate::deck::value::{At, Measured, Or};
+use peridyne::run::Registry;
 use peridyne::spec::{
     BodySpec, Calibration, FamilyChoice, Formula, Horizon, Influence, MaterialSpec, Spec,
     SurfaceFactors, SurfaceMethod,
@@ -27,9 +28,9 @@ pub(super) fn of_atoms(document: &Document, atoms: bool) -> (bool, bool) {
 /// Neighbours are those of atoms.
 pub(super) fn goes_with(context: &Context, document: &Document, current: bool) -> Result<()> {
     if document.family == Some(FamilyName::Neighbours) && !current {
-        let shelf = Shelf::standard();
-        let all = shelf.descriptors().map(|d| &*d.name);
-        let potentials: Vec<&str> = all.filter(|name| shelf.is_potential(name)).collect();
+        let registry = Registry::standard();
+        let all = registry.descriptors().map(|d| &*d.name);
+        let potentials: Vec<&str> = all.filter(|name| registry.is_potential(name)).collect();
         return Err(context.error(
             &document.body.span,
             format!(
@@ -82,7 +83,7 @@ pub(super) fn horizon_of(
 
 pub(super) fn horizon(
     context: &Context,
-    written: &At<Or<Written, HorizonRatio>>,
+    written: &At<Or<Measured<Positive<Length>>, HorizonRatio>>,
     body: &BodySpec,
 ) -> Result<Horizon> {
     // the length of the shortest bond, where it is known
@@ -109,14 +110,14 @@ pub(super) fn horizon(
                 value: number.clone(),
                 span: written.span.clone(),
             };
-            let length = context.positive(&number, Dim::LENGTH, "the horizon")?;
+            let length = context.value(&number)?;
             match lattice {
                 Some((_, shortest)) if length < shortest => Err(below(length, shortest)),
                 _ => Ok(Horizon::Length(length)),
             }
         }
         Or::Table(HorizonRatio { m_ratio }) => {
-            let ratio = context.positive(m_ratio, Dim::NUMBER, "m_ratio")?;
+            let ratio = context.value(m_ratio)?;
             let Some((spacing, shortest)) = lattice else {
                 return Err(context.error_with(
                     &m_ratio.span,
@@ -152,14 +153,14 @@ pub(super) fn influence(
 ) -> Result<Influence> {
     let Some(At { value, span }) = written else {
         let first = materials.first().map(|m| &m.law);
-        let shelf = Shelf::standard();
-        let written = first.and_then(|law| shelf.written(law));
+        let registry = Registry::standard();
+        let written = first.and_then(|law| registry.written(law));
         return Ok(written.map_or(Influence::Constant, |(d, _)| d.influence));
     };
     Ok(match value {
         InfluenceWritten::Named(InfluenceName::Constant) => Influence::Constant,
         InfluenceWritten::Named(InfluenceName::Inverse) => Influence::Inverse,
-        InfluenceWritten::Named(InfluenceName::Conical) => Influence::Conical,
+        InfluenceWritten::Named(InfluenceName::Linear) => Influence::Linear,
         InfluenceWritten::Named(InfluenceName::Gaussian) => Influence::Gaussian,
         InfluenceWritten::Named(InfluenceName::CubicSpline) => Influence::CubicSpline,
         InfluenceWritten::Formula(text) => {

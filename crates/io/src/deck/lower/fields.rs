@@ -5,7 +5,7 @@ use crate::continuum::plan::{Choice, FieldsSpec, Place};
 use crate::deck::document::{
     AxisName, Centre, Fields, KernelName, PairForceName, PartitionName, Smooth,
 };
-use crate::deck::units::Dim;
+use crate::deck::quantity::Length;
 use crate::deck::value::{At, Or, Vector};
 use crate::write::folder::{plain, stays};
 use peridyne::spec::{SmoothSpec, Window};
@@ -60,7 +60,7 @@ fn one(context: &Context, at: &At<Fields>, atoms: bool) -> Result<FieldsSpec> {
         other => other.as_ref().map(|n| n.value),
     };
     let averaged = averaged(context, written)?;
-    if let Some(film) = written.film.as_ref().filter(|f| f.value) {
+    if let Some(film) = written.film.as_ref().filter(|f| f.value.0.is_some()) {
         if written.grid.is_none() {
             return Err(context.error_with(
                 &film.span,
@@ -79,14 +79,14 @@ fn one(context: &Context, at: &At<Fields>, atoms: bool) -> Result<FieldsSpec> {
     Ok(FieldsSpec {
         name: name.into(),
         shape: shape(context, written.kernel.value, written.smoothness.as_ref())?,
-        width: context.positive(&written.width, Dim::LENGTH, "the width")?,
+        width: context.value(&written.width)?,
         averaged,
         place: place(context, at, averaged)?,
         choice: choice(context, written, atoms)?,
         every,
         skip: written.skip.unwrap_or(0),
         each: written.each,
-        film: written.film.as_ref().is_some_and(|f| f.value),
+        film: written.film.as_ref().and_then(|f| f.value.0),
         pressure: written.pressure,
         coordinate: written.coordinate,
         residuals: written.residuals.unwrap_or(16),
@@ -97,14 +97,14 @@ fn one(context: &Context, at: &At<Fields>, atoms: bool) -> Result<FieldsSpec> {
 pub(super) fn smooth(context: &Context, written: &At<Smooth>) -> Result<SmoothSpec> {
     let at = &written.value;
     let shape = shape(context, at.kernel.value, at.smoothness.as_ref())?;
-    let width = context.positive(&at.width, Dim::LENGTH, "the width")?;
+    let width = context.value(&at.width)?;
     let kernel =
         Kernel::new(shape, width).map_err(|e| context.error(&written.span, e.to_string()))?;
     Ok(SmoothSpec {
         width,
         reach: kernel.radius(),
         spacing: { at.spacing.as_ref() }
-            .map(|s| context.positive(s, Dim::LENGTH, "the spacing"))
+            .map(|s| context.value(s))
             .transpose()?,
         window: Window::new(move |d| kernel.value(d)),
     })
@@ -187,7 +187,7 @@ fn place(context: &Context, at: &At<Fields>, averaged: [bool; 3]) -> Result<Plac
             "remove them, or write grid",
         ));
     }
-    let vector = |v: &Vector| context.finite_vector(v, Dim::LENGTH);
+    let vector = |v: &Vector<Length>| context.finite_vector(v);
     let several = |n: &At<usize>| match n.value {
         0 => Err(context.error(&n.span, "at least one point")),
         n => Ok(n),
@@ -280,10 +280,7 @@ fn grid(
             "write for example corners = [[0, 0], [\"10 mm\", \"5 mm\"]]",
         ));
     };
-    let [a, b] = [
-        context.finite_vector(a, Dim::LENGTH)?,
-        context.finite_vector(b, Dim::LENGTH)?,
-    ];
+    let [a, b] = [context.finite_vector(a)?, context.finite_vector(b)?];
     if let Some(axis) = (0..d).find(|axis| a[*axis] == b[*axis]) {
         let name = ["x", "y", "z"][axis];
         return Err(context.error(&written.span, format!("the box has no length along {name}")));
@@ -303,7 +300,7 @@ fn choice(context: &Context, written: &Fields, atoms: bool) -> Result<Option<Cho
         Some(at) => match &at.value {
             Or::Bare(PartitionName::Site) => Partition::Site,
             Or::Bare(PartitionName::Equal) => Partition::Equal,
-            Or::Table(Centre { centre }) => Partition::Centre(context.finite(centre, Dim::NUMBER)?),
+            Or::Table(Centre { centre }) => Partition::Centre(context.value(centre)?),
         },
     };
     let pair_force = match written.pair_force.as_ref().map(|p| p.value) {

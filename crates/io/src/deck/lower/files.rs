@@ -2,8 +2,9 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::Body;
+use crate::deck::quantity::{Length, Positive};
 use crate::deck::units::Dim;
-use crate::deck::value::{At, Number};
+use crate::deck::value::{At, Quantity};
 use crate::read::Cells;
 use crate::read::eam::{self, EamFile};
 use crate::read::entries::Entry;
@@ -97,12 +98,9 @@ impl Files<'_> {
         &self,
         context: &Context,
         file: &At<String>,
-        unit: &Option<Number>,
+        unit: &Option<Quantity<Positive<Length>>>,
     ) -> Result<Triangles> {
-        let unit = match unit {
-            Some(unit) => context.positive(unit, Dim::LENGTH, "the unit of the file")?,
-            None => context.units.plain_factor(Dim::LENGTH),
-        };
+        let unit = context.value_or(unit, context.units.plain_factor(Dim::LENGTH))?;
         crate::read::stl::stl(&self.folder.join(&file.value), unit)
             .map_err(|e| context.error(&file.span, e.to_string()))
     }

@@ -1,46 +1,46 @@
-//! `interface`: what bonds between unlike materials have. `[[interface]]`: bonds between two of several bodies.
+//! `bond_mixing`: what bonds between unlike materials have. `[[interface]]`: bonds between two of several bodies.
 
 use super::context::{Context, Result};
 use super::family::{horizon, influence};
 use super::material::{fracture, law};
 use super::pieces::named;
-use crate::deck::document::{Document, InterfaceName};
+use crate::deck::document::{BondMixingName, Document};
 use peridyne::law::material::Thermoelastic;
-use peridyne::spec::{BodySpec, InterfaceRule, InterfaceSpec, LawSpec, MaterialSpec};
+use peridyne::spec::{BodySpec, BondMixing, InterfaceSpec, LawSpec, MaterialSpec};
 
 /// What bonds between unlike ends have.
 pub(super) fn rule(
     context: &Context,
     document: &Document,
     materials: &[MaterialSpec],
-) -> Result<InterfaceRule> {
-    let Some(written) = &document.interface else {
-        return Ok(InterfaceRule::Series);
+) -> Result<BondMixing> {
+    let Some(written) = &document.bond_mixing else {
+        return Ok(BondMixing::Harmonic);
     };
     let rule = match written.value {
-        InterfaceName::Parallel => InterfaceRule::Parallel,
-        InterfaceName::Minimum => InterfaceRule::Minimum,
-        InterfaceName::Series => InterfaceRule::Series,
+        BondMixingName::Arithmetic => BondMixing::Arithmetic,
+        BondMixingName::Minimum => BondMixing::Minimum,
+        BondMixingName::Harmonic => BondMixing::Harmonic,
     };
     let bonds = |m: &MaterialSpec| match &m.law {
         LawSpec::Pmb(_) | LawSpec::Springs(_) => true,
         // pmb in general sweeps
         LawSpec::Named(law) => law.name == Thermoelastic::NAME,
         LawSpec::Lps(_)
-        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::Lps3d { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Micromoduli(_)
         | LawSpec::Atoms(_) => false,
     };
-    let meant = rule == InterfaceRule::Parallel
-        || !document.bond_factor.is_empty()
+    let applies = rule == BondMixing::Arithmetic
+        || !document.bond_stiffness.is_empty()
         || materials.iter().all(bonds);
-    match meant {
+    match applies {
         true => Ok(rule),
         false => Err(context.error_with(
             &written.span,
-            "`interface` is for bond-based materials (pmb): with other laws each end of a bond answers for itself",
-            "leave it out, or write interface = \"parallel\"",
+            "`bond_mixing` is for bond-based materials (pmb): with other laws each end of a bond has its own constants",
+            "leave it out, or write bond_mixing = \"arithmetic\"",
         )),
     }
 }
@@ -52,7 +52,7 @@ pub(super) fn interfaces(
     all: &BodySpec,
 ) -> Result<Vec<InterfaceSpec>> {
     let mut made = Vec::new();
-    for at in &document.interfaces {
+    for at in &document.interface {
         let written = &at.value;
         let [first, second] = written.bodies.value.as_slice() else {
             return Err(context.error_with(

@@ -7,7 +7,7 @@ use crate::deck::value::{At, Number};
 use peridyne::columns::Dimension;
 use peridyne::error::BuildError;
 use peridyne::law::descriptor::{Key, Value};
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::spec::{ForceSpec, LawSpec, NamedLaw, Parameter, Parameters};
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use std::ops::Range;
 pub(super) struct ReadLaw<'a> {
     written: &'a At<Law>,
     pub law: NamedLaw,
-    shelf: Shelf,
+    registry: Registry,
 }
 
 /// Reads the keys of a law; `file` reads what a key takes from a file.
@@ -33,19 +33,19 @@ pub(super) fn read<'a>(
     Ok(ReadLaw {
         written,
         law,
-        shelf: Shelf::standard(),
+        registry: Registry::standard(),
     })
 }
 
-/// Reads the keys of what a deck names of the shelf.
+/// Reads the keys of what a deck names of the registry.
 fn constants<L: Listed>(
     context: &Context,
     written: &At<OfShelf<L>>,
     file: impl Fn(&At<String>, &Key) -> Result<Parameter>,
 ) -> Result<Parameters> {
-    let (shelf, what) = (Shelf::standard(), L::WHAT);
+    let (registry, what) = (Registry::standard(), L::WHAT);
     let name = &written.value.name;
-    let Some(descriptor) = OfShelf::<L>::descriptor(&shelf, name) else {
+    let Some(descriptor) = OfShelf::<L>::descriptor(&registry, name) else {
         return Err(context.error(&written.span, format!("there is no {what} named {name}")));
     };
     let mut parameters = Parameters::default();
@@ -100,9 +100,9 @@ pub(super) fn force(context: &Context, written: &At<Force>) -> Result<ForceSpec>
         name: written.value.name.clone(),
         parameters: constants(context, written, none)?,
     };
-    let shelf = Shelf::standard();
-    let checked = shelf.check_force(&mut force);
-    checked.map_err(|e| refused(context, written, &shelf, &e))?;
+    let registry = Registry::standard();
+    let checked = registry.check_force(&mut force);
+    checked.map_err(|e| refused(context, written, &registry, &e))?;
     Ok(force)
 }
 
@@ -144,8 +144,8 @@ impl ReadLaw<'_> {
     /// The law, checked and with its defaults.
     pub fn look_up(self, context: &Context) -> Result<LawSpec> {
         let mut law = LawSpec::Named(self.law);
-        let looked = self.shelf.look_up(&mut law);
-        looked.map_err(|e| refused(context, self.written, &self.shelf, &e))?;
+        let looked = self.registry.look_up(&mut law);
+        looked.map_err(|e| refused(context, self.written, &self.registry, &e))?;
         Ok(law)
     }
 }
@@ -154,14 +154,14 @@ impl ReadLaw<'_> {
 fn refused<L: Listed>(
     context: &Context,
     written: &At<OfShelf<L>>,
-    shelf: &Shelf,
+    registry: &Registry,
     error: &BuildError,
 ) -> DeckError {
     let law = &written.value;
     let given = law.given.iter().find(|(name, _)| *name == error.path);
     let message = &*error.message;
     let span = given.map_or(&written.span, |(_, given)| given.span());
-    match OfShelf::<L>::descriptor(shelf, &law.name).filter(|d| !d.example.is_empty()) {
+    match OfShelf::<L>::descriptor(registry, &law.name).filter(|d| !d.example.is_empty()) {
         Some(d) => {
             let what = L::WHAT;
             let help = format!(

@@ -4,15 +4,15 @@ use super::atoms::AtomsPotentials;
 use super::bodies;
 use super::context::{Context, Result};
 use crate::deck::document::{
-    CriterionName, Document, Fatigue, Fracture, Law, Material, ReleaseName,
+    BreakageName, CriterionName, Document, Fatigue, Fracture, Law, Material,
 };
-use crate::deck::units::{Dim, short};
-use crate::deck::value::{At, Number};
+use crate::deck::quantity::Positive;
+use crate::deck::value::{At, Quantity};
 use peridyne::law::solid::linear::{Linear, Micromoduli};
-use peridyne::run::Shelf;
+use peridyne::run::Registry;
 use peridyne::spec::{
-    BodySpec, Cloud, Criterion, FatigueSpec, FractureSpec, LawSpec, MaterialSpec, Members,
-    PieceSpec, RateSpec, Release, SetSpec,
+    BodySpec, Breakage, Cloud, Criterion, FatigueSpec, FractureSpec, LawSpec, MaterialSpec,
+    Members, PieceSpec, RateSpec, SetSpec,
 };
 use std::collections::BTreeMap;
 
@@ -119,10 +119,10 @@ pub(super) fn materials(
                 if let Some(density) = &given.density {
                     return Err(context.error(&density.span, "give one of density and mass"));
                 }
-                by_mass(context.positive(mass, Dim::MASS, "the mass")?)?
+                by_mass(context.value(mass)?)?
             }
             (None, None) if let Some(mass) = potential.and_then(|p| p.mass) => by_mass(mass)?,
-            (Some(density), _) => context.positive(density, Dim::DENSITY, "the density")?,
+            (Some(density), _) => context.value(density)?,
             (None, Some(cloud)) => mean_density(cloud, &set, sets),
             (None, None) => {
                 let message = "the key `density` is missing";
@@ -209,7 +209,7 @@ fn mean_density(cloud: &Cloud, set: &str, sets: &[SetSpec]) -> f64 {
 
 pub(super) fn law(context: &Context, written: &At<Law>) -> Result<LawSpec> {
     let name = &*written.value.name;
-    if Shelf::standard().is_potential(name) {
+    if Registry::standard().is_potential(name) {
         return Err(context.error(
             &written.span,
             "an interatomic potential is the law of atoms alone",
@@ -246,27 +246,27 @@ pub(in crate::deck) fn point_volume(body: &BodySpec, dimension: usize) -> Option
     }
 }
 
-/// When bonds of all materials let go.
-pub(super) fn release(
+/// Do bonds of all materials break before or after the force evaluation?
+pub(super) fn breakage(
     context: &Context,
     written: &BTreeMap<String, At<Material>>,
-) -> Result<Release> {
+) -> Result<Breakage> {
     let fracture = written.values().filter_map(|m| m.value.fracture.as_ref());
-    let mut all = fracture.map(|f| match &f.value.release {
-        None => (ReleaseName::AtOnce, &f.span),
-        Some(release) => (release.value, &release.span),
+    let mut all = fracture.map(|f| match &f.value.breakage {
+        None => (BreakageName::BeforeForce, &f.span),
+        Some(breakage) => (breakage.value, &breakage.span),
     });
-    let first = all.next().map_or(ReleaseName::AtOnce, |(r, _)| r);
+    let first = all.next().map_or(BreakageName::BeforeForce, |(r, _)| r);
     if let Some((_, span)) = all.find(|(r, _)| *r != first) {
         return Err(context.error_with(
             span,
-            "materials differ in fracture.release",
-            "give all materials with fracture the same: \"at_once\" (as when left out) or \"after_force\"",
+            "materials differ in fracture.breakage",
+            "give all materials with fracture the same: \"before_force\" (the default) or \"after_force\"",
         ));
     }
     Ok(match first {
-        ReleaseName::AtOnce => Release::AtOnce,
-        ReleaseName::AfterForce => Release::AfterForce,
+        BreakageName::BeforeForce => Breakage::BeforeForce,
+        BreakageName::AfterForce => Breakage::AfterForce,
     })
 }
 
@@ -280,17 +280,17 @@ pub(super) fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<Fra
     ];
     context.one_of(&fracture.span, "fracture", &given)?;
     let criterion = if let Some(stretch) = &f.critical_stretch {
-        Criterion::Stretch(context.positive(stretch, Dim::NUMBER, "the critical stretch")?)
+        Criterion::Stretch(context.value(stretch)?)
     } else if let Some(energy) = &f.energy {
-        let energy = context.positive(energy, Dim::FRACTURE_ENERGY, "the fracture energy")?;
+        let energy = context.value(energy)?;
         match f.criterion.as_ref().map(|c| c.value) {
             None | Some(CriterionName::Stretch) => Criterion::Energy(energy),
             Some(CriterionName::BondEnergy) => Criterion::BondEnergy(energy),
         }
     } else if let Some(stress) = &f.von_mises {
-        Criterion::VonMises(context.positive(stress, Dim::PRESSURE, "the von Mises stress")?)
+        Criterion::VonMises(context.value(stress)?)
     } else if let Some(strain) = &f.plastic_strain {
-        Criterion::PlasticStrain(context.positive(strain, Dim::NUMBER, "the plastic strain")?)
+        Criterion::PlasticStrain(context.value(strain)?)
     } else {
         return Err(context.error(&fracture.span, "fracture needs a criterion"));
     };
@@ -311,28 +311,17 @@ pub(super) fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<Fra
             ));
         }
         Some(rate) => Some(RateSpec {
-            coefficient: context.positive(&rate.coefficient, Dim::NUMBER, "the coefficient")?,
-            reference: context.positive(&rate.reference, Dim::FREQUENCY, "the reference rate")?,
+            coefficient: context.value(&rate.coefficient)?,
+            reference: context.value(&rate.reference)?,
         }),
         None => None,
     };
     let fatigue = { f.fatigue.as_ref() }
         .map(|fatigue| wear(context, fatigue))
         .transpose()?;
-    let alpha = f
-        .alpha
-        .as_ref()
-        .map_or(Ok(0.0), |a| context.finite(a, Dim::NUMBER))?;
-    if alpha < 0.0 {
-        let span = f.alpha.as_ref().map_or(&fracture.span, |a| &a.span);
-        return Err(context.error(
-            span,
-            format!("alpha must not be negative, it is {}", short(alpha)),
-        ));
-    }
     Ok(FractureSpec {
         criterion,
-        alpha,
+        alpha: context.value_or(&f.alpha, 0.0)?,
         rate,
         fatigue,
     })
@@ -341,7 +330,7 @@ pub(super) fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<Fra
 /// How bonds wear.
 fn wear(context: &Context, at: &At<Fatigue>) -> Result<FatigueSpec> {
     let written = &at.value;
-    let law = |list: &Option<At<Vec<Number>>>| match list {
+    let law = |list: &Option<At<Vec<Quantity<Positive>>>>| match list {
         None => Ok(None),
         Some(At {
             value: list, span, ..
@@ -350,37 +339,22 @@ fn wear(context: &Context, at: &At<Fatigue>) -> Result<FatigueSpec> {
                 let message = format!("expected [A, m], there are {} numbers", list.len());
                 return Err(context.error(span, message));
             };
-            Ok(Some([
-                context.positive(a, Dim::NUMBER, "A")?,
-                context.positive(m, Dim::NUMBER, "m")?,
-            ]))
+            Ok(Some([context.value(a)?, context.value(m)?]))
         }
-    };
-    let number = |written: &Option<Number>, or: f64| match written {
-        Some(number) => context.finite(number, Dim::NUMBER),
-        None => Ok(or),
     };
     let (nucleation, growth) = (law(&written.nucleation)?, law(&written.growth)?);
     if nucleation.is_none() && growth.is_none() {
         return Err(context.error_with(
             &at.span,
-            "fatigue without nucleation and growth wears nothing",
+            "fatigue needs nucleation or growth",
             "write for example fatigue = { growth = [1e6, 4] }",
         ));
     }
-    let limit = number(&written.limit, 0.0)?;
-    if let Some(at) = { written.limit.as_ref() }.filter(|_| limit < 0.0) {
-        return Err(context.error(&at.span, "the limit must not be negative"));
-    }
-    let crack = number(&written.crack, CRACK)?;
-    if let Some(at) = { written.crack.as_ref() }.filter(|_| !(crack > 0.0 && crack < 1.0)) {
-        return Err(context.error(&at.span, "the damage of a crack lies between 0 and 1"));
-    }
     Ok(FatigueSpec {
         nucleation,
-        limit,
+        limit: context.value_or(&written.limit, 0.0)?,
         growth,
-        crack,
+        crack: context.value_or(&written.crack, CRACK)?,
     })
 }
 

@@ -2,17 +2,17 @@
 
 use super::Files;
 use super::context::{Context, Result};
+use super::diffusion::{self, Said};
 use super::law::force;
 use super::region::region;
-use super::transfer::{self, Said};
 use crate::deck::document::{
     BondFactor, Condition, CrackName, FlatShape, Healing, Initial, Precrack, Shape, Toughness,
 };
-use crate::deck::units::Dim;
-use crate::deck::value::{At, Number};
+use crate::deck::quantity::{Positive, Temperature};
+use crate::deck::value::{At, Number, Quantity};
 use peridyne::spec::{
-    BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, HealingSpec, InitialSpec,
-    Members, PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec, TransferCondition,
+    BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, DiffusionCondition,
+    HealingSpec, InitialSpec, Members, PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -59,10 +59,6 @@ pub(super) fn initial(
             "an initial value needs one of displacement, velocity, temperature, concentration",
         ));
     }
-    let get = |c: &Option<_>, dim| {
-        c.as_ref()
-            .map_or(Ok([const { None }; 3]), |c| context.components(c, dim))
-    };
     Ok(InitialSpec {
         set: target(
             context,
@@ -72,8 +68,8 @@ pub(super) fn initial(
             &written.region,
             sets,
         )?,
-        displacement: get(&written.displacement, Dim::LENGTH)?,
-        velocity: get(&written.velocity, Dim::VELOCITY)?,
+        displacement: context.components_or_none(&written.displacement)?,
+        velocity: context.components_or_none(&written.velocity)?,
     })
 }
 
@@ -83,43 +79,35 @@ pub(super) fn condition(
     index: usize,
     at: &At<Condition>,
     sets: &mut Vec<SetSpec>,
-    exchanged: &mut Vec<Said<TransferCondition>>,
+    exchanged: &mut Vec<Said<DiffusionCondition>>,
 ) -> Result<Vec<ConditionSpec>> {
     let c = &at.value;
     let set = target(
         context,
         &at.span,
-        format!("condition {}", index + 1),
+        format!("boundary condition {}", index + 1),
         &c.set,
         &c.region,
         sets,
     )?;
     let mut kinds = Vec::new();
     if let Some(v) = &c.displacement {
-        kinds.push(ConditionKind::Displacement(
-            context.components(v, Dim::LENGTH)?,
-        ));
+        kinds.push(ConditionKind::Displacement(context.components(v)?));
     }
     if let Some(v) = &c.velocity {
-        kinds.push(ConditionKind::Velocity(
-            context.components(v, Dim::VELOCITY)?,
-        ));
+        kinds.push(ConditionKind::Velocity(context.components(v)?));
     }
     if let Some(v) = &c.body_force {
-        kinds.push(ConditionKind::BodyForce(
-            context.components(v, Dim::FORCE_DENSITY)?,
-        ));
+        kinds.push(ConditionKind::BodyForce(context.components(v)?));
     }
-    let area = { c.area.as_ref() }
-        .map(|a| context.positive(a, Dim::AREA, "the area"))
-        .transpose()?;
+    let area = context.optional(&c.area)?;
     if let Some(v) = &c.traction {
         kinds.push(ConditionKind::Traction {
-            value: context.components(v, Dim::PRESSURE)?,
+            value: context.components(v)?,
             area,
         });
     } else if let Some(area) = &c.area
-        && !transfer::has_surface(c)
+        && !diffusion::has_surface(c)
     {
         return Err(context.error(
             &area.span,
@@ -127,15 +115,15 @@ pub(super) fn condition(
         ));
     }
     let already = exchanged.len();
-    transfer::conditions(context, c, &set, area, exchanged)?;
+    diffusion::conditions(context, c, &set, area, exchanged)?;
     if let Some(v) = &c.damping {
-        kinds.push(ConditionKind::Damping(context.expression(v, Dim::DAMPING)?));
+        kinds.push(ConditionKind::Damping(context.expression(v)?));
     }
     if let Some(written) = &c.force {
         kinds.push(ConditionKind::Force(force(context, written)?));
     }
     if kinds.is_empty() && exchanged.len() == already {
-        let message = "a condition needs one of displacement, velocity, body_force, traction, damping, force, temperature, heat_flux, heat_source, convection, radiation, concentration, species_flux, species_source, species_exchange";
+        let message = "a boundary condition needs one of displacement, velocity, body_force, traction, damping, force, temperature, heat_flux, heat_source, convection, radiation, concentration, species_flux, species_source, species_exchange";
         return Err(context.error(&at.span, message));
     }
     Ok(kinds
@@ -164,7 +152,7 @@ pub(super) fn precrack(
     let kind = match p.kind {
         Some(CrackName::Broken) => CrackKind::Broken,
         None if late => CrackKind::Broken,
-        Some(CrackName::Absent) | None => CrackKind::Absent,
+        Some(CrackName::Excluded) | None => CrackKind::Excluded,
     };
     let flat = shape.segment.is_some()
         || shape.disk.is_some()
@@ -198,13 +186,13 @@ pub(super) fn precrack(
 pub(super) fn bond_factor(context: &Context, at: &At<BondFactor>) -> Result<BondFactorSpec> {
     let written = &at.value;
     let Some(shape) = &written.crossing else {
-        let field = context.expression(&written.value, Dim::NUMBER)?;
+        let field = context.expression(&written.factor)?;
         return Ok(BondFactorSpec::Field(field));
     };
-    let factor = context.finite(&written.value, Dim::NUMBER)?;
+    let factor = context.value(&written.factor)?;
     if factor < 0.0 {
         let message = format!("the factor is {factor}, expected 0 or a positive number");
-        return Err(context.error(&written.value.span, message));
+        return Err(context.error(&written.factor.span, message));
     }
     Ok(BondFactorSpec::Crossing {
         shape: flat_shape(context, &shape.span, "the shape to cross", &shape.value)?,
@@ -223,7 +211,7 @@ pub(super) fn healing(
     };
     Ok(HealingSpec {
         set,
-        below: context.expression(&at.value.below, Dim::NUMBER)?,
+        below: context.expression(&at.value.below)?,
     })
 }
 
@@ -238,15 +226,18 @@ pub(super) fn toughness(
         None => "all".to_string(),
     };
     let given = [
-        ("stretch_factor", written.stretch_factor.is_some()),
+        (
+            "critical_stretch_factor",
+            written.critical_stretch_factor.is_some(),
+        ),
         ("energy_factor", written.energy_factor.is_some()),
         ("temperature", written.temperature.is_some()),
         ("no_failure", written.no_failure.is_some()),
     ];
     context.one_of(&at.span, "the toughness", &given)?;
-    let factor = match (&written.stretch_factor, &written.energy_factor) {
-        (Some(n), _) => ToughnessFactor::Stretch(context.expression(n, Dim::NUMBER)?),
-        (_, Some(n)) => ToughnessFactor::Energy(context.expression(n, Dim::NUMBER)?),
+    let factor = match (&written.critical_stretch_factor, &written.energy_factor) {
+        (Some(n), _) => ToughnessFactor::Stretch(context.expression(n)?),
+        (_, Some(n)) => ToughnessFactor::Energy(context.expression(n)?),
         (None, None) if let Some(rows) = &written.temperature => {
             let row = |row: &Vec<Number>| {
                 let [t, x] = &row[..] else {
@@ -254,8 +245,9 @@ pub(super) fn toughness(
                     let help = "expected [T, factor]";
                     return Err(context.error_with(&rows.span, message, help));
                 };
-                let factor = context.positive(x, Dim::NUMBER, "the factor")?;
-                Ok([context.finite(t, Dim::TEMPERATURE)?, factor])
+                let t: Quantity<Temperature> = t.clone().into();
+                let factor: Quantity<Positive> = x.clone().into();
+                Ok([context.value(&t)?, context.value(&factor)?])
             };
             let made: Vec<[f64; 2]> = rows.value.iter().map(row).collect::<Result<_>>()?;
             if made.is_empty() || made.windows(2).any(|r| r[0][0] >= r[1][0]) {
@@ -301,7 +293,7 @@ fn flat_shape(
         let message = format!("a {name} does not cut a body in {}-D", context.dimension);
         Err(context.error_with(span, message, format!("use {fitting}")))
     };
-    let point = |v| context.finite_vector(v, Dim::LENGTH);
+    let point = |v| context.finite_vector(v);
     Ok(if let Some(s) = &p.segment {
         only(&[2, 3], "segment")?;
         CrackShape::Segment {
@@ -310,12 +302,12 @@ fn flat_shape(
         }
     } else if let Some(d) = &p.disk {
         only(&[3], "disk")?;
-        let normal = context.finite_vector(&d.normal, Dim::NUMBER)?;
+        let normal = context.finite_vector(&d.normal)?;
         let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
         if length == 0.0 {
             return Err(context.error(&d.normal.span, "the normal is zero"));
         }
-        let radius = context.positive(&d.radius, Dim::LENGTH, "the radius")?;
+        let radius = context.value(&d.radius)?;
         CrackShape::Disk {
             center: point(&d.center)?,
             normal: normal.map(|n| n / length),
@@ -336,7 +328,7 @@ fn flat_shape(
     } else if let Some(x) = &p.point {
         only(&[1], "point")?;
         CrackShape::Point {
-            x: context.finite(x, Dim::LENGTH)?,
+            x: context.value(x)?,
         }
     } else {
         return Err(context.error(span, format!("{what} needs a shape")));

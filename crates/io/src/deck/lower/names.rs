@@ -24,7 +24,7 @@ fn named(written: &Output) -> impl Iterator<Item = Named<'_>> {
 
 /// # Errors
 /// Two are one file, or one is a file of the results.
-pub(super) fn apart(context: &Context, written: &Output) -> Result<()> {
+pub(super) fn distinct(context: &Context, written: &Output) -> Result<()> {
     let all: Vec<Named> = named(written).collect();
     for (k, (key, name, span)) in all.iter().enumerate() {
         let path = Path::new(name);

@@ -2,10 +2,12 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::{Checkpoint, Output, Picture, SpaceTimes};
-use crate::deck::units::{Dim, clock_time};
-use crate::deck::value::{At, Number, Or};
+use crate::deck::quantity::Measure;
+use crate::deck::units::clock_time;
+use crate::deck::value::{At, Or, Quantity};
 use crate::write::checkpoint::CheckpointSchedule;
 use crate::write::folder::stays;
+use crate::write::picture::animate::FilmFormat;
 use crate::write::space_time::Window;
 use crate::write::trajectory::Format;
 use std::path::PathBuf;
@@ -52,6 +54,30 @@ pub struct OutputSpec {
 }
 
 impl OutputSpec {
+    /// Leaves histories and states to go on from, and nothing else.
+    pub fn quiet(&mut self) {
+        *self = OutputSpec {
+            dir: self.dir.take(),
+            every: None,
+            frames: None,
+            vtu: false,
+            exodus: None,
+            vtkhdf: None,
+            bonds: false,
+            linear_body: false,
+            fragments: false,
+            dump: None,
+            history: self.history,
+            pictures: vec![],
+            space_time: vec![],
+            report: false,
+            trajectories: vec![],
+            data: None,
+            checkpoints: self.checkpoints.take(),
+            outside: vec![],
+        };
+    }
+
     /// Steps between frames of a run of `steps`; `None`: first and last state.
     pub fn every(&self, steps: u64) -> Option<u64> {
         let shared = |frames: u64| steps.div_ceil(frames).max(1);
@@ -70,7 +96,7 @@ pub struct PictureSpec {
     pub range: Option<[f64; 2]>,
     /// A vector field.
     pub arrows: Option<String>,
-    pub film: bool,
+    pub film: Option<FilmFormat>,
 }
 
 /// A field over place and time that a deck asks for.
@@ -145,7 +171,7 @@ pub(super) fn output(
             "name it results.vtkhdf",
         ));
     }
-    super::names::apart(context, written)?;
+    super::names::distinct(context, written)?;
     let checkpoints = checkpoints(context, written)?;
     let names = [
         ("dir", written.dir.as_ref()),
@@ -293,33 +319,39 @@ fn space_times(context: &Context, written: &Output, moves: bool) -> Result<Vec<S
             }
         }
     }
-    let ends = |ends: &Option<At<[Number; 2]>>, dim: Dim, what: &str| -> Result<[f64; 2]> {
-        let Some(at) = ends else {
-            return Ok([f64::NEG_INFINITY, f64::INFINITY]);
-        };
-        let [low, high] = &at.value;
-        let ends = [context.number(low, dim)?, context.number(high, dim)?];
-        match ends[0] < ends[1] {
-            true => Ok(ends),
-            false => Err(context.error(
-                &at.span,
-                format!("{what} of space_time is [from, to], of which the first is lower"),
-            )),
-        }
-    };
     let mut all: Vec<SpaceTimeSpec> = named.into_iter().map(SpaceTimeSpec::of).collect();
     for one in given {
         all.push(SpaceTimeSpec {
             component: one.component.as_ref().map(|c| c.value.clone()),
             range: colours(context, one.range.as_ref())?,
             window: Window {
-                x: ends(&one.x, Dim::LENGTH, "x")?,
-                t: ends(&one.t, Dim::TIME, "t")?,
+                x: ends(context, &one.x, "x")?,
+                t: ends(context, &one.t, "t")?,
             },
             ..SpaceTimeSpec::of(one.field.value.clone())
         });
     }
     Ok(all)
+}
+
+/// From where to where a space-time picture goes.
+fn ends<K: Measure>(
+    context: &Context,
+    ends: &Option<At<[Quantity<K>; 2]>>,
+    what: &str,
+) -> Result<[f64; 2]> {
+    let Some(at) = ends else {
+        return Ok([f64::NEG_INFINITY, f64::INFINITY]);
+    };
+    let [low, high] = &at.value;
+    let ends = [context.limit(low)?, context.limit(high)?];
+    match ends[0] < ends[1] {
+        true => Ok(ends),
+        false => Err(context.error(
+            &at.span,
+            format!("{what} of space_time is [from, to], of which the first is lower"),
+        )),
+    }
 }
 
 /// Ends of the colours of a picture.
@@ -337,7 +369,7 @@ fn colours(context: &Context, range: Option<&At<[f64; 2]>>) -> Result<Option<[f6
 fn picture(context: &Context, at: &At<Picture>) -> Result<PictureSpec> {
     let p = &at.value;
     let scale = p.scale.as_ref();
-    let scale = scale.map(|s| context.positive(s, Dim::NUMBER, "the scale of displacements"));
+    let scale = scale.map(|s| context.value(s));
     let text = |t: &Option<At<String>>| t.as_ref().map(|t| t.value.clone());
     Ok(PictureSpec {
         field: text(&p.field),
@@ -345,6 +377,6 @@ fn picture(context: &Context, at: &At<Picture>) -> Result<PictureSpec> {
         scale: scale.transpose()?,
         range: colours(context, p.range.as_ref())?,
         arrows: text(&p.arrows),
-        film: p.film,
+        film: p.film.0,
     })
 }

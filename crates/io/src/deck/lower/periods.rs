@@ -117,11 +117,7 @@ fn wanted(context: &Context, written: &Periodic) -> Result<Wanted> {
         Or::Table(periods) => {
             for (a, number) in [&periods.x, &periods.y, &periods.z].into_iter().enumerate() {
                 if let Some(number) = number {
-                    wanted.push((
-                        a,
-                        number.span.clone(),
-                        Some(context.positive(number, Dim::LENGTH, "the period")?),
-                    ));
+                    wanted.push((a, number.span.clone(), Some(context.value(number)?)));
                 }
             }
         }

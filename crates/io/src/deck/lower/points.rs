@@ -71,7 +71,7 @@ pub(super) fn odd_volumes(
     if spacing.dimension() != context.dimension || cloud.position.len() < 2 {
         return Ok(None);
     }
-    let excess = spacing.excess(&cloud.volume, None).exp() / section(context, document)?;
+    let excess = libm::exp(spacing.excess(&cloud.volume, None)) / section(context, document)?;
     if (1.0 / FACTOR..=FACTOR).contains(&excess) {
         return Ok(None);
     }

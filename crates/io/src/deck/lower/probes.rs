@@ -3,13 +3,12 @@
 use super::context::{Context, Result};
 use crate::deck::document::{MeasureName, Probe};
 use crate::deck::error::nearest;
-use crate::deck::units::Dim;
 use crate::deck::value::At;
 use peridyne::spec::{
-    ContourSpec, CrackTipSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity, SetSpec,
+    CrackTipSpec, Fold, JIntegralSpec, Measure, Part, ProbeSpec, RigidQuantity, SetSpec,
 };
 
-/// Damage of a point that is part of a crack, when left out.
+/// Damage of a point that is part of a crack, by default.
 const CRACKED: f64 = 0.3;
 
 /// Keys that not all measures have, and which of them a measure needs and may have.
@@ -21,8 +20,8 @@ fn keys(measure: MeasureName) -> (&'static [&'static str], &'static [&'static st
             (&["of"], &["component"])
         }
         MeasureName::Value => (&["of", "at"], &["component"]),
-        MeasureName::Indenter => (&["indenter"], &["of"]),
-        MeasureName::Contour => (&["corners"], &["direction"]),
+        MeasureName::RigidBody => (&["rigid_body"], &["of"]),
+        MeasureName::JIntegral => (&["corners"], &["direction"]),
         MeasureName::CrackTip => (&["from"], &["direction", "damage"]),
         MeasureName::Opening => (&["between"], &[]),
         MeasureName::Fragments => (&[], &["points"]),
@@ -44,7 +43,7 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
     let given = [
         ("of", written.of.as_ref().map(|k| &k.span)),
         ("component", written.component.as_ref().map(|k| &k.span)),
-        ("indenter", written.indenter.as_ref().map(|k| &k.span)),
+        ("rigid_body", written.rigid_body.as_ref().map(|k| &k.span)),
         ("about", written.about.as_ref().map(|k| &k.span)),
         ("at", written.at.as_ref().map(|k| &k.span)),
         ("corners", written.corners.as_ref().map(|k| &k.span)),
@@ -73,7 +72,7 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
             None | Some(_) => {}
         }
     }
-    if let (MeasureName::Contour, Some(set)) = (measure, &written.set) {
+    if let (MeasureName::JIntegral, Some(set)) = (measure, &written.set) {
         return Err(context.error_with(
             &set.span,
             "a contour goes through all points of its rectangle",
@@ -84,8 +83,8 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
         let message = "fragments are those of the whole body";
         return Err(context.error_with(&set.span, message, "remove `set`"));
     }
-    if let (MeasureName::Indenter, Some(set)) = (measure, &written.set) {
-        let message = "an indenter is measured whole, whatever points it touches";
+    if let (MeasureName::RigidBody, Some(set)) = (measure, &written.set) {
+        let message = "a rigid body is measured as a whole, whatever points it touches";
         return Err(context.error_with(&set.span, message, "remove `set`"));
     }
     let set = match &written.set {
@@ -107,7 +106,7 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
         part: part.clone(),
     };
     let place = |key: &Option<_>| match key {
-        Some(vector) => context.finite_vector(vector, Dim::LENGTH),
+        Some(vector) => context.finite_vector(vector),
         None => Ok([0.0; 3]),
     };
     let measure = match measure {
@@ -125,11 +124,11 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
             of,
             part,
         },
-        MeasureName::Indenter => Measure::Indenter {
-            indenter: { written.indenter.as_ref() }.map_or(String::new(), |n| n.value.clone()),
+        MeasureName::RigidBody => Measure::RigidBody {
+            rigid_body: { written.rigid_body.as_ref() }.map_or(String::new(), |n| n.value.clone()),
             of: rigid(context, written)?,
         },
-        MeasureName::Contour => Measure::Contour(contour(context, written)?),
+        MeasureName::JIntegral => Measure::JIntegral(j_integral(context, written)?),
         MeasureName::CrackTip => Measure::CrackTip(crack_tip(context, written)?),
         MeasureName::Opening => Measure::Opening {
             between: between(context, written)?,
@@ -157,9 +156,9 @@ fn rigid(context: &Context, written: &Probe) -> Result<Option<RigidQuantity>> {
     let names = all.map(RigidQuantity::name);
     let help = match nearest(&of.value, names) {
         Some(near) => format!("did you mean \"{near}\"?"),
-        None => format!("an indenter has {}", names.join(", ")),
+        None => format!("a rigid body has {}", names.join(", ")),
     };
-    let message = format!("an indenter has no `{}`", of.value);
+    let message = format!("a rigid body has no `{}`", of.value);
     Err(context.error_with(&of.span, message, help))
 }
 
@@ -168,7 +167,7 @@ fn example(key: &str) -> &'static str {
     match key {
         "of" => "write for example of = \"displacement\"; `peridyne laws` lists the fields",
         "about" => "write for example about = [0, 0, 0]",
-        "indenter" => "write the name of an [[indenter]]: indenter = \"punch\"",
+        "rigid_body" => "write the name of a [[rigid_body]]: rigid_body = \"punch\"",
         "from" => {
             "write where the crack starts, for example the tip of its pre-crack: from = [\"50 mm\", \"20 mm\"]"
         }
@@ -182,7 +181,7 @@ fn example(key: &str) -> &'static str {
     }
 }
 
-fn contour(context: &Context, written: &Probe) -> Result<ContourSpec> {
+fn j_integral(context: &Context, written: &Probe) -> Result<JIntegralSpec> {
     let corners = written.corners.as_ref().map_or(&[][..], |c| &c.value);
     let span = written.corners.as_ref().map_or(0..0, |c| c.span.clone());
     if context.dimension != 2 {
@@ -197,12 +196,9 @@ fn contour(context: &Context, written: &Probe) -> Result<ContourSpec> {
     let [a, b] = corners else {
         return Err(context.error_with(&span, "a rectangle has two opposite corners", example("")));
     };
-    let [a, b] = [
-        context.finite_vector(a, Dim::LENGTH)?,
-        context.finite_vector(b, Dim::LENGTH)?,
-    ];
+    let [a, b] = [context.finite_vector(a)?, context.finite_vector(b)?];
     let [x, y, _] = direction(context, written)?;
-    Ok(ContourSpec {
+    Ok(JIntegralSpec {
         low: [a[0].min(b[0]), a[1].min(b[1])],
         high: [a[0].max(b[0]), a[1].max(b[1])],
         direction: [x, y],
@@ -214,7 +210,7 @@ fn direction(context: &Context, written: &Probe) -> Result<[f64; 3]> {
     let Some(vector) = &written.direction else {
         return Ok([1.0, 0.0, 0.0]);
     };
-    let along = context.finite_vector(vector, Dim::NUMBER)?;
+    let along = context.finite_vector(vector)?;
     let largest = along.iter().fold(0.0, |l: f64, c| l.max(c.abs()));
     if largest == 0.0 {
         return Err(context.error_with(
@@ -231,25 +227,13 @@ fn direction(context: &Context, written: &Probe) -> Result<[f64; 3]> {
 
 fn crack_tip(context: &Context, written: &Probe) -> Result<CrackTipSpec> {
     let from = match &written.from {
-        Some(place) => context.finite_vector(place, Dim::LENGTH)?,
+        Some(place) => context.finite_vector(place)?,
         None => [0.0; 3],
-    };
-    let damage = match &written.damage {
-        None => CRACKED,
-        Some(number) => {
-            let damage = context.finite(number, Dim::NUMBER)?;
-            if !(damage > 0.0 && damage <= 1.0) {
-                let message = format!("damage is above 0 and at most 1, not {damage}");
-                let help = format!("leave it out for {CRACKED}");
-                return Err(context.error_with(&number.span, message, help));
-            }
-            damage
-        }
     };
     Ok(CrackTipSpec {
         from,
         direction: direction(context, written)?,
-        damage,
+        damage: context.value_or(&written.damage, CRACKED)?,
     })
 }
 
@@ -263,8 +247,5 @@ fn between(context: &Context, written: &Probe) -> Result<[[f64; 3]; 2]> {
             example("between"),
         ));
     };
-    Ok([
-        context.finite_vector(a, Dim::LENGTH)?,
-        context.finite_vector(b, Dim::LENGTH)?,
-    ])
+    Ok([context.finite_vector(a)?, context.finite_vector(b)?])
 }

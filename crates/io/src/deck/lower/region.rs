@@ -2,29 +2,28 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::Shape;
-use crate::deck::units::Dim;
+use crate::deck::quantity::Length;
 use crate::deck::value::{At, Vector};
 use peridyne::space::region::Region;
 
 const INF: f64 = f64::INFINITY;
 
 pub(super) fn region(context: &Context, shape: &At<Shape>) -> Result<Region> {
-    let length = Dim::LENGTH;
     let all = |parts: &[At<Shape>]| {
         parts
             .iter()
             .map(|part| region(context, part))
             .collect::<Result<Vec<_>>>()
     };
-    let center = |c: &Option<Vector>| {
+    let center = |c: &Option<Vector<Length>>| {
         c.as_ref()
-            .map_or(Ok([0.0; 3]), |c| context.finite_vector(c, length))
+            .map_or(Ok([0.0; 3]), |c| context.finite_vector(c))
     };
     let region = match &shape.value {
         Shape::Everything => Region::Everything,
         Shape::Block { low, high } => Region::Block {
-            low: context.vector(low, length, -INF)?,
-            high: context.vector(high, length, INF)?,
+            low: context.vector(low, -INF)?,
+            high: context.vector(high, INF)?,
         },
         Shape::Cylinder {
             axis,
@@ -35,21 +34,17 @@ pub(super) fn region(context: &Context, shape: &At<Shape>) -> Result<Region> {
         } => Region::Cylinder {
             axis: *axis as usize,
             center: center(c)?,
-            radius: context.positive(radius, length, "the radius")?,
-            low: low
-                .as_ref()
-                .map_or(Ok(-INF), |n| context.number(n, length))?,
-            high: high
-                .as_ref()
-                .map_or(Ok(INF), |n| context.number(n, length))?,
+            radius: context.value(radius)?,
+            low: low.as_ref().map_or(Ok(-INF), |n| context.limit(n))?,
+            high: high.as_ref().map_or(Ok(INF), |n| context.limit(n))?,
         },
         Shape::Sphere { center: c, radius } => Region::Sphere {
             center: center(c)?,
-            radius: context.positive(radius, length, "the radius")?,
+            radius: context.value(radius)?,
         },
         Shape::HalfSpace { point, normal } => Region::HalfSpace {
-            point: context.finite_vector(point, length)?,
-            normal: context.finite_vector(normal, Dim::NUMBER)?,
+            point: context.finite_vector(point)?,
+            normal: context.finite_vector(normal)?,
         },
         Shape::Union(parts) => Region::Union(all(parts)?),
         Shape::Difference { from, minus } => {

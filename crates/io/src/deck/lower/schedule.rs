@@ -4,8 +4,8 @@ use super::context::{Context, Result};
 use crate::deck::document::{
     ControlName, Document, LoadCycles, MethodName, Run, Safety, SolverName, Statics,
 };
-use crate::deck::units::{Dim, short};
-use crate::deck::value::{At, Number, Or, Written};
+use crate::deck::units::short;
+use crate::deck::value::{At, Measured, Or, Written, span};
 use crate::drive::refused_threads;
 use peridyne::spec::{Control, Cycles, Method, Newmark, Schedule, Solver, Stepper, TimeStep};
 use std::ops::Range;
@@ -49,8 +49,7 @@ pub(super) fn schedule(context: &Context, document: &Document) -> Result<RunSpec
                     "write increments = 1 or more, or leave [statics] out",
                 ));
             }
-            let duration = written.value.duration.as_ref();
-            let duration = duration.map(|d| context.positive(d, Dim::TIME, "the duration"));
+            let duration = context.optional(&written.value.duration)?;
             let then = motion(context, run)?;
             Ok(RunSpec {
                 modes: before.modes,
@@ -58,7 +57,7 @@ pub(super) fn schedule(context: &Context, document: &Document) -> Result<RunSpec
                 preload: Some(Before {
                     statics: options,
                     increments: before.schedule.steps,
-                    duration: duration.transpose()?,
+                    duration,
                 }),
                 ..then
             })
@@ -66,7 +65,7 @@ pub(super) fn schedule(context: &Context, document: &Document) -> Result<RunSpec
         (None, None) => Err(context.error_with(
             &(0..0),
             "the deck does not say what to do",
-            "add [run] with steps or a duration, or [statics] for equilibrium, or both: motion from an equilibrium",
+            "add [run] with steps or a duration, or [statics] for equilibrium, or both: dynamics from a preloaded state",
         )),
     }
 }
@@ -75,20 +74,20 @@ fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<Ru
     let written = &written.value;
     let control = control(context, written)?;
     let method = match written.method {
-        None if matches!(control, Control::Opening(_) | Control::ArcLength(_)) => Method::Newton,
+        None if matches!(
+            control,
+            Control::IndirectDisplacement(_) | Control::ArcLength(_)
+        ) =>
+        {
+            Method::Newton
+        }
         None => usual,
         Some(MethodName(method)) => method,
     };
-    let tolerance = match &written.tolerance {
-        Some(number) => context.positive(number, Dim::NUMBER, "the tolerance")?,
-        None => method.tolerance(),
-    };
+    let tolerance = context.value_or(&written.tolerance, method.tolerance())?;
     let increments = written.increments.as_ref().map_or(1, |n| n.value);
     let modes = written.modes.as_ref().map_or(0, |n| n.value);
-    let end = match &written.duration {
-        Some(number) => context.positive(number, Dim::TIME, "the duration")?,
-        None => 1.0,
-    };
+    let end = context.value_or(&written.duration, 1.0)?;
     if increments == 0 && modes == 0 {
         let span = written.increments.as_ref().map_or(0..0, |n| n.span.clone());
         return Err(context.error_with(
@@ -128,20 +127,20 @@ fn control(context: &Context, written: &Statics) -> Result<Control> {
     {
         return Err(context.error_with(
             &duration.span,
-            "t is the factor of the load here, and no time",
+            "t is the load factor here, not a time",
             "leave duration out, or control",
         ));
     }
     let lengths = [
         (
-            ("opening", &written.opening),
+            ("opening", span(&written.opening)),
             (
-                ControlName::Opening,
+                ControlName::IndirectDisplacement,
                 "add opening, a tenth of the critical stretch, say",
             ),
         ),
         (
-            ("arc_length", &written.arc_length),
+            ("arc_length", span(&written.arc_length)),
             (
                 ControlName::ArcLength,
                 "add arc_length, how far points go in an increment",
@@ -152,7 +151,7 @@ fn control(context: &Context, written: &Statics) -> Result<Control> {
         match (length, &written.control) {
             (Some(length), _) if name != of => {
                 return Err(context.error_with(
-                    &length.span,
+                    &length,
                     format!("{key} is the length of increments of control = \"{key}\""),
                     format!("write control = \"{key}\", or leave {key} out"),
                 ));
@@ -167,46 +166,24 @@ fn control(context: &Context, written: &Statics) -> Result<Control> {
             (Some(_) | None, _) => {}
         }
     }
-    let long = |number: &Option<Number>, dimension, what| match number {
-        Some(number) => context.positive(number, dimension, what),
-        None => Ok(0.0),
-    };
     Ok(match name {
         ControlName::Load => Control::Load,
-        ControlName::Breaking => Control::Breaking,
-        ControlName::Opening => {
-            Control::Opening(long(&written.opening, Dim::NUMBER, "the opening")?)
+        ControlName::SequentiallyLinear => Control::SequentiallyLinear,
+        ControlName::IndirectDisplacement => {
+            Control::IndirectDisplacement(context.value_or(&written.opening, 0.0)?)
         }
-        ControlName::ArcLength => {
-            Control::ArcLength(long(&written.arc_length, Dim::LENGTH, "the arc length")?)
-        }
+        ControlName::ArcLength => Control::ArcLength(context.value_or(&written.arc_length, 0.0)?),
     })
 }
 
 fn cycles(context: &Context, written: &LoadCycles) -> Result<Cycles> {
-    let load_ratio = match &written.load_ratio {
-        Some(number) => context.finite(number, Dim::NUMBER)?,
-        None => 0.0,
-    };
-    if let Some(number) =
-        { written.load_ratio.as_ref() }.filter(|_| !(-1.0..1.0).contains(&load_ratio))
-    {
-        return Err(context.error_with(
-            &number.span,
-            format!("a load ratio of {} is outside -1 to 1", short(load_ratio)),
-            "it is the least load over the greatest: 0 pulls and lets go, -1 turns round",
-        ));
-    }
     if let Some(bonds) = written.bonds.as_ref().filter(|n| n.value == 0) {
-        return Err(context.error(&bonds.span, "an increment wears a bond out at least"));
+        return Err(context.error(&bonds.span, "an increment breaks one bond at least"));
     }
     Ok(Cycles {
-        load_ratio,
+        load_ratio: context.value_or(&written.load_ratio, 0.0)?,
         bonds: written.bonds.as_ref().map_or(1, |n| n.value),
-        most: match &written.most {
-            Some(number) => context.positive(number, Dim::NUMBER, "the number of cycles")?,
-            None => f64::INFINITY,
-        },
+        most: context.value_or(&written.most, f64::INFINITY)?,
     })
 }
 
@@ -227,25 +204,13 @@ fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
     const HHT: &str = "hht";
     const PLAIN: &str = "newmark";
     let name = integrator.name;
-    let own: [(&str, Option<&Range<usize>>, &[&str]); 6] = [
-        ("beta", run.beta.as_ref().map(|n| &n.span), &[PLAIN]),
-        ("gamma", run.gamma.as_ref().map(|n| &n.span), &[PLAIN]),
-        ("alpha", run.alpha.as_ref().map(|n| &n.span), &[HHT]),
-        (
-            "solver",
-            run.solver.as_ref().map(|n| &n.span),
-            &[PLAIN, HHT],
-        ),
-        (
-            "tolerance",
-            run.tolerance.as_ref().map(|n| &n.span),
-            &[PLAIN, HHT],
-        ),
-        (
-            "iterations",
-            run.iterations.as_ref().map(|n| &n.span),
-            &[PLAIN, HHT],
-        ),
+    let own: [(&str, Option<Range<usize>>, &[&str]); 6] = [
+        ("beta", span(&run.beta), &[PLAIN]),
+        ("gamma", span(&run.gamma), &[PLAIN]),
+        ("alpha", span(&run.alpha), &[HHT]),
+        ("solver", span(&run.solver), &[PLAIN, HHT]),
+        ("tolerance", span(&run.tolerance), &[PLAIN, HHT]),
+        ("iterations", span(&run.iterations), &[PLAIN, HHT]),
     ];
     for (key, span, of) in own {
         if let Some(span) = span
@@ -257,39 +222,24 @@ fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
                 _ => ("the implicit integrator", "newmark"),
             };
             return Err(context.error_with(
-                span,
+                &span,
                 format!("{key} belongs to {whose}"),
                 format!("write integrator = \"{word}\", or leave it out"),
             ));
         }
     }
-    let number = |written: &Option<_>, or: f64, what: &str| match written {
-        None => Ok(or),
-        Some(written) => context.positive(written, Dim::NUMBER, what),
-    };
     let Stepper::Newmark(mut standard) = integrator.stepper else {
         return Ok(integrator.stepper);
     };
-    if let Some(written) = &run.alpha {
-        let alpha = context.finite(written, Dim::NUMBER)?;
-        if !(-1.0 / 3.0..=0.0).contains(&alpha) {
-            return Err(context.error_with(
-                &written.span,
-                format!(
-                    "alpha is {}, expected a number from -1/3 to 0",
-                    short(alpha)
-                ),
-                "write alpha = -0.1, or leave it out",
-            ));
-        }
+    if let Some(alpha) = context.optional(&run.alpha)? {
         standard = Newmark::hht(alpha);
     }
     Ok(Stepper::Newmark(Newmark {
-        beta: number(&run.beta, standard.beta, "beta")?,
-        gamma: number(&run.gamma, standard.gamma, "gamma")?,
+        beta: context.value_or(&run.beta, standard.beta)?,
+        gamma: context.value_or(&run.gamma, standard.gamma)?,
         alpha: standard.alpha,
         solver: solver(run.solver.as_ref().map(|s| s.value)),
-        tolerance: number(&run.tolerance, standard.tolerance, "the tolerance")?,
+        tolerance: context.value_or(&run.tolerance, standard.tolerance)?,
         most_iterations: run
             .iterations
             .as_ref()
@@ -318,7 +268,11 @@ fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
     let time_step = match &written.time_step {
         None => TimeStep::Auto,
         Some(At {
-            value: Or::Bare(Written::Text(text)),
+            value:
+                Or::Bare(Measured {
+                    written: Written::Text(text),
+                    ..
+                }),
             ..
         }) if text == "auto" => TimeStep::Auto,
         Some(At {
@@ -329,13 +283,13 @@ fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
                 value: number.clone(),
                 span: span.clone(),
             };
-            TimeStep::Fixed(context.positive(&number, Dim::TIME, "the time step")?)
+            TimeStep::Fixed(context.value(&number)?)
         }
         Some(At {
             value: Or::Table(Safety { safety }),
             ..
         }) => {
-            let fraction = context.positive(safety, Dim::NUMBER, "the safety factor")?;
+            let fraction = context.value(safety)?;
             if fraction > 1.0 && !written.force_unstable && stepper == Stepper::Verlet {
                 let message = format!(
                     "a safety factor of {} is above the stability limit",
@@ -355,11 +309,10 @@ fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
         ("duration", written.duration.is_some()),
     ];
     context.one_of(&run.span, "run", &given)?;
-    let duration = written.duration.as_ref().map(|d| {
-        context
-            .positive(d, Dim::TIME, "the duration")
-            .map(|v| (v, d))
-    });
+    let duration = written
+        .duration
+        .as_ref()
+        .map(|d| context.value(d).map(|v| (v, d)));
     let (steps, duration) = match (&written.steps, duration.transpose()?, time_step) {
         (Some(steps), _, _) => (steps.value, None),
         (None, Some((duration, at)), TimeStep::Fixed(step)) => {

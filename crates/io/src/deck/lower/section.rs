@@ -2,7 +2,6 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::{Document, PlaneName};
-use crate::deck::units::Dim;
 use peridyne::spec::Plane;
 
 pub(super) fn plane(document: &Document) -> Plane {
@@ -23,10 +22,8 @@ pub(super) fn section(context: &Context, document: &Document) -> Result<f64> {
         ));
     }
     match (&document.thickness, &document.area) {
-        (Some(thickness), None) if d == 2 => {
-            context.positive(thickness, Dim::LENGTH, "the thickness")
-        }
-        (None, Some(area)) if d == 1 => context.positive(area, Dim::AREA, "the area"),
+        (Some(thickness), None) if d == 2 => context.value(thickness),
+        (None, Some(area)) if d == 1 => context.value(area),
         (None, None) => Ok(1.0),
         (Some(thickness), _) if d != 2 => Err(context.error(
             &thickness.span,

@@ -2,9 +2,8 @@
 
 use super::context::{Context, Result};
 use super::region::region;
-use crate::deck::document::{Mark, Set};
+use crate::deck::document::{Block, Set};
 use crate::deck::error::nearest;
-use crate::deck::units::Dim;
 use crate::deck::value::At;
 use peridyne::spec::{BodySpec, Cloud, Members, SetSpec};
 use std::collections::BTreeMap;
@@ -25,7 +24,7 @@ pub(super) fn sets(
         }
         let given = [
             ("region", set.value.region.is_some()),
-            ("mark", set.value.mark.is_some()),
+            ("block", set.value.block.is_some()),
             ("where", set.value.r#where.is_some()),
             ("basis", set.value.basis.is_some()),
             ("random", set.value.random.is_some()),
@@ -37,29 +36,24 @@ pub(super) fn sets(
         };
         let of = piece.map_or(body, |p| &p.body);
         if piece.is_some() && given.iter().all(|(_, given)| !given) {
-            let help = "add region, mark or where; the body itself is a set of its name";
+            let help = "add region, block or where; the body itself is a set of its name";
             return Err(context.error_with(&set.span, "all points of a body", help));
         }
-        let members = match (&set.value.region, &set.value.mark, &set.value.r#where) {
+        let members = match (&set.value.region, &set.value.block, &set.value.r#where) {
             _ if let Some(sites) = &set.value.basis => sublattice(context, sites, of)?,
             _ if let Some(drawn) = &set.value.random => {
                 if let Some(piece) = &set.value.body {
                     let message = "points are drawn from all bodies: leave `body` out";
                     return Err(context.error(&piece.span, message));
                 }
-                let part = context.finite(&drawn.value.part, Dim::NUMBER)?;
-                if !(0.0..=1.0).contains(&part) {
-                    let message = format!("the part is {part}, expected a number from 0 to 1");
-                    return Err(context.error(&drawn.value.part.span, message));
-                }
                 Members::Random {
-                    part,
+                    part: context.value(&drawn.value.part)?,
                     seed: drawn.value.seed,
                 }
             }
             (Some(shape), _, _) => Members::Region(region(context, shape)?),
             (_, Some(mark), _) => marked(context, mark, of)?,
-            (_, _, Some(text)) => Members::Where(context.expression(text, Dim::NUMBER)?),
+            (_, _, Some(text)) => Members::Where(context.expression(text)?),
             (None, None, None) => Members::All,
         };
         sets.push(SetSpec {
@@ -119,7 +113,7 @@ fn sublattice(context: &Context, sites: &At<Vec<At<usize>>>, body: &BodySpec) ->
             return Err(context.error_with(
                 &sites.span,
                 "basis is for a lattice that is not perturbed: other points lie on no sites of a cell",
-                "say region, where or mark instead",
+                "say region, where or block instead",
             ));
         }
     };
@@ -143,23 +137,23 @@ fn sublattice(context: &Context, sites: &At<Vec<At<usize>>>, body: &BodySpec) ->
     ))
 }
 
-fn marked(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<Members> {
+fn marked(context: &Context, mark: &At<Block>, body: &BodySpec) -> Result<Members> {
     let cloud = match body {
         BodySpec::Cloud(cloud) => cloud,
         BodySpec::Several(_) => {
             return Err(context.error_with(
                 &mark.span,
-                "each of several bodies has marks of its own",
+                "each of several bodies has blocks of its own",
                 "say whose: body = \"NAME\"",
             ));
         }
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } => {
-            return Err(context.error(&mark.span, "a lattice has no marks: say region instead"));
+            return Err(context.error(&mark.span, "a lattice has no blocks: say region instead"));
         }
     };
     match &mark.value {
-        Mark::Number(number) => Ok(Members::Mark(*number)),
-        Mark::Name(name) => of_file(cloud, name).ok_or_else(|| {
+        Block::Number(number) => Ok(Members::Mark(*number)),
+        Block::Name(name) => of_file(cloud, name).ok_or_else(|| {
             let known = named(cloud);
             let help = match nearest(name, known.iter().copied()) {
                 Some(near) => format!("did you mean \"{near}\"?"),
@@ -172,7 +166,11 @@ fn marked(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<Members
                     }
                 ),
             };
-            context.error_with(&mark.span, format!("the file has no mark \"{name}\""), help)
+            context.error_with(
+                &mark.span,
+                format!("the file has no block \"{name}\""),
+                help,
+            )
         }),
     }
 }

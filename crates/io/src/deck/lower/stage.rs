@@ -6,7 +6,7 @@ use crate::deck::error::DeckError;
 use crate::deck::units::Dim;
 use crate::deck::value::At;
 use peridyne::expression::Expression;
-use peridyne::spec::{ConditionKind, ConditionSpec, IndenterMotion, IndenterSpec};
+use peridyne::spec::{ConditionKind, ConditionSpec, RigidBodyMotion, RigidBodySpec};
 use std::ops::Range;
 
 /// What a deck does, and what t is.
@@ -33,7 +33,7 @@ impl Stages {
     pub fn time(&self, stage: Option<StageName>) -> Dim {
         match (self.both, stage) {
             (false, _) | (true, Some(StageName::Statics)) => self.statics,
-            (true, Some(StageName::Motion) | None) => Dim::TIME,
+            (true, Some(StageName::Dynamics) | None) => Dim::TIME,
         }
     }
 
@@ -58,7 +58,7 @@ impl Stages {
         context.error_with(
             span,
             "t begins at 0 in statics and again in motion: which of both is meant here?",
-            "write stage = \"statics\" or stage = \"motion\"; what changes in both is two entries",
+            "write stage = \"statics\" or stage = \"dynamics\"; what changes in both is two entries",
         )
     }
 }
@@ -81,13 +81,13 @@ pub(super) fn of_time(condition: &ConditionSpec) -> bool {
 }
 
 /// Is it elsewhere later?
-pub(super) fn moves(indenter: &IndenterSpec) -> bool {
-    match &indenter.motion {
-        IndenterMotion::Kinematic(center) => {
-            let turns = indenter.turn.iter().map(|t| &t.angle);
+pub(super) fn moves(rigid_body: &RigidBodySpec) -> bool {
+    match &rigid_body.motion {
+        RigidBodyMotion::Kinematic(center) => {
+            let turns = rigid_body.turn.iter().map(|t| &t.angle);
             center.iter().chain(turns).any(Expression::depends_on_time)
         }
-        IndenterMotion::Free(_) => true,
+        RigidBodyMotion::Free(_) => true,
     }
 }
 
@@ -114,7 +114,7 @@ impl<T> Default for Staged<T> {
 impl<T: Clone> Staged<T> {
     /// What entry `index` of the deck says.
     pub fn put(&mut self, stage: Option<StageName>, both: bool, index: usize, made: Vec<T>) {
-        if both && stage != Some(StageName::Motion) {
+        if both && stage != Some(StageName::Dynamics) {
             self.before.extend(made.iter().cloned());
         }
         if !both || stage != Some(StageName::Statics) {
@@ -129,7 +129,7 @@ impl<T: Clone> Staged<T> {
 #[derive(Debug, Clone, Default)]
 pub(in crate::deck) struct Entries {
     pub conditions: [Vec<usize>; 2],
-    pub indenters: [Vec<usize>; 2],
+    pub rigid_bodies: [Vec<usize>; 2],
     /// Of the body, and those that are cut when motion begins.
     pub precracks: [Vec<usize>; 2],
 }
@@ -148,9 +148,9 @@ impl Entries {
                 &self.conditions[usize::from(!before)],
             ),
             (
-                "indenters[",
-                "indenters",
-                &self.indenters[usize::from(!before)],
+                "rigid_bodies[",
+                "rigid_bodies",
+                &self.rigid_bodies[usize::from(!before)],
             ),
             ("precracks[", "precracks", &self.precracks[0]),
             ("cuts[", "precracks", &self.precracks[1]),

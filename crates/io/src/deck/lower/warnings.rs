@@ -15,8 +15,9 @@ pub(super) fn warnings(context: &Context, document: &Document) -> Vec<String> {
         let text = format!("this crack never grows, as no material can break: {help}");
         all.push(context.source.remark(&crack.span, &text));
     }
-    all.extend(context.doubts.iter().cloned());
+    all.extend(context.lints.iter().cloned());
     all.extend(unitless(context));
+    all.extend(context.kelvins());
     all
 }
 

@@ -10,7 +10,7 @@ output.space_time = [{ field = "density", range = [1, "a"] }] | "a" | expected f
 output.space_time = [{ field = 1 }] | 1 | expected a string, found the number `1`
 output.space_time = { fields = "density" } | fields | unknown key `fields`
 output.pictures = [[1]] | [1] | expected a table of keys, such as { key = value }, found a list
-output.pictures = [{ field = "damage", film = 1 }] | 1 | expected true or false, found the number `1`
+output.pictures = [{ field = "damage", film = 1 }] | 1 | expected true or false, "png" or "gif", found the number `1`
 output.pictures = [{ field = "damage" }, { filed = "damage" }] | filed | unknown key `filed`
 output.checkpoint = "often" | "often" | expected true or false, found string "often"
 output.checkpoint = 99999999999999999999 | 99999999999999999999 | expected a value or a table, found the number `99999999999999999999` as i128
@@ -46,15 +46,15 @@ periodic = [1] | 1 | wanted string or table
 periodic = { w = 1 } | w | unknown key `w`
 contact = 3 | 3 | expected true or false, found the number `3`
 influence = 3 | 3 | expected a string, found the number `3`
-sets = { a = { mark = 1.5 } } | 1.5 | data did not match any variant of untagged enum Mark
-sets = { a = { mark = [1] } } | [1] | data did not match any variant of untagged enum Mark
+sets = { a = { block = 1.5 } } | 1.5 | data did not match any variant of untagged enum Block
+sets = { a = { mark = [1] } } | [1] | data did not match any variant of untagged enum Block
 sets = { a = { basis = [0, "b"] } } | "b" | expected a whole number from 0, found string "b"
 sets = { a = 1 } | 1 | expected a table of keys, such as { key = value }, found the number `1`
 sets = [1] | [1] | expected a map, found a list
-condition = [{ displacement = { x = [1] } }] | [1] | expected a number, or a text such as "0.5 mm", found a list
-condition = [{ displacement = { w = 1 } }] | w | unknown key `w`
-condition = [{ displacement = 3 }] | 3 | expected components such as { x = "1 mm" } or ["1 mm", "free"], found the number `3`
-condition = [{ displacement = [0, 0, 0, 0] }] | [0, 0, 0, 0] | expected 1 to 3 components, found 4
+boundary_condition = [{ displacement = { x = [1] } }] | [1] | expected a number, or a text such as "0.5 mm", found a list
+boundary_condition = [{ displacement = { w = 1 } }] | w | unknown key `w`
+boundary_condition = [{ displacement = 3 }] | 3 | expected components such as { x = "1 mm" } or ["1 mm", "free"], found the number `3`
+boundary_condition = [{ displacement = [0, 0, 0, 0] }] | [0, 0, 0, 0] | expected 1 to 3 components, found 4
 initial.0.velocity = { y = true } | true | expected a number, or a text such as "0.5 mm", found boolean `true`
 material.law = 3 | 3 | expected a law such as { lps = { … } }, found the number `3`
 material.law = { pmb = [1] } | [1] | the constants of the law "pmb" are a table
@@ -100,8 +100,8 @@ output.every = inf | inf | expected a whole number from 0, found the number `inf
 output.space_time = [{ field = "density", range = [nan, 1e999] }] | 1e999 | floating-point number overflowed
 output.fields = ["damage", 3] | 3 | expected a string, found the number `3`
 output.pictures = [{ field = "damage", range = [0, 1, 2] }, 3] | [0, 1, 2] | expected a list of 2, found 3
-sets.a.mark = 9223372036854775808 | 9223372036854775808 | data did not match any variant of untagged enum Mark
-sets.a.mark = [] | [] | data did not match any variant of untagged enum Mark
+sets.a.mark = 9223372036854775808 | 9223372036854775808 | data did not match any variant of untagged enum Block
+sets.a.mark = [] | [] | data did not match any variant of untagged enum Block
 "#;
 
 #[test]

@@ -24,7 +24,7 @@ pub(super) const EXAMPLES: &[(Dim, &str)] = &[
     (Dim::FORCE_DENSITY, "1e6 N/m^3"),
     (Dim::MICROMODULUS, "1.6e22 N/m^6"),
     (Dim::CONTACT_STIFFNESS, "1e26 N/m^7"),
-    (Dim::INDENTER_STIFFNESS, "1e17 N/m^5"),
+    (Dim::RIGID_BODY_STIFFNESS, "1e17 N/m^5"),
     (Dim::DAMPING, "1e6 kg/m^3/s"),
     (Dim::CONDUCTIVITY, "45 W/m/K"),
     (Dim::HEAT_CAPACITY, "460 J/kg/K"),

@@ -9,14 +9,15 @@ mod write;
 
 pub use dimension::{example, named, usual};
 pub use measure::{Dimensions, Kind, Variables, factor_help};
-pub use parse::{clock_time, split, unit};
+pub use parse::{celsius, clock_time, split, unit};
 /// What a number measures: the engine's word for it.
 pub use peridyne::columns::Dimension as Dim;
 pub use peridyne::quantity::rounded;
 pub(in crate::deck) use system::BOLTZMANN;
 pub use system::{Constants, UnitSystem};
-pub use write::counted;
+pub use table::known;
 pub(in crate::deck) use write::short;
+pub use write::{counted, each_once};
 
 #[cfg(test)]
 mod tests {
@@ -57,16 +58,86 @@ mod tests {
         is("58.69 g/mol", 58.69e-3 / AVOGADRO, Dim::MASS);
         is("1 eV/Å^3", EV / 1e-30, Dim::PRESSURE);
         is("5 %", 0.05, Dim::NUMBER);
-        is("1e17 N/m^5", 1e17, Dim::INDENTER_STIFFNESS);
+        is("1e17 N/m^5", 1e17, Dim::RIGID_BODY_STIFFNESS);
         is("1e6 kg/m^3/s", 1e6, Dim::DAMPING);
         is("300 K", 300.0, Dim::TEMPERATURE);
         is("12e-6 K^-1", 12e-6, Dim([0, 0, 0, -1]));
     }
 
+    /// As papers, data sheets and other programs write them.
+    #[test]
+    fn units_are_written_in_many_ways() {
+        for text in ["12e-6 1/K", "12e-6 1/degC", "12e-6 K⁻¹", "12e-6 1/°C"] {
+            is(text, 12e-6, Dim::EXPANSION);
+        }
+        is("50 1/s", 50.0, Dim::FREQUENCY);
+        is("3 1/m", 3.0, Dim::INVERSE_LENGTH);
+        is("2 N/mm", 2000.0, Dim::FRACTURE_ENERGY);
+        is("2 kN/mm", 2e6, Dim::FRACTURE_ENERGY);
+        is("30 N/mm^2", 30e6, Dim::PRESSURE);
+        is("30 N/mm²", 30e6, Dim::PRESSURE);
+        is("5 mm/s", 5e-3, Dim::VELOCITY);
+        is("0.1 kJ/m^2", 100.0, Dim::FRACTURE_ENERGY);
+        is("7 J/m^3", 7.0, Dim::PRESSURE);
+        is("7.85 g/cm^3", 7850.0, Dim::DENSITY);
+        for text in [
+            "45 W/m/K",
+            "45 W/(m K)",
+            "45 W/(m*K)",
+            "45 W/(m·°C)",
+            "45 W m⁻¹ K⁻¹",
+        ] {
+            is(text, 45.0, Dim::CONDUCTIVITY);
+        }
+        is("460 J/(kg K)", 460.0, Dim::HEAT_CAPACITY);
+        is("90 deg", std::f64::consts::FRAC_PI_2, Dim::NUMBER);
+        is("90°", std::f64::consts::FRAC_PI_2, Dim::NUMBER);
+        is("2 rad/s", 2.0, Dim::FREQUENCY);
+        is("1 kcal/mol", 4184.0 / 6.02214076e23, Dim::ENERGY);
+        is("10 ksi", 68.94757293168e6, Dim::PRESSURE);
+        is("2 in", 0.0508, Dim::LENGTH);
+        is("2 ft", 0.6096, Dim::LENGTH);
+        is("1 lbf", 4.4482216152605, Dim::FORCE);
+        is("3 ml", 3e-6, Dim::VOLUME);
+        is("10 K/min", 10.0 / 60.0, Dim([0, 0, -1, 1]));
+        is("10 degC/min", 10.0 / 60.0, Dim([0, 0, -1, 1]));
+    }
+
+    /// A temperature in degrees Celsius has another zero; a difference and a factor have none.
+    #[test]
+    fn degrees_celsius_alone_are_no_factor() {
+        for text in ["20 degC", "20 °C", "20°C", "20 \u{2103}"] {
+            assert_eq!(celsius(text), Some(293.15), "{text}");
+        }
+        assert_eq!(celsius("-273.15 degC"), Some(0.0));
+        assert_eq!(celsius("20 degC/m"), None);
+        assert_eq!(celsius("20 K"), None);
+        for text in ["degC", "°C", " degC ^1"] {
+            let why = unit(text).unwrap_err();
+            assert!(why.contains("293.15 K"), "{text}: {why}");
+        }
+    }
+
     #[test]
     fn what_is_no_unit_says_so() {
         assert!(unit("gpa").unwrap_err().contains("did you mean `GPa`"));
-        assert!(unit("furlong").unwrap_err().contains("unknown unit"));
+        let unknown = unit("furlong").unwrap_err();
+        assert!(
+            unknown.contains("m, g, s, N") && unknown.contains("Å, inch, min"),
+            "{unknown}"
+        );
+        for (text, says) in [
+            ("degF", "(68 + 459.67)/1.8 K"),
+            ("rpm", "1 rpm is 0.1047197551 rad/s"),
+            ("C", "written degC"),
+            ("Nm", "`N m`"),
+            ("MPas", "`MPa s`"),
+            ("W/(m K", "not closed"),
+            ("m^0.5", "is not a unit"),
+        ] {
+            let why = unit(text).unwrap_err();
+            assert!(why.contains(says), "{text}: {why}");
+        }
         assert!(unit("m/").unwrap_err().contains("missing"));
         assert!(unit("m^x").unwrap_err().contains("whole number"));
         assert!(unit("m^99").unwrap_err().contains("-9 to 9"));

@@ -1,35 +1,72 @@
 //! Numbers with units, as text.
 
 use super::Dim;
-use super::table::{Unit, named, unknown};
+use super::table::{Unit, in_name, is_celsius, named, unknown};
 use peridyne::expression::Misfit;
 use std::ops::Range;
 use std::time::Duration;
 
-/// A unit such as `kg/m^3`, `N/m²`, `J/m^2/s`, `eV/Å^3`, `kg/m3`; each `/` divides by what follows it only.
+/// A text with powers as `^`.
+fn plain(text: &str) -> String {
+    let mut text = text.replace("**", "^").replace('·', "*");
+    for (superscript, power) in [("¹", "1"), ("²", "2"), ("³", "3")] {
+        text = text.replace(&format!("⁻{superscript}"), &format!("^-{power}"));
+        text = text.replace(superscript, &format!("^{power}"));
+    }
+    text
+}
+
+/// A unit such as `kg/m^3`, `N/m²`, `J/m^2/s`, `W/(m K)`, `1/s`, `eV/Å^3`, `kg/m3`; each `/` divides by what follows it only.
+///
+/// # Errors
+/// What is wrong in words. Degrees Celsius alone are none: they have another zero ([`celsius`]).
 pub fn unit(text: &str) -> Result<Unit, String> {
+    let text = plain(text);
+    match is_celsius(text.trim().trim_end_matches("^1").trim_end()) {
+        true => Err(format!(
+            "`{}` is taken as the whole of a temperature, \"20 degC\" (293.15 K), not in expressions, constants and differences: write K \
+             there, 20 K for a difference of 20 degrees",
+            text.trim()
+        )),
+        false => product(&text),
+    }
+}
+
+/// The temperature in kelvin that a text is in degrees Celsius, `20 degC`.
+pub fn celsius(text: &str) -> Option<f64> {
+    let (value, unit) = split(text)?;
+    is_celsius(unit.trim_end()).then_some(value + 273.15)
+}
+
+/// Factors with their powers.
+fn product(text: &str) -> Result<Unit, String> {
     const LARGE: &str = "the powers of the unit are too large";
-    let text = text
-        .replace('²', "^2")
-        .replace('³', "^3")
-        .replace("**", "^")
-        .replace('·', "*");
     let (mut product, mut sign) = (Unit::new(1.0, 0, Dim::NUMBER), 1i8);
     let mut rest = text.trim();
+    let below = rest.strip_prefix('1').map(str::trim_start);
+    if let Some(below) = below.and_then(|b| b.strip_prefix('/')) {
+        (sign, rest) = (-1, below.trim_start());
+    }
     loop {
-        let length = rest
-            .find(|c: char| !(c.is_alphabetic() || c == '%'))
-            .unwrap_or(rest.len());
-        let name = &rest[..length];
-        if name.is_empty() {
-            return Err(if rest.is_empty() {
-                "a unit is missing".into()
-            } else {
-                format!("`{rest}` is not a unit")
-            });
+        let (factor, name);
+        if let Some(inside) = rest.strip_prefix('(') {
+            let closed = inside.split_once(')');
+            let (inner, after) = closed.ok_or("a bracket of the unit is not closed")?;
+            (factor, name) = (self::product(inner)?, format!("({inner})"));
+            rest = after.trim_start();
+        } else {
+            let length = rest.find(|c: char| !in_name(c)).unwrap_or(rest.len());
+            name = rest[..length].to_string();
+            if name.is_empty() {
+                return Err(if rest.is_empty() {
+                    "a unit is missing".into()
+                } else {
+                    format!("`{rest}` is not a unit")
+                });
+            }
+            factor = named(&name).ok_or_else(|| unknown(&name))?;
+            rest = rest[length..].trim_start();
         }
-        let factor = named(name).ok_or_else(|| unknown(name))?;
-        rest = rest[length..].trim_start();
         let explicit = rest.strip_prefix('^').map(str::trim_start);
         let digits = explicit.unwrap_or(rest);
         let end = digits
@@ -62,20 +99,39 @@ pub fn unit(text: &str) -> Result<Unit, String> {
     }
 }
 
-/// A time on the clock of the machine, `10 min`, `47 h`, `90 s`, in any system of units.
+/// A time on the clock of the machine, `10 min`, `23 h 50 min`, `23:50:00`, in any system of units.
 ///
 /// # Errors
 /// It is none, or not above 0.
 pub fn clock_time(text: &str) -> Result<Duration, String> {
-    let end = text.find(|c: char| c.is_alphabetic() && c != 'e' && c != 'E');
-    let (number, name) = text.split_at(end.unwrap_or(text.len()));
-    let none = || format!("`{text}` is no time, expected a number and s, min or h");
-    let number: f64 = number.trim().parse().map_err(|_| none())?;
-    let unit = unit(name).map_err(|_| none())?;
-    if unit.dim != Dim::TIME {
+    let none = || {
+        format!(
+            "`{text}` is no time, expected numbers with s, min or h, such as 23 h 50 min, or 23:50:00"
+        )
+    };
+    let (mut rest, mut seconds) = (text.trim(), 0.0);
+    if rest.is_empty() {
         return Err(none());
     }
-    let time = Duration::try_from_secs_f64(unit.si(number)).map_err(|_| none())?;
+    // as queues write it
+    let parts: Vec<Option<f64>> = rest
+        .split(':')
+        .map(|n| n.parse::<u32>().ok().map(f64::from))
+        .collect();
+    if let [Some(hours), Some(minutes), Some(some)] = parts[..] {
+        (rest, seconds) = ("", 3600.0 * hours + 60.0 * minutes + some);
+    }
+    while !rest.is_empty() {
+        let begin = rest.find(|c: char| c.is_alphabetic() && c != 'e' && c != 'E');
+        let (number, named) = rest.split_at(begin.unwrap_or(rest.len()));
+        let end = named.find(|c: char| !c.is_alphabetic());
+        let (name, next) = named.split_at(end.unwrap_or(named.len()));
+        let number = number.trim().parse::<f64>().ok().filter(|n| *n >= 0.0);
+        let unit = unit(name).ok().filter(|unit| unit.dim == Dim::TIME);
+        seconds += unit.ok_or_else(none)?.si(number.ok_or_else(none)?);
+        rest = next.trim_start();
+    }
+    let time = Duration::try_from_secs_f64(seconds).map_err(|_| none())?;
     match time.is_zero() {
         true => Err(format!("`{text}` is no time at all")),
         false => Ok(time),
@@ -96,8 +152,8 @@ pub fn prefix(
     let names = |at: usize| {
         let end =
             |wanted: fn(char) -> bool| text[at..].find(|c| !wanted(c)).unwrap_or(text.len() - at);
-        let unit = &text[at..at + end(|c| c.is_alphabetic() || c == '%')];
-        let whole = &text[at..at + end(|c| c.is_alphanumeric() || c == '_' || c == '%')];
+        let unit = &text[at..at + end(in_name)];
+        let whole = &text[at..at + end(|c| c.is_alphanumeric() || c == '_' || in_name(c))];
         let called = text[at + whole.len()..].trim_start().starts_with('(');
         (unit, whole, called)
     };
@@ -105,11 +161,23 @@ pub fn prefix(
         let (unit, whole, called) = names(at);
         !called && !taken(whole) && named(unit).is_some()
     };
+    // the length of a bracket that holds units alone: W/(m K)
+    let group = |at: usize| {
+        let (inner, _) = text[at..].strip_prefix('(')?.split_once(')')?;
+        let mut words = inner.split(|c: char| !(c.is_alphanumeric() || c == '_' || in_name(c)));
+        (!words.any(taken) && product(&plain(inner)).is_ok()).then_some(inner.len() + 2)
+    };
     let mut at = skip(0);
     let start = at;
+    // 12e-6 1/K
+    let one = text[at..].strip_prefix('1').map(|_| skip(at + 1));
+    at = one
+        .filter(|one| text[*one..].starts_with('/'))
+        .unwrap_or(at);
     if text[at..].starts_with('/') {
         // 50/s
-        if !usable(skip(at + 1)) {
+        let below = skip(at + 1);
+        if !usable(below) && group(below).is_none() {
             return Ok(None);
         }
     } else {
@@ -143,40 +211,36 @@ pub fn prefix(
         if let Some(operator) = text[at..].chars().next().filter(|c| "/*·".contains(*c)) {
             at = skip(at + operator.len_utf8());
         }
-        at += names(at).0.len();
+        at += group(at).unwrap_or(names(at).0.len());
         let explicit = skip(at);
         if text[explicit..].starts_with('^') {
             at = skip(explicit + 1);
             at += usize::from(text[at..].starts_with('-'));
         }
         at += text[at..]
-            .find(|c: char| !(c.is_ascii_digit() || c == '²' || c == '³'))
+            .find(|c: char| !(c.is_ascii_digit() || "⁻¹²³".contains(c)))
             .unwrap_or(text.len() - at);
         let next = skip(at);
-        let after = match text[next..].chars().next() {
-            Some(operator) if "/*·".contains(operator) => skip(next + operator.len_utf8()),
-            _ => next,
+        let (after, grouped) = match text[next..].chars().next() {
+            Some(operator) if "/*·".contains(operator) => {
+                let after = skip(next + operator.len_utf8());
+                (after, group(after).is_some())
+            }
+            _ => (next, false),
         };
-        if !usable(after) {
+        if !usable(after) && !grouped {
             break;
         }
         at = next;
     }
-    let written = match text[start..at].strip_prefix('/') {
-        Some(below) => unit(below).map(|u| u.power(-1)),
-        None => unit(&text[start..at]).map(Some),
+    let written = match &text[start..at] {
+        below if below.starts_with('/') => unit(&format!("1{below}")),
+        written => unit(written),
     };
-    match written {
-        Ok(Some(unit)) => Ok(Some((at, unit))),
-        Ok(None) => Ok(None),
-        Err(message) => Err((
-            start..at,
-            Misfit {
-                message,
-                help: None,
-            },
-        )),
-    }
+    written.map(|unit| Some((at, unit))).map_err(|message| {
+        let help = None;
+        (start..at, Misfit { message, help })
+    })
 }
 
 /// Splits `"14.9 GPa"` into number and unit. `None` if it does not start with a number that a unit or nothing
@@ -189,6 +253,8 @@ pub fn split(text: &str) -> Option<(f64, &str)> {
         .find(|&n| text[..n].parse::<f64>().is_ok() && !text[..n].ends_with(char::is_whitespace))?;
     let value = text[..length].parse().ok()?;
     let rest = text[length..].trim_start();
-    let unit_like = rest.is_empty() || rest.starts_with(|c: char| c.is_alphabetic() || c == '%');
+    let below = rest.strip_prefix('1').unwrap_or(rest).trim_start();
+    let unit_like =
+        rest.is_empty() || rest.starts_with(in_name) || below.starts_with('/') && below != rest;
     unit_like.then_some((value, rest))
 }

@@ -45,7 +45,7 @@ impl UnitSystem {
             (_, Dim::FRACTURE_ENERGY) => (si, "J/m^2"),
             (_, Dim::MICROMODULUS) => (si, "N/m^6"),
             (_, Dim::CONTACT_STIFFNESS) => (si, "N/m^7"),
-            (_, Dim::INDENTER_STIFFNESS) => (si, "N/m^5"),
+            (_, Dim::RIGID_BODY_STIFFNESS) => (si, "N/m^5"),
             _ => {
                 let unit = self.unit(dim);
                 return format!("{} {unit}", rounded(value, digits))
@@ -161,6 +161,12 @@ fn engineering(si: f64, unit: &'static str, least: f64) -> (f64, &'static str) {
         .find(|(s, _)| si.abs() >= s * least)
         .unwrap_or(&table[table.len() - 1]);
     (si / scale, name)
+}
+
+/// Bonds, of which each is counted at both of its ends, each once.
+#[must_use]
+pub fn each_once(directed: u64) -> u64 {
+    directed.div_ceil(2)
 }
 
 /// `1 point`, `2 points`.

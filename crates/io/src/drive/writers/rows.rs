@@ -7,6 +7,7 @@ use super::writer::{Made, Now, Writer};
 
 use super::inside;
 use crate::balance::BalanceWatch;
+use crate::deck::each_once;
 use crate::drive::plan::DriveError;
 use crate::write::WriteError;
 use crate::write::history::{Column, History};
@@ -65,11 +66,16 @@ impl Writer for Rows {
         self.told = Some(step);
         let ledger = now.known.ledger;
         now.progress
-            .row(step, now.sim.clock(), &ledger, now.sim.broken());
+            .row(step, now.sim.clock(), &ledger, each_once(now.sim.broken()));
         let stepper = now.sim.info().stepper;
         let statics = due.loads || stepper.statics().is_some();
-        if let Some(jump) = self.balance.row(step, &ledger, statics) {
-            now.warn(now.plan.units.tell(&jump));
+        let mut wrong = self.balance.row(step, &ledger, statics);
+        // the work of expansion over an increment is that of its ends
+        if wrong.is_none() && statics && now.sim.diffusions().is_empty() {
+            wrong = self.balance.equilibrium(step, &ledger);
+        }
+        if let Some(wrong) = wrong {
+            now.warn(now.plan.units.tell(&wrong));
         }
         if matches!(stepper, Stepper::Verlet) && !due.loads {
             *now.stopped = self.balance.gone(step, &ledger, now.sim.info());

@@ -148,7 +148,7 @@ impl<'a> Now<'a> {
         if stepper.statics().is_some() {
             return About::Equilibrium;
         }
-        match self.sim.transfers().first() {
+        match self.sim.diffusions().first() {
             Some((quantity, _)) if stepper.rests() => About::Spread(quantity.column()),
             Some(_) | None => About::Motion,
         }

@@ -140,7 +140,7 @@ impl Curve {
             }
             Curve::Arc(centre, [along, across], [begin, end], angle) => {
                 let radius = begin + s * (end - begin);
-                let (sine, cosine) = (s * angle).sin_cos();
+                let (sine, cosine) = libm::sincos(s * angle);
                 plus(&plus(centre, radius * cosine, along), radius * sine, across)
             }
         }
@@ -196,7 +196,7 @@ fn arc(rows: &Rows, ends: [Point; 2], centre: Point) -> Result<Curve, ReadError>
     if dot(&axis, &u).abs().max(dot(&axis, &v).abs()) > 1e-3 * longest {
         return Err(rows.error("the normal of the arc is not normal to it"));
     }
-    let mut angle = dot(&axis, &own).atan2(dot(&u, &v));
+    let mut angle = libm::atan2(dot(&axis, &own), dot(&u, &v));
     if angle <= 1e-9 {
         angle += std::f64::consts::TAU;
     }

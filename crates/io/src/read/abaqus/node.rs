@@ -33,12 +33,12 @@ impl System {
         match self {
             System::Rectangular => x,
             System::Cylindrical => {
-                let (sine, cosine) = theta.to_radians().sin_cos();
+                let (sine, cosine) = libm::sincos(theta.to_radians());
                 [r * cosine, r * sine, c]
             }
             System::Spherical => {
-                let (sine, cosine) = theta.to_radians().sin_cos();
-                let (height, out) = c.to_radians().sin_cos();
+                let (sine, cosine) = libm::sincos(theta.to_radians());
+                let (height, out) = libm::sincos(c.to_radians());
                 [r * out * cosine, r * out * sine, r * height]
             }
         }

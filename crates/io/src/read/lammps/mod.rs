@@ -52,13 +52,13 @@ pub(super) fn parse(text: &str, name: &str) -> std::result::Result<Sourced, Read
     }
     let spacing = Spacing::new(&atoms.position);
     let excess = spacing.excess(&atoms.volume, None);
-    if !named && spacing.dimension() == 3 && excess.abs() > FACTOR.ln() {
+    if !named && spacing.dimension() == 3 && excess.abs() > libm::log(FACTOR) {
         return Err(error(
             name,
             None,
             format!(
                 "the file does not say its atom_style, and as peri (id type volume density x y z) its volumes are {:.1e} times those between its points: write `Atoms # peri` if they are right; sphere has diameters there, full molecules, types and charges",
-                excess.exp()
+                libm::exp(excess)
             ),
         ));
     }
@@ -78,7 +78,13 @@ pub(super) fn parse(text: &str, name: &str) -> std::result::Result<Sourced, Read
         .iter()
         .map(|t| i32::try_from(*t))
         .collect::<std::result::Result<_, _>>()
-        .map_err(|_| error(name, None, "atom types above 2147483647 cannot be marks"))?;
+        .map_err(|_| {
+            error(
+                name,
+                None,
+                "atom types above 2147483647 cannot be block ids",
+            )
+        })?;
     Ok(Sourced {
         atoms: None,
         cloud: Cloud {

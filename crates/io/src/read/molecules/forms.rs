@@ -37,7 +37,7 @@ pub(super) fn form(
         },
         (1, "cosine/squared", &[k, degrees]) => Form::CosineSquaredAngle {
             stiffness: k * energy,
-            cosine: degrees.to_radians().cos(),
+            cosine: libm::cos(degrees.to_radians()),
         },
         (3, "harmonic", &[k, degrees]) => Form::HarmonicImproper {
             stiffness: k * energy,

@@ -90,7 +90,7 @@ fn columns_in_another_order_are_doubted() {
         // and one whose volumes are no whole numbers
         (
             block(|_, [x, y, z]| format!("{x} {y} {z} 1 0.5")),
-            "expected a whole number as mark, found `0.5`",
+            "expected a whole number as block id, found `0.5`",
         ),
         // edges of 2
         (

@@ -7,6 +7,7 @@ use super::{write_arrays, write_image, write_profiles, write_slice, write_table}
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, create_directory, write_file};
 use crate::write::grown::Seal;
+use crate::write::picture::animate::FilmFormat;
 use crate::write::pvd::Pvd;
 use peridyne::state::{Archive, Owner};
 use peridyne_fields::average::Average;
@@ -25,6 +26,7 @@ pub struct Collected {
     pressure: bool,
     /// Slices of all frames, where a film is wanted.
     film: Option<SliceFilm>,
+    format: FilmFormat,
     read: Vec<Frame>,
     average: Average,
     last: Option<(Table, Option<f64>)>,
@@ -45,6 +47,7 @@ impl Collected {
             each,
             pressure,
             film: None,
+            format: FilmFormat::Png,
             read: vec![],
             average: Average::default(),
             last: None,
@@ -55,8 +58,9 @@ impl Collected {
 
     /// With a film of the slice, if one is wanted.
     #[must_use]
-    pub fn with_film(mut self, wanted: bool) -> Collected {
-        self.film = wanted.then(SliceFilm::default);
+    pub fn with_film(mut self, wanted: Option<FilmFormat>) -> Collected {
+        self.film = wanted.map(|_| SliceFilm::default());
+        self.format = wanted.unwrap_or(self.format);
         self
     }
 
@@ -201,7 +205,7 @@ impl Collected {
         let time = time.filter(|_| frames == 1);
         let mut pictures = save(&self.dir, &table, &about, time)?;
         if let Some(film) = self.film {
-            pictures.extend(film.finish(&self.dir, about.units)?);
+            pictures.extend(film.finish(&self.dir, about.units, self.format)?);
         }
         Ok(Made {
             frames: about.read,

@@ -4,7 +4,8 @@
 use super::columns::{Column, Table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, write_file};
-use crate::write::picture::film::{HURRY, animate, stride};
+use crate::write::picture::animate::{FilmFormat, animate};
+use crate::write::picture::film::{HURRY, stride};
 use crate::write::picture::label;
 use crate::write::plot::{ColorMap, Map};
 use peridyne::state::{Archive, Owner};
@@ -198,11 +199,16 @@ impl SliceFilm {
         self.hurried = true;
     }
 
-    /// Writes `NAME_film.png` of each kind of slice; gives their paths.
+    /// Writes `NAME_film.png` or `.gif` of each kind of slice; gives their paths.
     ///
     /// # Errors
     /// The operating system's.
-    pub fn finish(self, dir: &Path, units: Units) -> Result<Vec<PathBuf>, WriteError> {
+    pub fn finish(
+        self,
+        dir: &Path,
+        units: Units,
+        format: FilmFormat,
+    ) -> Result<Vec<PathBuf>, WriteError> {
         let mut made = vec![];
         for (name, _) in KINDS {
             let own: Vec<&(Option<f64>, Slice)> =
@@ -218,7 +224,7 @@ impl SliceFilm {
                 });
                 slice.map(between, &when, units).image()
             };
-            let path = dir.join(format!("{name}_film.png"));
+            let path = dir.join(format!("{name}_film.{}", format.ending()));
             let most = self.hurried.then(|| {
                 let begun = Instant::now();
                 let drawn = own.first().map(image);
@@ -229,7 +235,7 @@ impl SliceFilm {
             });
             let some = own.iter().step_by(stride(own.len(), most));
             let count = some.len();
-            write_file(&path, |w| animate(w, count, some.map(image)))?;
+            write_file(&path, |w| animate(w, format, count, some.map(image)))?;
             made.push(path);
         }
         Ok(made)

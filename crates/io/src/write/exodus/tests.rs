@@ -77,7 +77,7 @@ fn frames_come_back() {
     }
     assert_eq!(nodal(&bytes, "damage", 0), [0.0, 0.25, 1.0]);
     assert_eq!(nodal(&bytes, "damage", 1), [0.5; 3]);
-    assert_eq!(nodal(&bytes, "mark", 1), [-1.0, 0.0, 4.0]);
+    assert_eq!(nodal(&bytes, "block", 1), [-1.0, 0.0, 4.0]);
     assert_eq!(nodal(&bytes, "fragment", 1), [0.0, 0.0, 1.0]);
     assert_eq!(nodal(&bytes, "stress_xz", 0), [5.0; 3]);
     let map = reader.wholes("elem_num_map");

@@ -123,7 +123,7 @@ impl Arrows {
 }
 
 fn arrow(image: &mut Image, from: [f64; 2], d: [f64; 2]) {
-    let long = d[0].hypot(d[1]);
+    let long = libm::hypot(d[0], d[1]);
     if !(long >= SHORTEST && long.is_finite()) {
         return;
     }

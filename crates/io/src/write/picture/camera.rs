@@ -16,7 +16,7 @@ impl Camera {
     /// above the horizon; π/2 looks straight down.
     pub fn new(right: [f64; 3], top: [f64; 3], elevation: f64) -> Self {
         let back = cross(top, right);
-        let (mut sine, mut cosine) = elevation.sin_cos();
+        let (mut sine, mut cosine) = libm::sincos(elevation);
         if cosine < 1e-9 {
             (sine, cosine) = (1.0, 0.0);
         }

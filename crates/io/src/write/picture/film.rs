@@ -1,8 +1,8 @@
-//! A film of the frames of a run, as an animated PNG. Frames wait in a file of their own, small, until the run has ended: then
+//! A film of the frames of a run, as an animated PNG or GIF. Frames wait in a file of their own, small, until the run has ended: then
 //! the ends of the colours are known, and how many frames there are.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::Duration;
 
@@ -14,16 +14,14 @@ use peridyne::state::{Archive, Owner};
 
 use super::super::Grown;
 use super::super::atomic::{WriteError, create_directory, write_file};
+use super::animate::{FilmFormat, animate};
 use super::arrows::Arrows;
-use super::image::Image;
 use super::rigid::{Form, Placed};
 use super::shown::{About, Shown, range};
 use super::{PictureOptions, Sight, draw, invalid};
 
 /// Width of a frame (pixels); narrower than a picture, so that a film stays small.
 const WIDTH: usize = 960;
-/// Time of a frame (ms).
-const DELAY: u16 = 80;
 
 /// Frames so far.
 #[derive(Debug)]
@@ -192,7 +190,7 @@ impl Film {
         field: &str,
         options: &PictureOptions,
         scale: f64,
-        most: Option<usize>,
+        (format, most): (FilmFormat, Option<usize>),
     ) -> Result<(), WriteError> {
         let Some(mut same) = self.same else {
             return Ok(());
@@ -232,7 +230,8 @@ impl Film {
             let drawn = n.is_multiple_of(step);
             drawn.then(|| Ok(draw(&snapshot, bodies, what, &sight, &options)))
         });
-        write_file(path, |w| animate(w, frames.len().div_ceil(step), images))
+        let count = frames.len().div_ceil(step);
+        write_file(path, |w| animate(w, format, count, images))
     }
 }
 
@@ -254,48 +253,6 @@ type Frame = ((u64, f64), Vec<Placed>);
 fn rewound(mut file: &File) -> io::Result<BufReader<&File>> {
     file.seek(SeekFrom::Start(0))?;
     Ok(BufReader::new(file))
-}
-
-/// An animated PNG of so many images; all get the size of the first.
-///
-/// # Errors
-/// The operating system's, those of the images; there is none.
-pub fn animate<W: Write>(
-    w: W,
-    count: usize,
-    images: impl Iterator<Item = io::Result<Image>>,
-) -> io::Result<()> {
-    let mut writer = None;
-    let mut size = (0, 0);
-    let mut w = Some(w);
-    for image in images {
-        let image = image?;
-        let writer = match &mut writer {
-            Some(writer) => writer,
-            empty => {
-                let Some(w) = w.take() else { break };
-                size = (image.width, image.height);
-                let mut encoder = png::Encoder::new(w, size.0 as u32, size.1 as u32);
-                encoder.set_color(png::ColorType::Rgb);
-                encoder.set_depth(png::BitDepth::Eight);
-                encoder
-                    .set_animated(count as u32, 0)
-                    .map_err(io::Error::other)?;
-                encoder
-                    .set_frame_delay(DELAY, 1000)
-                    .map_err(io::Error::other)?;
-                empty.insert(encoder.write_header().map_err(io::Error::other)?)
-            }
-        };
-        let pixels = image.of_size(size);
-        writer
-            .write_image_data(pixels.as_flattened())
-            .map_err(io::Error::other)?;
-    }
-    match writer {
-        Some(writer) => writer.finish().map_err(io::Error::other),
-        None => Err(invalid("a film has frames".into())),
-    }
 }
 
 /// Numbers of a frame that wait, component after component.

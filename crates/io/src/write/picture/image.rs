@@ -116,7 +116,7 @@ impl Image {
                 } else {
                     0.0
                 };
-                let distance = (px - along * dx).hypot(py - along * dy);
+                let distance = libm::hypot(px - along * dx, py - along * dy);
                 self.blend(x, y, color, (0.5 * width + 0.5 - distance).clamp(0.0, 1.0));
             }
         }

@@ -2,7 +2,7 @@
 
 /// The largest of 1, 2, 5 × 10ⁿ that is not above `value` (positive, finite).
 pub fn round_down(value: f64) -> f64 {
-    let power = 10f64.powf(value.log10().floor());
+    let power = libm::pow(10f64, libm::log10(value).floor());
     let digit = [5.0, 2.0, 1.0]
         .into_iter()
         .find(|d| d * power <= value * (1.0 + 1e-9));
@@ -24,7 +24,7 @@ pub fn number(value: f64) -> String {
         let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
         return format!("{}e{exponent}", trimmed(digits));
     }
-    let decimals = (3 - size.log10().floor() as i32).clamp(0, 9) as usize;
+    let decimals = (3 - libm::log10(size).floor() as i32).clamp(0, 9) as usize;
     trimmed(&format!("{value:.decimals$}")).to_string()
 }
 

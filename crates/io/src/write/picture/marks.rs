@@ -181,7 +181,7 @@ fn spread(reference: &[Point], members: &[usize], dimension: usize) -> Vec<usize
     }
     match off {
         false => chosen,
-        true => apart(reference, members, ALONG),
+        true => spread_out(reference, members, ALONG),
     }
 }
 
@@ -213,7 +213,7 @@ fn nearest(reference: &[Point], members: &[usize], at: &Point) -> usize {
 }
 
 /// So many points of a set, each the one that is furthest from those before.
-fn apart(reference: &[Point], members: &[usize], count: usize) -> Vec<usize> {
+fn spread_out(reference: &[Point], members: &[usize], count: usize) -> Vec<usize> {
     let mut chosen = vec![members[0]];
     let mut far: Vec<f64> = vec![f64::INFINITY; members.len()];
     while chosen.len() < count.min(members.len()) {
@@ -338,7 +338,7 @@ pub fn draw(
     for mark in loads {
         let Some(from) = place(mark) else { continue };
         let toward = view.camera.project(mark.toward);
-        let length = toward[0].hypot(toward[1]);
+        let length = libm::hypot(toward[0], toward[1]);
         if length > 1e-6 * mark.size && length.is_finite() {
             arrow(image, from, [toward[0] / length, -toward[1] / length]);
         }

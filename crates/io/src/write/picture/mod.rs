@@ -4,6 +4,7 @@
 //! `rigid` is what rigid bodies look like and `solid` draws them, `marks` and `arrows` are drawn over it, `foot` below; `chain` plots 1-D;
 //! `image` is what they draw on; `film` keeps frames.
 
+pub mod animate;
 pub mod arrows;
 mod body;
 mod camera;
@@ -26,6 +27,7 @@ use std::path::Path;
 
 use peridyne::observe::Snapshot;
 
+use self::animate::FilmFormat;
 use self::arrows::Arrows;
 use self::image::{Align, Font, GREY, INK, Image};
 use self::marks::Marks;
@@ -55,16 +57,16 @@ pub struct PictureOptions {
     pub width: usize,
     /// `None`: what the run is [about](About).
     pub field: Option<String>,
-    /// `x`, `xy`, …; magnitudes when left out.
+    /// `x`, `xy`, …; magnitudes by default.
     pub component: Option<String>,
-    /// Displacements are drawn so many times as large; chosen when left out.
+    /// Displacements are drawn so many times as large; chosen by default.
     pub scale: Option<f64>,
-    /// What the ends of the colours mean, in computed numbers; those of the values when left out.
+    /// What the ends of the colours mean, in computed numbers; those of the values by default.
     pub range: Option<[f64; 2]>,
     /// A vector field that is drawn as arrows, too.
     pub arrows: Option<String>,
-    /// All frames as an animated PNG, too.
-    pub film: bool,
+    /// All frames as a film, too.
+    pub film: Option<FilmFormat>,
     /// Without step and time: an equilibrium has none.
     pub still: bool,
     pub marks: Marks,
@@ -83,7 +85,7 @@ impl Default for PictureOptions {
             scale: None,
             range: None,
             arrows: None,
-            film: false,
+            film: None,
             still: false,
             marks: Marks::default(),
         }
@@ -116,7 +118,7 @@ impl PictureOptions {
             scale: None,
             range: None,
             arrows: None,
-            film: false,
+            film: None,
             still: true,
             marks: Marks::default(),
             ..self.clone()

@@ -1,10 +1,10 @@
 //! Rigid bodies in pictures: their surfaces, and where they are in a frame.
 
-use peridyne::condition::rigid::Rigid;
+use peridyne::boundary_condition::rigid::Rigid;
 use peridyne::space::rigid::RigidShape;
 use peridyne::space::rotation::{Axes, Quaternion, times};
 use peridyne::space::{Point, cross, length};
-use peridyne::spec::IndenterSpec;
+use peridyne::spec::RigidBodySpec;
 use peridyne::state::{Archive, Owner};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -142,7 +142,7 @@ impl Placed {
     }
 
     /// At a time, of one that is moved; of a free one where it begins.
-    pub fn at(spec: &IndenterSpec, dimension: usize, time: f64) -> Placed {
+    pub fn at(spec: &RigidBodySpec, dimension: usize, time: f64) -> Placed {
         let mut body = Rigid::<3>::new(spec);
         body.place(time);
         Placed {
@@ -240,7 +240,7 @@ fn cylinder(radius: f64, half: f64, axis: &Point) -> Surface {
     let p = aside(axis);
     let q = cross(axis, &p);
     let at = |n: usize, end: f64| -> Point {
-        let (sine, cosine) = (std::f64::consts::TAU * n as f64 / SIDES as f64).sin_cos();
+        let (sine, cosine) = libm::sincos(std::f64::consts::TAU * n as f64 / SIDES as f64);
         std::array::from_fn(|a| radius * (cosine * p[a] + sine * q[a]) + end * axis[a])
     };
     let mut corner = vec![axis.map(|c| -half * c), axis.map(|c| half * c)];

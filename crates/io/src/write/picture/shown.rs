@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(range("stress", -3.0, -0.1), [-3.0, 0.0]);
         assert_eq!(range("density", 9.0, 10.0), [9.0, 10.0]);
         assert_eq!(range("energy", 0.0, 0.0), [0.0, 1.0]);
-        assert_eq!(range("mark", 4.0, 4.0), [0.0, 4.0]);
+        assert_eq!(range("block", 4.0, 4.0), [0.0, 4.0]);
         assert_eq!(
             range("nothing", f64::INFINITY, f64::NEG_INFINITY),
             [0.0, 1.0]

@@ -458,8 +458,14 @@ fn in_a_film_key_scale_and_camera_stand_still_and_bodies_move() {
         pass(&mut film, &mut Archive::load(&mut state.as_slice()));
         film.rewind(&s, &options).unwrap();
     }
-    film.finish(&path, "energy_density", &options, 1.0, None)
-        .unwrap();
+    film.finish(
+        &path,
+        "energy_density",
+        &options,
+        1.0,
+        (animate::FilmFormat::Png, None),
+    )
+    .unwrap();
     let all = frames(&path);
     assert_eq!(all.len(), 4);
     // the foot, with lengths and colours, is the same in all
@@ -504,4 +510,49 @@ fn a_stretched_plate_shows_no_gaps() {
         let body: Vec<usize> = (0..row.len()).filter(|c| row[*c] != WHITE).collect();
         assert_eq!(body[body.len() - 1] - body[0] + 1, body.len());
     }
+}
+
+/// What a GIF shows, frame after frame, as RGB.
+fn shown_by_gif(bytes: &[u8]) -> Vec<Vec<[u8; 3]>> {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut decoder = options.read_info(bytes).unwrap();
+    let mut all = vec![];
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        assert_eq!((frame.delay, frame.left, frame.top), (8, 0, 0));
+        let pixels = frame.buffer.chunks_exact(4).map(|p| [p[0], p[1], p[2]]);
+        all.push(pixels.collect());
+    }
+    all
+}
+
+#[test]
+fn a_gif_of_few_colours_is_exact_and_one_of_many_is_near() {
+    let image = |frame: usize, colours: usize| {
+        let pixel = |n: usize| {
+            let c = (n * 7 + frame) % colours;
+            [(c % 251) as u8, (c / 251 * 40) as u8, (255 - c % 200) as u8]
+        };
+        Image {
+            width: 200,
+            height: 150,
+            pixels: (0..30_000).map(pixel).collect(),
+        }
+    };
+    for (colours, most) in [(200, 0.0), (1100, 6.0)] {
+        let frames: Vec<Image> = (0..5).map(|n| image(n, colours)).collect();
+        let mut bytes = vec![];
+        let all = frames.iter().cloned().map(Ok);
+        animate::animate(&mut bytes, animate::FilmFormat::Gif, 5, all).unwrap();
+        let shown = shown_by_gif(&bytes);
+        assert_eq!(shown.len(), 5);
+        for (frame, shown) in frames.iter().zip(&shown) {
+            let each = { frame.pixels.iter().zip(shown) }
+                .flat_map(|(a, b)| (0..3).map(|c| f64::from(a[c].abs_diff(b[c]))));
+            let mean = each.sum::<f64>() / (3.0 * frame.pixels.len() as f64);
+            assert!(mean <= most, "{colours}: {mean}");
+        }
+    }
+    let none = animate::animate(vec![], animate::FilmFormat::Gif, 0, std::iter::empty());
+    assert!(none.is_err());
 }

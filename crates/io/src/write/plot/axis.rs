@@ -29,9 +29,7 @@ impl Scale {
             return Err(invalid(format!("there is no {what} value to plot")));
         }
         if log {
-            let pad = (high / low)
-                .powf(margin)
-                .max(if low == high { 2.0 } else { 1.0 });
+            let pad = libm::pow(high / low, margin).max(if low == high { 2.0 } else { 1.0 });
             (low, high) = (low / pad, high * pad);
         } else {
             // round-off around one value is no range
@@ -49,7 +47,7 @@ impl Scale {
     /// Part of the axis before the value; not finite where the value has no place.
     pub fn part(&self, value: f64) -> f64 {
         if self.log {
-            (value / self.low).ln() / (self.high / self.low).ln()
+            libm::log(value / self.low) / libm::log(self.high / self.low)
         } else {
             (value - self.low) / (self.high - self.low)
         }
@@ -63,8 +61,8 @@ impl Scale {
         }
         if self.log {
             let (first, last) = (
-                self.low.log10().ceil() as i32,
-                self.high.log10().floor() as i32,
+                libm::log10(self.low).ceil() as i32,
+                libm::log10(self.high).floor() as i32,
             );
             if last > first {
                 let every = ((last - first) as usize / wanted.max(1) + 1) as i32;
@@ -77,7 +75,7 @@ impl Scale {
         let step = label::round_down(span / wanted.max(1) as f64 * 2.0).max(f64::MIN_POSITIVE);
         let first = (self.low / step - 1e-9).ceil() as i64;
         let last = (self.high / step + 1e-9).floor() as i64;
-        let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
+        let decimals = (-libm::log10(step).floor()).clamp(0.0, 12.0) as usize;
         let largest = self.high.abs().max(self.low.abs());
         (first..=last)
             .map(|k| k as f64 * step)

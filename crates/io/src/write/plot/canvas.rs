@@ -123,7 +123,10 @@ impl Outline {
         };
         let corner = |k: usize| {
             let angle = turn + std::f64::consts::TAU * k as f64 / corners as f64;
-            [at[0] + radius * angle.sin(), at[1] - radius * angle.cos()]
+            [
+                at[0] + radius * libm::sin(angle),
+                at[1] - radius * libm::cos(angle),
+            ]
         };
         (0..corners).map(corner).collect()
     }

@@ -48,7 +48,7 @@ impl Frame {
                 Some(piece) if open => {
                     let near = piece
                         .last()
-                        .is_some_and(|p| (p[0] - b[0]).hypot(p[1] - b[1]) < 0.3);
+                        .is_some_and(|p| libm::hypot(p[0] - b[0], p[1] - b[1]) < 0.3);
                     if !near || !whole {
                         piece.push(b);
                     }

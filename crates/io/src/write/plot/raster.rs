@@ -76,7 +76,7 @@ fn path(image: &mut Image, points: &[[f64; 2]], width: f64, color: Color, dash: 
             image.line(from, to, width, color);
             continue;
         };
-        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         if !(length > 0.0 && length.is_finite()) {
             continue;
         }
@@ -108,7 +108,7 @@ fn marker(image: &mut Image, at: [f64; 2], radius: f64, outline: Outline, color:
                     y as f64 + (f64::from(k / 4) + 0.5) / 4.0,
                 ];
                 match outline {
-                    Outline::Disc => (p[0] - at[0]).hypot(p[1] - at[1]) <= radius,
+                    Outline::Disc => libm::hypot(p[0] - at[0], p[1] - at[1]) <= radius,
                     Outline::Polygon { .. } => contains(&points, p),
                 }
             });

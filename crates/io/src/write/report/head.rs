@@ -27,9 +27,9 @@ pub fn facts(run: &Value, setting: &Setting, history: &[Column]) -> Vec<Value> {
         d => format!("in {d}-D"),
     };
     fact(word, points.into(), "#", dimension);
-    let bonds = some("directed_bonds");
+    let bonds = some("bonds");
     if !setting.atoms {
-        fact("Bonds", bonds.into(), "#", "counted from both ends".into());
+        fact("Bonds", bonds.into(), "#", String::new());
     }
     let steps = number("steps");
     let last = |name: &str| {
@@ -49,16 +49,16 @@ pub fn facts(run: &Value, setting: &Setting, history: &[Column]) -> Vec<Value> {
         fact("Time", time.into(), &units.time, more);
         fact("Time step", time_step.into(), &units.time, String::new());
     }
-    if let (Some(broken), Some(bonds)) = (some("broken_directed_bonds"), bonds) {
+    if let (Some(broken), Some(bonds)) = (some("broken_bonds"), bonds) {
         let part = format!("{} % of all", digits(100.0 * broken / bonds));
         fact("Broken bonds", broken.into(), "#", part);
     }
     if let Some(fragments) = some("fragments") {
         fact("Fragments", fragments.into(), "#", String::new());
     }
-    if let Some(residual) = run["energy"]["residual"].as_f64() {
+    if let Some(residual) = run["energy"]["balance_error"].as_f64() {
         let of = |key: &str| run["energy"][key].as_f64().unwrap_or(0.0).abs();
-        let given = of("initial") + of("work_conditions") + of("work_indenter");
+        let given = of("initial") + of("work_boundary_conditions") + of("work_rigid_bodies");
         if given > 0.0 {
             let part = 100.0 * residual.abs() / given;
             let text = match part < 0.001 {
@@ -66,7 +66,7 @@ pub fn facts(run: &Value, setting: &Setting, history: &[Column]) -> Vec<Value> {
                 false => format!("{} %", digits(part)),
             };
             let more = "of the energy that came in".to_string();
-            fact("Balance misses", text.into(), "", more);
+            fact("Energy balance error", text.into(), "", more);
         }
     }
     let threads = run["threads"].as_u64();
@@ -110,7 +110,7 @@ pub fn cite(run: &Value) -> String {
 
 /// The field that is shown first: damage where bonds broke, displacements in statics and of modes, speed of atoms.
 pub fn first(scene: &Scene, run: &Value, setting: &Setting) -> String {
-    let broken = run["broken_directed_bonds"].as_u64().unwrap_or(0) > 0;
+    let broken = run["broken_bonds"].as_u64().unwrap_or(0) > 0;
     let mut wanted = vec![];
     if scene.kind == "run" && broken {
         wanted.push("damage");

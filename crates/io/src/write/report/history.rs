@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::short;
 use crate::read::ReadError;
-use crate::write::history::ledger_columns;
+use crate::write::history::{ledger_columns, today};
 
 /// Rows of a report.
 const ROWS: usize = 2000;
@@ -15,14 +15,14 @@ const OWN: [&str; 8] = [
     "step",
     "time",
     LOAD,
-    "broken_directed_bonds",
+    "broken_bonds",
     "iterations",
     "solver_residual",
     "temperature",
     "pressure",
 ];
 /// What the time of statics is called.
-pub const LOAD: &str = "part of the load";
+pub const LOAD: &str = "load factor";
 
 /// A column: name, unit, a number for each row.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +69,7 @@ pub(crate) fn column(cell: &str) -> Column {
         None => (cell, ""),
     };
     Column {
-        name: name.into(),
+        name: today(name).into(),
         unit: unit.into(),
         values: vec![],
     }
@@ -130,12 +130,8 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
         plot("Extremes", &["min", "max"], "u");
         plot("Total variation", &["total_variation"], "");
     } else {
-        plot("What the energy balance misses", &["energy residual"], "");
-        plot(
-            "Broken bonds, from both ends",
-            &["broken_directed_bonds"],
-            "",
-        );
+        plot("Energy balance error", &["energy balance error"], "");
+        plot("Broken bonds", &["broken_bonds"], "");
         plot("Temperature", &["temperature"], "");
         plot("Pressure", &["pressure"], "");
     }
@@ -177,7 +173,7 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
             presets.push(json!({"title": format!("{} over {}", y.name.replace('_', " "), x.name.replace('_', " ")), "x": x.name, "y": y.name}));
         }
     }
-    for y in ["energy residual", "kinetic energy"] {
+    for y in ["energy balance error", "kinetic energy"] {
         if let (Some(x), Some(c)) = (over, named(y)) {
             presets.extend(varies(&c).then(|| json!({"title": y, "x": x, "y": y})));
         }

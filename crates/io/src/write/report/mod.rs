@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::atomic::{WriteError, write_file};
-use super::run_json::Setting;
+use super::run_json::{self, Setting};
 use crate::read::{ReadError, source, text_of};
 use page::{Counted, Texts};
 use scene::Scene;
@@ -58,6 +58,7 @@ pub fn write(dir: &Path) -> Result<Made, ReportError> {
     let (text, _) = text_of(&path).map_err(|_| ReportError::NoRun(dir.into()))?;
     let mut run: Value =
         serde_json::from_str(&text).map_err(|e| ReadError::file(&path, e.to_string()))?;
+    run_json::today(&mut run);
     let setting = run.as_object_mut().and_then(|r| r.remove("setting"));
     let setting = match setting {
         Some(value) => {
@@ -137,7 +138,7 @@ impl Report {
                 if let Ok(own) = Path::new(&e.file).strip_prefix(dir) {
                     e.file = own.display().to_string();
                 }
-                notes.push(format!("Frames of dumps are left out: {e}"));
+                notes.push(format!("Frames of dumps are not drawn: {e}"));
             }
         }
         if has("points.pvd") {
@@ -183,7 +184,7 @@ impl Report {
         let drawn = scenes.is_empty() || run["kind"] == "conservation_law";
         let own = { setting.files.iter() }.filter(|f| drawn && f.ends_with(".png"));
         // films move, which who reads did not ask for
-        let still = setting.slices.iter().filter(|f| !f.ends_with("_film.png"));
+        let still = setting.slices.iter().filter(|f| !f.contains("_film."));
         for name in own.chain(still) {
             let path = dir.join(name);
             let Ok(bytes) = source::bytes(&path) else {
@@ -259,7 +260,7 @@ impl Report {
             let told = json!({
                 "label": label, "title": title, "first": head::first(scene, &self.run, &self.setting),
                 "statics": self.setting.statics, "length": self.setting.units.length,
-                "balls": if scene.kind == "run" { &self.setting.indenters[..] } else { &[] },
+                "balls": if scene.kind == "run" { &self.setting.rigid_bodies[..] } else { &[] },
                 "marks": if scene.kind == "run" { json!(self.setting.marks) } else { Value::Null },
                 "axis": match (scene.kind, scene.stepped) { ("modes", _) => "frequency", (_, true) => "step", (_, false) => "time" },
                 "unit": match (scene.kind, &*self.setting.units.time) {

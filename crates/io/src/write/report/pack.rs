@@ -263,7 +263,10 @@ fn packed(
     let mut made = told.clone();
     let frame = |f: &usize| json!({"step": scene.frames[*f].0, "value": scene.frames[*f].1});
     // smaller cubes would leave gaps between fewer points
-    let grown = (scene.points as f64 / keep.len().max(1) as f64).powf(1.0 / scene.dimension as f64);
+    let grown = libm::pow(
+        scene.points as f64 / keep.len().max(1) as f64,
+        1.0 / scene.dimension as f64,
+    );
     let more = json!({
         "kind": scene.kind, "dimension": scene.dimension, "points": keep.len(), "stride": rung.stride,
         "spacing": scene.spacing * grown, "atoms": scene.atoms, "reference": reference, "moved": moved, "fields": fields,

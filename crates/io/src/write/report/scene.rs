@@ -226,7 +226,7 @@ impl Maker {
 fn spacing(extent: &[f64], points: usize) -> f64 {
     let d = extent.len() as f64;
     let volume: f64 = extent.iter().filter(|e| **e > 0.0).product();
-    let mean = (volume / points.max(1) as f64).powf(1.0 / d);
+    let mean = libm::pow(volume / points.max(1) as f64, 1.0 / d);
     if mean > 0.0 && mean.is_finite() {
         mean
     } else {

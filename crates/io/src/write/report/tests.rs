@@ -28,7 +28,7 @@ fn snapshot(step: u64, points: usize) -> Snapshot {
             ),
         ),
         (
-            "mark",
+            "block",
             Values::Integers((0..points).map(|i| i as i32 % 5 - 1).collect()),
         ),
     ];
@@ -78,8 +78,8 @@ fn folder(dir: &Path, points: usize, frames: u64) -> Vec<Snapshot> {
     }
     let run = json!({
         "version": "0.1.0", "title": "a </script> b", "deck": "a.toml", "deck_hash": "sha256:00", "status": "done", "particles": points,
-        "directed_bonds": 100, "steps": frames, "time_step": 1e-8, "broken_directed_bonds": 4, "fragments": 1, "threads": 1,
-        "energy": {"kinetic": 1.0, "strain": 0.5, "initial": 1.4, "residual": 0.1}, "warnings": ["a <warning>"],
+        "bonds": 50, "steps": frames, "time_step": 1e-8, "broken_bonds": 2, "fragments": 1, "threads": 1,
+        "energy": {"kinetic": 1.0, "strain": 0.5, "initial": 1.4, "balance_error": 0.1}, "warnings": ["a <warning>"],
         "setting": setting(),
     });
     fs::write(dir.join("run.json"), run.to_string()).unwrap();
@@ -137,7 +137,7 @@ fn positions_and_values_are_those_of_the_frames() {
         };
         near(&field("damage")["blocks"][f], s.damage());
         let mark: Vec<f64> = (0..400).map(|i| f64::from(i % 5 - 1)).collect();
-        assert_eq!(numbers(&html, &field("mark")["blocks"][f], 400), mark);
+        assert_eq!(numbers(&html, &field("block")["blocks"][f], 400), mark);
         assert_eq!(scene["frames"][f]["step"], s.step);
     }
     assert_eq!(meta["history"]["columns"][2]["values"][3], 3.0);

@@ -16,7 +16,7 @@ fn frame(step: u64) -> Snapshot {
     put(&mut s, "stress", Values::Symmetric(vec![six; 3]));
     let nine = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, by];
     put(&mut s, "gradient", Values::Tensors(vec![nine; 3]));
-    put(&mut s, "mark", Values::Integers(vec![-1, 0, step as i32]));
+    put(&mut s, "block", Values::Integers(vec![-1, 0, step as i32]));
     let moved = s.displacement().iter().map(|u| u.map(|x| x + by)).collect();
     put(&mut s, "displacement", Values::Vectors(moved));
     s

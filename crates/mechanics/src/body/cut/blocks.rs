@@ -20,17 +20,19 @@ impl<const D: usize> Body<D> {
                 }
                 points
             }
-            Layout::Cloud(_) => {
-                let all = self.points();
-                let of = |block: usize| (all - block * CELLS).min(CELLS);
-                (0..all.div_ceil(CELLS)).map(of).collect()
-            }
+            Layout::Cloud(_) => of_points(self.points()),
             Layout::Several(pieces) => {
                 let all = pieces.iter().flat_map(|p| p.body.points_of_blocks());
                 all.collect()
             }
         }
     }
+}
+
+/// How many points each block of a cloud has.
+pub(super) fn of_points(points: usize) -> Vec<usize> {
+    let of = |block: usize| (points - block * CELLS).min(CELLS);
+    (0..points.div_ceil(CELLS)).map(of).collect()
 }
 
 /// Blocks of all ranks, in their order, with as many points each as whole blocks allow. Ranks beyond the number of blocks have none.

@@ -1,6 +1,6 @@
 //! The part of a lattice that a rank has, of a whole body, or of a region of which no rank has all sites.
 
-use super::blocks::{CELLS, by_ranks};
+use super::blocks::CELLS;
 use crate::body::exchange::{Copies, Exchange};
 use crate::body::grid::Ends;
 use crate::body::subdomain::{Subdomain, numbers};
@@ -186,44 +186,50 @@ impl<const D: usize> Body<D> {
             ..part
         }
     }
+}
 
-    /// This rank's part of the body on all sites that are found; else as [`Body::on_lattice`] and [`Body::subdomain_of`] say. Each rank looks at a part of the
-    /// cells, tells the others how many points there are in each block, and keeps its own: no rank ever has all of them. All ask at once.
-    ///
-    /// # Errors
-    /// Of all ranks the same: there are no sites, or more than can be numbered; a period is shorter than a bond.
-    pub fn shared_lattice(
-        comm: &Arc<Comm>,
-        search: &Search,
-        reach: usize,
-        periodic: [bool; D],
+/// A body on the sites of a lattice of which all ranks know how many points each block has.
+pub(super) struct CountedLattice<const D: usize> {
+    search: Search,
+    whole: Grid<D>,
+    pub points: Vec<usize>,
+    pub period: [Option<f64>; D],
+    volume: f64,
+}
+
+impl<const D: usize> CountedLattice<D> {
+    /// Errors as of [`Counted::lattice`](super::Counted::lattice).
+    pub fn new(
+        comm: &Comm,
+        search: Search,
+        (reach, periodic): (usize, [bool; D]),
         volume: f64,
-    ) -> Result<Body<D>, BuildError> {
+    ) -> Result<Self, BuildError> {
         let layers = share_of(search.layers(), comm);
         let mut ends = Ends::none();
         search.each(layers.clone(), |q| ends.reach(q));
-        let all: Vec<Vec<i32>> = every(comm, &[ends.low, ends.high].concat());
-        for of in &all {
-            let (low, high) = of.split_at(D);
-            for a in 0..D {
-                ends.low[a] = ends.low[a].min(low[a]);
-                ends.high[a] = ends.high[a].max(high[a]);
-            }
-        }
-        if ends.low[0] > ends.high[0] {
-            return Err(search.empty());
-        }
-        let whole = &Grid::<D>::around(*search.lattice(), &ends, reach, periodic)?;
-        let points = points_of_blocks(whole, search, layers, comm);
-        let count: usize = points.iter().sum();
-        if count > u32::MAX as usize {
-            let message = format!("{count} points are more than 2³² − 1");
-            return Err(BuildError::too_many("body", message));
-        }
-        let blocks = by_ranks(&points, comm.ranks());
+        let whole = grid_of(comm, &search, ends, (reach, periodic))?;
+        let points = points_of_blocks(&whole, &search, layers, comm);
+        numbered(points.iter().sum())?;
+        Ok(CountedLattice {
+            period: whole.period(periodic),
+            search,
+            whole,
+            points,
+            volume,
+        })
+    }
+
+    pub fn spacing(&self) -> f64 {
+        self.whole.lattice().distance()
+    }
+
+    /// The part of a rank, of all of these blocks.
+    pub fn part(&self, blocks: &[Range<usize>], comm: &Arc<Comm>) -> Body<D> {
+        let (whole, search, points) = (&self.whole, &self.search, &self.points);
         let own = &blocks[comm.rank()];
         let first: usize = points[..own.start].iter().sum();
-        let shares = &Share::of_blocks(whole, &blocks);
+        let shares = &Share::of_blocks(whole, blocks);
         let share = &shares[comm.rank()];
         let mut slots = vec![];
         search.each(layers_of(whole, &share.own), |q| {
@@ -236,12 +242,41 @@ impl<const D: usize> Body<D> {
             whole,
             shares,
             comm,
-            period: whole.period(periodic),
-            volume,
+            period: self.period,
+            volume: self.volume,
         };
         let holds = |b: usize, cell: usize| search.contains(whole.site(b, cell));
-        Ok(part.body(count, (ids, slots), &holds))
+        part.body(points.iter().sum(), (ids, slots), &holds)
     }
+}
+
+/// The grid of a search, of which this rank has seen so much; without sites.
+pub(super) fn grid_of<const D: usize>(
+    comm: &Comm,
+    search: &Search,
+    mut ends: Ends<D>,
+    (reach, periodic): (usize, [bool; D]),
+) -> Result<Grid<D>, BuildError> {
+    for of in every(comm, &[ends.low, ends.high].concat()) {
+        let (low, high) = of.split_at(D);
+        for a in 0..D {
+            ends.low[a] = ends.low[a].min(low[a]);
+            ends.high[a] = ends.high[a].max(high[a]);
+        }
+    }
+    if ends.low[0] > ends.high[0] {
+        return Err(search.empty());
+    }
+    Grid::around(*search.lattice(), &ends, reach, periodic)
+}
+
+/// So many points, if they can be numbered.
+pub(super) fn numbered(count: usize) -> Result<usize, BuildError> {
+    if count > u32::MAX as usize {
+        let message = format!("{count} points are more than 2³² − 1");
+        return Err(BuildError::too_many("body", message));
+    }
+    Ok(count)
 }
 
 /// How many points each block of a grid has, of which this rank looks at those in these layers.
@@ -249,7 +284,7 @@ fn points_of_blocks<const D: usize>(
     whole: &Grid<D>,
     search: &Search,
     layers: Range<i32>,
-    comm: &Arc<Comm>,
+    comm: &Comm,
 ) -> Vec<usize> {
     // the first block, then the points of it and of those after it
     let mut own: Vec<u64> = vec![];
@@ -287,14 +322,14 @@ fn layers_of<const D: usize>(whole: &Grid<D>, cells: &Range<usize>) -> Range<i32
 }
 
 /// What this rank looks at of them.
-fn share_of(layers: Range<i32>, comm: &Comm) -> Range<i32> {
+pub(super) fn share_of(layers: Range<i32>, comm: &Comm) -> Range<i32> {
     let (start, all) = (i64::from(layers.start), layers.len() as i64);
     let end = |rank: usize| (start + all * rank as i64 / comm.ranks() as i64) as i32;
     end(comm.rank())..end(comm.rank() + 1)
 }
 
 /// Numbers of each rank, in their order.
-fn every<T: bytemuck::Pod>(comm: &Comm, own: &[T]) -> Vec<Vec<T>> {
+pub(super) fn every<T: bytemuck::Pod>(comm: &Comm, own: &[T]) -> Vec<Vec<T>> {
     let all = comm.all(cast_slice(own));
     let all = all.unwrap_or_else(|failure| comm.end(failure));
     all.iter().map(|bytes| numbers(bytes)).collect()
@@ -302,11 +337,25 @@ fn every<T: bytemuck::Pod>(comm: &Comm, own: &[T]) -> Vec<Vec<T>> {
 
 #[cfg(test)]
 mod tests {
+    use crate::body::cut::Counted;
     use crate::body::{Body, Layout};
+    use crate::error::BuildError;
     use crate::space::fill::{Search, fill};
     use crate::space::lattice::{Lattice, LatticeKind};
     use crate::space::region::Region;
+    use peridyne_comm::Comm;
     use peridyne_comm::on_threads;
+
+    /// This rank's part of a lattice of which no rank has all.
+    fn shared<const D: usize>(
+        comm: &Arc<Comm>,
+        search: Search,
+        reach: (usize, [bool; D]),
+        volume: f64,
+    ) -> Result<Body<D>, BuildError> {
+        let counted = Counted::lattice(comm, search, reach, volume)?;
+        Ok(Counted::parts(&[counted], comm, 0.0).remove(0))
+    }
     use std::sync::Arc;
 
     /// The parts that ranks make of a region are those of the whole body on its sites.
@@ -332,7 +381,7 @@ mod tests {
                 let comm = Arc::new(comm);
                 let cut = whole.subdomain_of(&comm, 0.0);
                 let search = Search::new(&lattice, &region).unwrap();
-                let made = Body::shared_lattice(&comm, &search, reach, periodic, 0.25).unwrap();
+                let made = shared(&comm, search, (reach, periodic), 0.25).unwrap();
                 let name = format!("{kind:?} {periodic:?} rank {} of {ranks}", comm.rank());
                 let [(a, of_a), (b, of_b)] =
                     [&cut, &made].map(|body| (body, body.subdomain().unwrap()));
@@ -388,7 +437,7 @@ mod tests {
         for ranks in [1, 3] {
             on_threads(ranks, |comm| {
                 let search = Search::new(&lattice, &region).unwrap();
-                let made = Body::<2>::shared_lattice(&Arc::new(comm), &search, 3, [false; 2], 1.0);
+                let made = shared::<2>(&Arc::new(comm), search, (3, [false; 2]), 1.0);
                 assert_eq!(made.unwrap_err().message, said.message);
             });
         }

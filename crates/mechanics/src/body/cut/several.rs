@@ -1,11 +1,13 @@
 //! The part of several bodies that a rank has: its parts of each, side by side. Of some it may have nothing.
 
+use super::lattice;
 use crate::body::exchange::Copies;
 use crate::body::several::Piece;
-use crate::body::subdomain::{Subdomain, numbers};
+use crate::body::subdomain::Subdomain;
 use crate::body::{Body, Exchange, Identity, Layout, Values};
 use crate::execute::lane::TILE;
-use bytemuck::{Pod, cast_slice};
+use crate::space::Point;
+use bytemuck::Pod;
 use peridyne_comm::Comm;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -19,107 +21,93 @@ impl<const D: usize> Body<D> {
         reach: f64,
         beside: &[u32],
     ) -> Body<D> {
-        let (mut pieces, mut slots) = (vec![], vec![]);
-        let (mut ids, mut of_slots) = (vec![], vec![]);
-        let (mut passed, mut first, mut before) = (0, 0, 0);
-        for whole in self.pieces() {
-            let count = whole.body.points_of_blocks().len();
-            let own = |x: usize| x.clamp(passed, passed + count) - passed;
-            let own = blocks.iter().map(|of| own(of.start)..own(of.end));
-            let body = whole.body.part(&own.collect::<Vec<_>>(), comm, reach);
-            let of = body.subdomain().expect("made of a part of a body");
-            ids.extend(of.ids().iter().map(|id| before + id));
-            of_slots.extend(of.of_slots().iter().map(|id| before + id));
-            slots.extend(body.slots.iter().map(|s| first as u32 + s));
-            let next = first + body.len;
-            pieces.push(Piece { first, body });
-            (passed, first) = (passed + count, next);
-            before += whole.body.points() as u32;
-        }
-        let copied = { pieces.iter() }.flat_map(|p| p.body.exchange.copies().map(|s| p.first + s));
-        let copied = copied.map(|slot| of_slots[slot]).collect();
-        let more = self.beside(comm, (&ids, &slots, copied), beside, &mut of_slots);
-        let of_pieces = pieces.iter().map(|p| (p.first, &p.body.exchange));
-        let exchange = Exchange::joined(of_pieces.chain(more.iter().map(|(_, of)| (0, of))));
-        let len = of_slots.len();
-        let part = Spread {
+        let counts = self
+            .pieces()
+            .iter()
+            .map(|p| p.body.points_of_blocks().len());
+        let parts = { self.pieces().iter().zip(of_each(counts, blocks)) }
+            .map(|(whole, own)| whole.body.part(&own, comm, reach));
+        let part = Body::several(parts.collect()).beside(beside);
+        let of = part.subdomain().expect("made of parts of bodies");
+        let spread = Spread {
             whole: self,
-            ids: &ids,
-            slots: &slots,
-            exchange: &exchange,
-            len,
+            ids: of.ids(),
+            part: &part,
         };
         let (volume, density) = (
-            part.values(&self.volume, 0.0),
-            part.values(&self.density, 1.0),
+            spread.values(&self.volume, 0.0),
+            spread.values(&self.density, 1.0),
         );
         let (material, horizon) = (
-            part.column(&self.material, 0),
-            part.column(&self.horizon, 0.0),
+            spread.column(&self.material, 0),
+            spread.column(&self.horizon, 0.0),
         );
-        let mark = ids
-            .iter()
-            .filter_map(|id| self.mark.get(*id as usize).copied());
+        let mark = { of.ids().iter() }.filter_map(|id| self.mark.get(*id as usize).copied());
+        let mark = mark.collect();
         Body {
-            identity: Identity::new(),
-            len,
-            spacing: self.spacing,
             volume,
             density,
-            period: self.period,
             material,
             horizon,
-            mark: mark.collect(),
-            subdomain: Some(Arc::new(Subdomain::new(comm, ids, of_slots, self.points()))),
-            beside: more.map_or(vec![], |(beside, _)| beside),
-            exchange,
-            slots,
-            layout: Layout::Several(pieces),
+            mark,
+            ..part
         }
     }
 }
 
+/// Blocks of all ranks among those of each of several bodies that have so many, one after the other.
+pub(super) fn of_each(
+    counts: impl Iterator<Item = usize>,
+    blocks: &[Range<usize>],
+) -> impl Iterator<Item = Vec<Range<usize>>> {
+    let mut passed = 0;
+    counts.map(move |count| {
+        let own = |x: usize| x.clamp(passed, passed + count) - passed;
+        let own = blocks.iter().map(|of| own(of.start)..own(of.end)).collect();
+        passed += count;
+        own
+    })
+}
+
 impl<const D: usize> Body<D> {
-    /// Copies of those of these points (ids) that a part has neither of its own nor as copies of its bodies, behind all its slots: bodies of nothing but
-    /// copies, one for each of the several, and who has the originals. Nothing where no rank asks for any.
-    fn beside(
-        &self,
-        comm: &Arc<Comm>,
-        (ids, slots, mut copied): (&[u32], &[u32], Vec<u32>),
-        beside: &[u32],
-        of_slots: &mut Vec<u32>,
-    ) -> Option<(Vec<Piece<D>>, Exchange)> {
+    /// A part of several bodies with copies of those of these points (ids of all in their order, the same on all ranks) that it has neither of its own nor as
+    /// copies of its bodies, behind all its slots: bodies of nothing but copies, one for each of the several. All ranks ask at once, before points have
+    /// materials and horizons.
+    ///
+    /// # Panics
+    /// It is no part, and there are such points.
+    pub fn beside(mut self, beside: &[u32]) -> Body<D> {
         if beside.is_empty() {
-            return None;
+            return self;
         }
+        let of = self.subdomain.clone().expect("a part of several bodies");
+        let (comm, ids) = (of.comm(), of.ids());
         // who has which, and where
-        let own = { ids.iter().zip(slots) }.filter(|(id, _)| beside.binary_search(id).is_ok());
-        let own: Vec<u32> = own.flat_map(|(id, slot)| [*id, *slot]).collect();
-        let said = comm.all(cast_slice(&own));
-        let said = said.unwrap_or_else(|failure| comm.end(failure));
+        let own =
+            { ids.iter().zip(&self.slots) }.filter(|(id, _)| beside.binary_search(id).is_ok());
+        let own: Vec<[u32; 2]> = own.map(|(id, slot)| [*id, *slot]).collect();
+        let places = own.iter().map(|[_, slot]| self.position(*slot as usize));
+        let at = lattice::every(comm, &places.collect::<Vec<Point>>());
+        let said = lattice::every(comm, &own);
         let mut there = BTreeMap::new();
-        for (rank, bytes) in said.iter().enumerate() {
-            let words: Vec<u32> = numbers(bytes);
-            let each = words.as_chunks::<2>().0.iter();
-            there.extend(each.map(|[id, slot]| (*id, (rank, *slot as usize))));
+        for (rank, (said, at)) in said.iter().zip(at).enumerate() {
+            let each = said.iter().zip(at);
+            there.extend(each.map(|([id, slot], x)| (*id, (rank, *slot as usize, x))));
         }
+        let mut of_slots = of.of_slots().to_vec();
+        let copied = self.exchange.copies().map(|slot| of_slots[slot]);
+        let mut copied: Vec<u32> = copied.collect();
         copied.sort_unstable();
         let is_here = |id: &u32| ids.binary_search(id).is_ok() || copied.binary_search(id).is_ok();
         let (mut copies, mut pieces) = (Copies::new(comm.ranks()), vec![]);
-        let mut before = 0;
-        for whole in self.pieces() {
-            let next = before + whole.body.points() as u32;
-            let of_piece = |id: &&u32| (before..next).contains(*id) && !is_here(id);
+        for (whole, all) in self.pieces().iter().zip(self.ids()) {
+            let of_piece = |id: &&u32| all.contains(&(**id as usize)) && !is_here(id);
             let missing: Vec<u32> = beside.iter().filter(of_piece).copied().collect();
-            before = next;
             let first = of_slots.len();
-            for (n, id) in missing.iter().enumerate() {
-                let (rank, slot) = there[id];
-                copies.of_rank(rank, first + n, slot, first + n);
-            }
             let mut x: [Vec<f64>; D] = crate::array::from_fn(|_| vec![]);
-            for id in &missing {
-                let place = self.position(self.slots[*id as usize] as usize);
+            for (n, id) in missing.iter().enumerate() {
+                let (rank, slot, place) = there[id];
+                copies.of_rank(rank, first + n, slot, first + n);
                 (0..D).for_each(|a| x[a].push(place[a]));
             }
             of_slots.extend(missing);
@@ -129,7 +117,19 @@ impl<const D: usize> Body<D> {
             });
         }
         of_slots.resize(of_slots.len().next_multiple_of(TILE), 0);
-        Some((pieces, Exchange::among(comm, copies)))
+        let more = Exchange::among(comm, copies);
+        self.exchange = Exchange::joined([(0, &self.exchange), (0, &more)].into_iter());
+        self.len = of_slots.len();
+        for (of, nobody) in [(&mut self.volume, 0.0), (&mut self.density, 1.0)] {
+            if let Values::PerSlot(x) = of {
+                x.resize(self.len, nobody);
+                self.exchange.fill(x);
+            }
+        }
+        let subdomain = Subdomain::new(comm, ids.to_vec(), of_slots, of.points());
+        self.subdomain = Some(Arc::new(subdomain));
+        self.beside = pieces;
+        self
     }
 
     /// Copies at these places, of points like those of this body.
@@ -157,9 +157,7 @@ impl<const D: usize> Body<D> {
 struct Spread<'a, const D: usize> {
     whole: &'a Body<D>,
     ids: &'a [u32],
-    slots: &'a [u32],
-    exchange: &'a Exchange,
-    len: usize,
+    part: &'a Body<D>,
 }
 
 impl<const D: usize> Spread<'_, D> {
@@ -168,11 +166,11 @@ impl<const D: usize> Spread<'_, D> {
         if all.is_empty() {
             return vec![];
         }
-        let mut part = vec![nobody; self.len];
-        for (id, slot) in self.ids.iter().zip(self.slots) {
+        let mut part = vec![nobody; self.part.len];
+        for (id, slot) in self.ids.iter().zip(&self.part.slots) {
             part[*slot as usize] = all[self.whole.slots[*id as usize] as usize];
         }
-        self.exchange.fill(&mut part);
+        self.part.exchange.fill(&mut part);
         part
     }
 

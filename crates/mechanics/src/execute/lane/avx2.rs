@@ -37,7 +37,7 @@ impl Mul for F64x4 {
 
 #[target_feature(enable = "avx2,fma")]
 #[inline(never)]
-fn apart<P: Piece>(piece: P) -> P::Out {
+fn out_of_line<P: Piece>(piece: P) -> P::Out {
     piece.run()
 }
 
@@ -45,8 +45,8 @@ impl super::sealed::Sealed for F64x4 {}
 
 impl Lane for F64x4 {
     #[inline(always)]
-    fn apart<P: Piece>(piece: P) -> P::Out {
-        unsafe { apart(piece) }
+    fn out_of_line<P: Piece>(piece: P) -> P::Out {
+        unsafe { out_of_line(piece) }
     }
 
     const N: usize = 4;

@@ -55,7 +55,7 @@ unsafe fn two2(base: *const f64, index: *const u32) -> __m256d {
 
 #[target_feature(enable = "avx512f,avx512dq,avx2,fma")]
 #[inline(never)]
-fn apart<P: Piece>(piece: P) -> P::Out {
+fn out_of_line<P: Piece>(piece: P) -> P::Out {
     piece.run()
 }
 
@@ -63,8 +63,8 @@ impl super::sealed::Sealed for F64x8 {}
 
 impl Lane for F64x8 {
     #[inline(always)]
-    fn apart<P: Piece>(piece: P) -> P::Out {
-        unsafe { apart(piece) }
+    fn out_of_line<P: Piece>(piece: P) -> P::Out {
+        unsafe { out_of_line(piece) }
     }
 
     const N: usize = 8;

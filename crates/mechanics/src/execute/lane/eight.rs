@@ -12,33 +12,48 @@ pub struct Eight([f64; TILE]);
 
 type Mask = [bool; TILE];
 
-#[cfg_attr(target_arch = "x86_64", inline(never))]
-#[cfg_attr(not(target_arch = "x86_64"), inline(always))]
+#[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), inline(never))]
+#[cfg_attr(
+    not(any(target_arch = "x86_64", target_arch = "aarch64")),
+    inline(always)
+)]
 fn one(a: &Eight, f: impl Fn(f64) -> f64) -> Eight {
     Eight(from_fn(|l| f(a.0[l])))
 }
 
-#[cfg_attr(target_arch = "x86_64", inline(never))]
-#[cfg_attr(not(target_arch = "x86_64"), inline(always))]
+#[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), inline(never))]
+#[cfg_attr(
+    not(any(target_arch = "x86_64", target_arch = "aarch64")),
+    inline(always)
+)]
 fn two(a: &Eight, b: &Eight, f: impl Fn(f64, f64) -> f64) -> Eight {
     Eight(from_fn(|l| f(a.0[l], b.0[l])))
 }
 
-#[cfg_attr(target_arch = "x86_64", inline(never))]
-#[cfg_attr(not(target_arch = "x86_64"), inline(always))]
+#[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), inline(never))]
+#[cfg_attr(
+    not(any(target_arch = "x86_64", target_arch = "aarch64")),
+    inline(always)
+)]
 fn test(a: &Eight, b: &Eight, f: impl Fn(f64, f64) -> bool) -> Mask {
     from_fn(|l| f(a.0[l], b.0[l]))
 }
 
-#[cfg_attr(target_arch = "x86_64", inline(never))]
-#[cfg_attr(not(target_arch = "x86_64"), inline(always))]
+#[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), inline(never))]
+#[cfg_attr(
+    not(any(target_arch = "x86_64", target_arch = "aarch64")),
+    inline(always)
+)]
 fn blend(m: &Mask, a: &Eight, b: &Eight) -> Eight {
     Eight(from_fn(|l| f64::select(m[l], a.0[l], b.0[l])))
 }
 
 /// Records of `N` numbers, transposed.
-#[cfg_attr(target_arch = "x86_64", inline(never))]
-#[cfg_attr(not(target_arch = "x86_64"), inline(always))]
+#[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), inline(never))]
+#[cfg_attr(
+    not(any(target_arch = "x86_64", target_arch = "aarch64")),
+    inline(always)
+)]
 unsafe fn gather<const N: usize>(base: *const f64, index: *const u32) -> [Eight; N] {
     from_fn(|c| {
         // SAFETY: the caller's promise
@@ -77,7 +92,7 @@ impl Lane for Eight {
     type Mask = Mask;
 
     #[inline(never)]
-    fn apart<P: Piece>(piece: P) -> P::Out {
+    fn out_of_line<P: Piece>(piece: P) -> P::Out {
         piece.run()
     }
 
@@ -117,8 +132,11 @@ impl Lane for Eight {
     fn mantissa_and_exponent(self) -> [Self; 2] {
         from_fn(|n| one(&self, |a| a.mantissa_and_exponent()[n]))
     }
-    #[cfg_attr(target_arch = "x86_64", inline(never))]
-    #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
+    #[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), inline(never))]
+    #[cfg_attr(
+        not(any(target_arch = "x86_64", target_arch = "aarch64")),
+        inline(always)
+    )]
     fn fma(self, a: Self, b: Self) -> Self {
         Eight(from_fn(|l| self.0[l].mul_add(a.0[l], b.0[l])))
     }

@@ -7,7 +7,9 @@ pub(super) use avx2::F64x4;
 #[cfg(target_arch = "x86_64")]
 pub(super) use avx512::F64x8;
 pub(super) use eight::Eight;
-#[cfg(target_arch = "x86_64")]
+#[cfg(target_arch = "aarch64")]
+pub(super) use neon::F64x2;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 pub(super) use pair::Pair;
 use std::ops::{Add, Mul, Sub};
 
@@ -17,7 +19,9 @@ mod avx2;
 mod avx512;
 mod eight;
 pub mod elementary;
-#[cfg(target_arch = "x86_64")]
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod pair;
 mod scalar;
 pub(crate) mod series;
@@ -25,7 +29,7 @@ pub(crate) mod series;
 /// Number of points that one byte of bond bits covers.
 pub const TILE: usize = 8;
 
-/// Work on lanes that many loops have in common, or that they seldom do: compiled once and called ([`Lane::apart`]), not
+/// Work on lanes that many loops have in common, or that they seldom do: compiled once and called ([`Lane::out_of_line`]), not
 /// copied into each of them. Implement `run` with `#[inline(always)]`.
 pub trait Piece {
     type Out;
@@ -99,7 +103,7 @@ pub trait Lane:
     fn select(m: Self::Mask, a: Self, b: Self) -> Self;
 
     /// Do a piece of work out of line, in code of this lane's instruction set.
-    fn apart<P: Piece>(piece: P) -> P::Out;
+    fn out_of_line<P: Piece>(piece: P) -> P::Out;
 
     /// Lanes whose bit in `bits` is 0.
     #[inline(always)]
@@ -131,6 +135,11 @@ const ROOT_MAGIC: u64 = 0x5fe6_eb50_c7b5_37a9;
 /// Ask for the cache line of an address, which need not be one.
 #[inline(always)]
 pub fn prefetch(_place: *const f64) {
+    #[cfg(target_arch = "aarch64")]
+    // SAFETY: a hint, as below
+    unsafe {
+        std::arch::asm!("prfm pldl1keep, [{}]", in(reg) _place, options(nostack, readonly, preserves_flags));
+    }
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a hint; every machine of this kind takes it, and no address faults
     unsafe {

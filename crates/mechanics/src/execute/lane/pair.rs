@@ -36,8 +36,8 @@ impl<L: Lane> Lane for Pair<L> {
     type Mask = (L::Mask, L::Mask);
 
     #[inline(always)]
-    fn apart<P: Piece>(piece: P) -> P::Out {
-        L::apart(piece)
+    fn out_of_line<P: Piece>(piece: P) -> P::Out {
+        L::out_of_line(piece)
     }
 
     #[inline(always)]

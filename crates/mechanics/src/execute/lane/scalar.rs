@@ -10,7 +10,7 @@ impl Lane for f64 {
 
     /// With the fused multiply-add of the processor, which plain code calls a function for.
     #[inline(never)]
-    fn apart<P: Piece>(piece: P) -> P::Out {
+    fn out_of_line<P: Piece>(piece: P) -> P::Out {
         crate::execute::simd::fused(piece)
     }
 

@@ -144,7 +144,7 @@ impl<F: Function> Series<F> {
     #[inline(always)]
     pub fn far<L: Lane>(self, e: &mut [L], largest: L) {
         let series = self;
-        L::apart(Far { series, e, largest });
+        L::out_of_line(Far { series, e, largest });
     }
 
     /// `f(e)` of one.

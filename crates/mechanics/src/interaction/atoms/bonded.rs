@@ -267,7 +267,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
         true
     }
 
-    fn has_fans(&self) -> bool {
+    fn has_many_body(&self) -> bool {
         true
     }
 

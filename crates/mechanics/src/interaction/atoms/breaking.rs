@@ -22,7 +22,7 @@ use crate::interaction::{
     BondStatus, Crosses, EachBond, EachForce, EachPair, EachTangent, Gradient, Heals, Interaction,
     Motion, PointEnergiesMut, Released, Sweep, Tally, Toughness,
 };
-use crate::spec::{CrackKind, Release};
+use crate::spec::{Breakage, CrackKind};
 use crate::state::Archive;
 use kernel::{Add, Test};
 use std::collections::HashMap;
@@ -374,9 +374,9 @@ impl<const D: usize> Breaking<D> {
             }
             let [left, _] = self.inner.energy(body, u);
             // over half a step these bonds pulled too long, or not at all
-            let half = match motion.release {
-                Release::AtOnce => 0.5 * motion.steps[0],
-                Release::AfterForce => -0.5 * motion.steps[1],
+            let half = match motion.breakage {
+                Breakage::BeforeForce => 0.5 * motion.steps[0],
+                Breakage::AfterForce => -0.5 * motion.steps[1],
             };
             let power = body.sum(body.slots.iter().map(|&s| {
                 let s = s as usize;
@@ -390,7 +390,7 @@ impl<const D: usize> Breaking<D> {
                 tally.lost.add(released.lost);
                 tally.made.add(released.made);
             }
-            if motion.release == Release::AtOnce {
+            if motion.breakage == Breakage::BeforeForce {
                 for a in 0..D {
                     f[a].swap_with_slice(&mut after[a]);
                 }
@@ -449,8 +449,8 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         true
     }
 
-    fn has_fans(&self) -> bool {
-        self.inner.has_fans()
+    fn has_many_body(&self) -> bool {
+        self.inner.has_many_body()
     }
 
     unsafe fn tangents_unchecked(
@@ -539,7 +539,7 @@ impl<const D: usize> Interaction<D> for Breaking<D> {
         });
         let places = self.both_ends(body, &places);
         let cut = self.put(&places, false);
-        if kind == CrackKind::Absent {
+        if kind == CrackKind::Excluded {
             // they were never there
             let nowhere = self.inner.list().nowhere();
             for place in places {

@@ -6,11 +6,11 @@
 pub mod bonded;
 pub mod breaking;
 pub mod current;
-pub mod fan;
 pub mod fixed;
 mod line;
+pub mod many_body;
 pub mod smoothed;
-pub mod together;
+pub mod sum;
 mod union;
 
 use super::bond::sum_of_virials;

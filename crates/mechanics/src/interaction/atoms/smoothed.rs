@@ -202,12 +202,12 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         let mut of_atoms = energies.as_mut().map(|e| e.for_slots(self.atoms.len));
         let velocity;
         let sweep = match sweep {
-            Sweep::Evolve { v, steps, release } if self.breaks => {
+            Sweep::Evolve { v, steps, breakage } if self.breaks => {
                 velocity = self.carried(v);
                 Sweep::Evolve {
                     v: view(&velocity),
                     steps,
-                    release,
+                    breakage,
                 }
             }
             Sweep::Evolve { .. } | Sweep::Hold => Sweep::Hold,
@@ -267,7 +267,7 @@ impl<const D: usize> Interaction<D> for Smoothed<D> {
         self.gather_energies(body, &seen, out);
     }
 
-    fn has_fans(&self) -> bool {
+    fn has_many_body(&self) -> bool {
         true
     }
 

@@ -24,7 +24,7 @@ fn at(place: usize, n: usize, count: usize) -> usize {
 
 impl Abroad {
     /// For so many bonds there must be room, in whole lines.
-    pub fn room(&self) -> usize {
+    pub fn workspace(&self) -> usize {
         let all: usize = self.traffic.iter().map(|(_, _, receive)| receive).sum();
         all.next_multiple_of(TILE)
     }
@@ -38,8 +38,8 @@ impl Abroad {
                 .collect()
         });
         let packed: Vec<Vec<f64>> = packed.collect();
-        let room = self.traffic.iter();
-        let mut came: Vec<Vec<f64>> = room
+        let workspace = self.traffic.iter();
+        let mut came: Vec<Vec<f64>> = workspace
             .map(|(_, _, receive)| vec![0.0; count * receive])
             .collect();
         let ranks = || self.traffic.iter().map(|(rank, _, _)| *rank);

@@ -1,7 +1,7 @@
 //! Which bonds break, and the next critical stretch.
 
 use super::family::{Family, Moved, Slots, put};
-use super::state::{BondState, Room};
+use super::state::{BondState, Workspace};
 use super::view::{BondView, grown};
 use crate::body::{Body, FieldView};
 use crate::execute::blocks::Shared;
@@ -32,7 +32,7 @@ pub struct Test<'a, const D: usize, F> {
     pub plain: bool,
     /// Work done on each directed bond; empty: it does not matter.
     pub work: &'a [f64],
-    /// What is left of the life of each; empty: none wears.
+    /// What is left of the life of each; empty: there is no fatigue.
     pub life: &'a [f64],
     /// Velocities, for rates.
     pub v: FieldView<'a, D>,
@@ -40,7 +40,7 @@ pub struct Test<'a, const D: usize, F> {
     pub keeps: bool,
     /// A bit for every bond that breaks, and a mark for every group that has any.
     pub breaks: Shared<u8>,
-    pub torn: Shared<u8>,
+    pub damaged: Shared<u8>,
 }
 
 impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
@@ -62,7 +62,7 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                     false => L::splat(0.0),
                 };
                 let mut lowest = L::splat(f64::INFINITY);
-                let mut torn = 0;
+                let mut broken = 0;
                 for k in 0..f.bonds(group) {
                     let byte = f.byte(group, k);
                     let alive = *v.alive.at(byte);
@@ -74,7 +74,7 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                     let other = ends.one::<L>(self.critical.as_ptr());
                     let mut breaks = if !self.work.is_empty() {
                         let work = L::load(self.work.as_ptr().add(f.own(group, k, 0, 1)));
-                        // a bond that is shorter than in the reference is not torn
+                        // a bond that is shorter than in the reference is not broken
                         let longer = L::bits(L::splat(0.0).lt(e)) as u8;
                         L::bits(history::limit(other, own).lt(work)) as u8 & longer
                     } else if self.plain {
@@ -112,9 +112,9 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                         breaks |= fail & !(L::bits(history::spared(other, own)) as u8);
                     }
                     *self.breaks.at(byte) = breaks;
-                    torn |= breaks;
+                    broken |= breaks;
                 }
-                *self.torn.at(group) = torn;
+                *self.damaged.at(group) = broken;
                 let material = |l: usize| self.body.material_of(rows.slot(l));
                 let alone = if self.keeps {
                     own
@@ -249,15 +249,15 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        room: &Room,
+        workspace: &Workspace,
         v: FieldView<D>,
     ) -> bool {
         self.look_damage(body);
         let next = Shared(self.next.as_mut_ptr());
         let breaks = Shared(self.breaks.as_mut_ptr());
-        let torn = Shared(self.torn.as_mut_ptr());
+        let damaged = Shared(self.damaged.as_mut_ptr());
         let test = Test {
-            view: self.view(u, room),
+            view: self.view(u, workspace),
             body,
             critical: &self.critical,
             damage: &self.damage,
@@ -271,10 +271,10 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             v,
             keeps: self.law.passes > 0,
             breaks,
-            torn,
+            damaged,
         };
         self.blocks.run(&test);
-        body.exchange.any(self.torn.iter().any(|t| *t != 0))
+        body.exchange.any(self.damaged.iter().any(|t| *t != 0))
     }
 
     /// Damage as the points remember it.
@@ -307,39 +307,41 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// How much shorter the shortest whole bond is than in the reference: the most `1 − r²/r0²`, or 0.
     pub fn shortest(&mut self, u: FieldView<D>) -> f64 {
-        let room = self.take_room(u);
+        let workspace = self.take_workspace(u);
         let kernel = Shortest {
             family: &self.family,
             moved: Moved {
                 columns: u,
-                records: &room.records,
+                records: &workspace.records,
             },
             alive: &self.alive,
         };
         let most = self.blocks.most(&kernel);
-        self.room = room;
+        self.workspace = workspace;
         most
     }
 
-    /// How stiff some points are now by their families, of torn ones or of `all`, and the most of all beside the body as it was prepared.
+    /// How stiff some points are now by their families, of damaged ones or of `all`, and the most of all beside the body as it was prepared.
     pub fn look_stiffness(&mut self, body: &Body<D>, all: bool) {
         let [whole, mut now] = std::mem::take(&mut self.stiffness);
         if now.is_empty() {
             return;
         }
         let (family, law) = (&self.family, &self.law.asked);
-        for (group, l, slot) in family.points().filter(|p| all || self.torn[p.0] != 0) {
+        for (group, l, slot) in family.points().filter(|p| all || self.damaged[p.0] != 0) {
             let material = body.material_of(slot);
             let bits = family.bits(&self.alive, group);
             let mut of = 0.0;
-            family.kin(group, bits, l, &mut |kin| of = law.stiffness(material, kin));
+            family.reference_family(group, bits, l, &mut |reference| {
+                of = law.stiffness(material, reference)
+            });
             now[slot] = self.integrity_at(slot) * of;
         }
         self.stiffness = [whole, now];
         self.find_stiffened();
     }
 
-    /// How much stiffer the stiffest torn point is than it was.
+    /// How much stiffer the stiffest damaged point is than it was.
     pub fn find_stiffened(&mut self) {
         let [whole, now] = &self.stiffness;
         let stiffened = |(whole, now): (&f64, &f64)| if *whole > 0.0 { now / whole } else { 1.0 };
@@ -348,7 +350,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
 
     /// What [`BondState::look_stiffness`] compares with.
     pub fn begin_stiffness(&mut self, body: &Body<D>) {
-        if !self.law.stiffens_torn || self.critical.is_empty() {
+        if !self.law.stiffens_damaged || self.critical.is_empty() {
             return;
         }
         self.stiffness = [vec![0.0; body.len], vec![0.0; body.len]];
@@ -377,8 +379,8 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         let mut numbers = vec![0.0; count];
         for (group, l, slot) in family.points() {
             let (material, bits) = (body.material_of(slot), family.bits(bits, group));
-            family.kin(group, bits, l, &mut |kin| {
-                law.form(material, kin, &mut numbers)
+            family.reference_family(group, bits, l, &mut |reference| {
+                law.form(material, reference, &mut numbers)
             });
             for (n, x) in numbers.iter().enumerate() {
                 self.form.set(n, slot, *x);

@@ -287,7 +287,7 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         Layout::records(numbers, self.slots)
     }
     fn memory(&self) -> usize {
-        self.list.partner.len() + self.abroad.as_ref().map_or(0, |a| a.room())
+        self.list.partner.len() + self.abroad.as_ref().map_or(0, |a| a.workspace())
     }
     #[inline(always)]
     fn own(&self, group: usize, k: usize, n: usize, count: usize) -> usize {

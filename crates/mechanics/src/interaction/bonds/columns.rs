@@ -287,7 +287,7 @@ impl<const D: usize, F: Family<D>> AnyBonds<D> for BondState<D, F> {
             body.archive_points(archive, name, (column, 1), |slot, _| slot);
         }
         strains(archive, body, &mut self.expansion);
-        let records = self.room.records.len();
+        let records = self.workspace.records.len();
         let before = || Before::zeros(body.len, records);
         // a rank without bonds keeps nothing
         if body.exchange.any(self.before.is_some()) {

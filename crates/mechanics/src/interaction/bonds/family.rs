@@ -5,7 +5,7 @@ use crate::body::grid::BLOCK;
 use crate::body::{Body, Exchange, FieldView};
 use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::{Lane, TILE};
-use crate::law::material::{Kin, Numbers, Partner};
+use crate::law::material::{Numbers, Partner, ReferenceFamily};
 use std::ops::Range;
 
 /// Eight slots: where the points of a group are, or their partners along one of its bonds.
@@ -152,7 +152,13 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
     }
 
     /// Asks something of the reference family of one point, of which these bonds are left.
-    fn kin(&self, group: usize, bits: &[u8], l: usize, ask: &mut dyn FnMut(Kin<D>)) {
+    fn reference_family(
+        &self,
+        group: usize,
+        bits: &[u8],
+        l: usize,
+        ask: &mut dyn FnMut(ReferenceFamily<D>),
+    ) {
         let each = |visit: &mut dyn FnMut(&Partner<D>)| {
             for (k, bits) in bits.iter().enumerate() {
                 if bits >> l & 1 == 0 {
@@ -168,8 +174,10 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
         };
         let slot = self.rows(group).from(l).slot(0);
         let lost = |(k, bits): (usize, &u8)| self.is_bond(group, k, l) && bits >> l & 1 == 0;
-        let torn = bits.iter().enumerate().any(lost);
-        ask(Kin::new(&each).within(self.reach(slot)).torn(torn));
+        let damaged = bits.iter().enumerate().any(lost);
+        ask(ReferenceFamily::new(&each)
+            .within(self.reach(slot))
+            .damaged(damaged));
     }
 
     /// Points of the body, group by group: group, place in it, slot.

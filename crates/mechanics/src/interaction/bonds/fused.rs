@@ -1,7 +1,7 @@
 //! Bonds of laws that are fused with their sweeps: bits and critical values are kept for them, numbers of a law they have themselves.
 
 use super::law::{LawProperties, PointLaw};
-use crate::law::material::{Columns, Kin};
+use crate::law::material::{Columns, ReferenceFamily};
 use crate::space::Point;
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ impl<const D: usize> LawProperties<D> {
             potential: true,
             form_of_whole: false,
             stiffens: false,
-            stiffens_torn: false,
+            stiffens_damaged: false,
             gathers: false,
             columns: Columns::default(),
             failure: None,
@@ -37,9 +37,9 @@ impl<const D: usize> LawProperties<D> {
 struct Fused;
 
 impl<const D: usize> PointLaw<D> for Fused {
-    fn form(&self, _: usize, _: Kin<D>, _: &mut [f64]) {}
+    fn form(&self, _: usize, _: ReferenceFamily<D>, _: &mut [f64]) {}
 
-    fn stiffness(&self, _: usize, _: Kin<D>) -> f64 {
+    fn stiffness(&self, _: usize, _: ReferenceFamily<D>) -> f64 {
         1.0
     }
 

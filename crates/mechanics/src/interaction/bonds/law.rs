@@ -1,7 +1,7 @@
 //! What bonds know of their law and ask it, one point at a time.
 
 use crate::law::material::fibres::Fibres;
-use crate::law::material::{Columns, Kin, Material, Numbers};
+use crate::law::material::{Columns, Material, Numbers, ReferenceFamily};
 use crate::space::Point;
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub struct LawProperties<const D: usize> {
     pub potential: bool,
     pub form_of_whole: bool,
     pub stiffens: bool,
-    pub stiffens_torn: bool,
+    pub stiffens_damaged: bool,
     pub gathers: bool,
     pub columns: Columns,
     pub failure: Option<usize>,
@@ -49,7 +49,7 @@ impl<const D: usize> LawProperties<D> {
             potential: M::POTENTIAL,
             form_of_whole: M::FORM_OF_WHOLE,
             stiffens: M::STIFFENS,
-            stiffens_torn: M::STIFFENS_TORN,
+            stiffens_damaged: M::STIFFENS_DAMAGED,
             gathers: M::GATHERS,
             columns: law.columns(),
             failure: law.failure(),
@@ -63,9 +63,9 @@ impl<const D: usize> LawProperties<D> {
 /// What a law says of places, and of the families of points.
 pub trait PointLaw<const D: usize>: Send + Sync {
     /// [`Material::form`], number by number.
-    fn form(&self, material: usize, kin: Kin<D>, numbers: &mut [f64]);
+    fn form(&self, material: usize, reference: ReferenceFamily<D>, numbers: &mut [f64]);
     /// [`Material::stiffness`]
-    fn stiffness(&self, material: usize, kin: Kin<D>) -> f64;
+    fn stiffness(&self, material: usize, reference: ReferenceFamily<D>) -> f64;
     /// [`Material::at_place`]
     fn at_place(&self, material: usize, place: &Point) -> Vec<f64>;
 }

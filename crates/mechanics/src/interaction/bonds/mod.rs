@@ -5,6 +5,7 @@ pub mod breaking;
 pub mod cloud;
 mod columns;
 pub mod family;
+mod fatigue;
 pub mod fused;
 mod heal;
 pub mod lattice;
@@ -17,7 +18,6 @@ pub mod store;
 pub mod view;
 mod walks;
 mod warmth;
-mod wear;
 
 pub use cloud::CloudFamily;
 pub use columns::AnyBonds;

@@ -45,7 +45,7 @@ pub struct BondState<const D: usize, F> {
     /// Work done on each directed bond (energy / volume²), and where the step began; empty: nobody asks.
     pub work: Vec<f64>,
     pub before: Option<Before<D>>,
-    /// What is left of the life of each directed bond; empty: none wears.
+    /// What is left of the life of each directed bond; empty: there is no fatigue.
     pub life: Vec<f64>,
     /// Strain by temperature or swelling per slot; empty: none.
     pub expansion: Column,
@@ -53,18 +53,18 @@ pub struct BondState<const D: usize, F> {
     pub integrity: Column,
     /// Is any of them below 1?
     pub degraded: bool,
-    /// How stiff torn points are beside the body as it was prepared: per slot, then and now, and the most; empty: they are no stiffer.
+    /// How stiff damaged points are beside the body as it was prepared: per slot, then and now, and the most; empty: they are no stiffer.
     pub stiffness: [Vec<f64>; 2],
     pub stiffened: f64,
     /// In plane strain, per material: ν and 2G of the linear isotropic solid of its moduli, if it is isotropic; else empty.
     pub held: Vec<Option<[f64; 2]>>,
     /// Bits of bonds that break in a sweep, and of points that lose bonds, by group.
     pub breaks: Vec<u8>,
-    pub torn: Vec<u8>,
+    pub damaged: Vec<u8>,
     /// Length of the step that equilibrium is sought for; 0: memory stands still.
     pub step: f64,
     pub prepared: bool,
-    pub room: Room,
+    pub workspace: Workspace,
     pub blocks: Blocks,
 }
 
@@ -127,7 +127,7 @@ impl Blocks {
 
 /// What sweeps fill anew, kept so that a step allocates nothing.
 #[derive(Debug, Default)]
-pub struct Room {
+pub struct Workspace {
     /// Displacements `[slots][4]`, where the family gathers.
     pub records: Vec<f64>,
     /// `[materials][numbers]` for a step of some length.
@@ -232,14 +232,14 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         );
         let fails = measured || law.failure.is_some();
         let works = matches!(criteria.measure, Measure::Work(_));
-        let wears = !criteria.fatigue.is_empty();
-        let breaks = fails || works || wears || toughness.iter().any(|t| t.s00.is_finite());
+        let fatigues = !criteria.fatigue.is_empty();
+        let breaks = fails || works || fatigues || toughness.iter().any(|t| t.s00.is_finite());
         // fused sweeps look at broken bonds that repel, too, and tear what they find themselves
         let criticals = breaks || law.fused && repulsion.is_some();
         let found = breaks && !law.fused;
         // of a rank without bonds, too: by what there is one knows what bonds have
-        let room = family.memory().max(TILE);
-        let bonds = |is: bool, x: f64| vec![x; if is { room } else { 0 }];
+        let workspace = family.memory().max(TILE);
+        let bonds = |is: bool, x: f64| vec![x; if is { workspace } else { 0 }];
         let column = |is: bool, x: f64| match is {
             true => Column::new(body.len, x, field::line(3)),
             false => Column::default(),
@@ -271,13 +271,13 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             form: store(law.form),
             point: store(law.point),
             past: store(law.past),
-            memory: vec![0.0; room * law.memory],
+            memory: vec![0.0; workspace * law.memory],
             critical: critical(),
             next: critical(),
             damage: column(fails, 0.0),
             work: bonds(works, 0.0),
             before: works.then(|| Before::zeros(body.len, records)),
-            life: bonds(wears, 1.0),
+            life: bonds(fatigues, 1.0),
             expansion: Column::default(),
             integrity: column(breaks && law.form_of_whole, 1.0),
             degraded: false,
@@ -285,12 +285,12 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             stiffened: 1.0,
             held,
             breaks: vec![0; if found { family.bytes_of_bits() } else { 0 }],
-            torn: vec![0; if found { family.groups() } else { 0 }],
+            damaged: vec![0; if found { family.groups() } else { 0 }],
             step: 0.0,
             prepared: false,
-            room: Room {
+            workspace: Workspace {
                 records: vec![0.0; records],
-                ..Room::default()
+                ..Workspace::default()
             },
             blocks: Blocks::of(family.blocks(), simd, body),
             law,
@@ -309,15 +309,15 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     }
 
     /// As sweeps see them.
-    pub fn view<'a>(&'a self, u: FieldView<'a, D>, room: &'a Room) -> BondView<'a, D, F> {
+    pub fn view<'a>(&'a self, u: FieldView<'a, D>, workspace: &'a Workspace) -> BondView<'a, D, F> {
         BondView {
             family: &self.family,
             moved: Moved {
                 columns: u,
-                records: &room.records,
+                records: &workspace.records,
             },
             alive: Seen(self.alive.as_ptr()),
-            constants: &room.constants,
+            constants: &workspace.constants,
             material: &self.material,
             placed: self.placed.view(),
             alike: self.material.is_empty() && self.placed.data.is_empty(),
@@ -349,13 +349,13 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     }
 
     /// The room with these displacements; give it back. Of a law that panicked nobody did: it is as large as ever all the same.
-    pub fn take_room(&mut self, u: FieldView<D>) -> Room {
-        let mut room = std::mem::take(&mut self.room);
+    pub fn take_workspace(&mut self, u: FieldView<D>) -> Workspace {
+        let mut workspace = std::mem::take(&mut self.workspace);
         let layout = self.family.layout(4);
         let records = if layout.records { layout.len() } else { 0 };
-        room.records.resize(records, 0.0);
-        self.pack(u, &mut room.records);
-        room
+        workspace.records.resize(records, 0.0);
+        self.pack(u, &mut workspace.records);
+        workspace
     }
 
     /// What is left of a slot's energy and force states.
@@ -411,13 +411,13 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
             + self.alive.len()
             + self.counted.len()
             + self.breaks.len()
-            + self.torn.len()
+            + self.damaged.len()
             + self.material.len()
             + self.placed.bytes()
             + self.form.bytes()
             + self.point.bytes()
             + self.past.bytes()
-            + 8 * (self.memory.len() + self.room.records.len())
+            + 8 * (self.memory.len() + self.workspace.records.len())
             + 8 * (self.critical.len() + self.next.len())
             + 8 * (self.damage.len() + self.expansion.len())
             + 8 * (self.work.len() + self.life.len())

@@ -77,10 +77,10 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     pub fn each_broken_of(
         &self,
         body: &Body<D>,
-        torn: impl Fn(usize) -> bool,
+        damaged: impl Fn(usize) -> bool,
         visit: &mut EachPair<D>,
     ) {
-        for (group, k, l) in self.lost(torn) {
+        for (group, k, l) in self.lost(damaged) {
             let i = self.family.rows(group).slot(l);
             let end = self.family.ends(group, k).slot(l);
             let j = body.exchange.original(end);
@@ -117,9 +117,9 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
     /// Every directed bond of the family that is not whole, those of absent cracks too, of groups that may have lost one: group, bond, place.
     pub(super) fn lost(
         &self,
-        torn: impl Fn(usize) -> bool,
+        damaged: impl Fn(usize) -> bool,
     ) -> impl Iterator<Item = (usize, usize, usize)> {
-        let groups = (0..self.family.groups()).filter(move |n| torn(*n));
+        let groups = (0..self.family.groups()).filter(move |n| damaged(*n));
         groups.flat_map(move |group| {
             let bits = self.family.bits(&self.alive, group).iter().enumerate();
             // most are whole
@@ -164,7 +164,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         }
     }
 
-    /// Dilatations from `Σ ω ν V |ξ|² s` over the whole bonds: over the weighted volume of those that count, broken or not, where the law
+    /// Dilatations from `Σ ω ν V |ξ|² s` over the intact bonds: over the weighted volume of those that count, broken or not, where the law
     /// takes it so, else over that of the whole ones; and what part of it is whole, or how much.
     pub fn dilate(&self, out: &mut PointEnergiesMut) {
         let of_family = self.law.passes > 0 && !self.law.form_of_whole;
@@ -309,16 +309,16 @@ impl<const D: usize, F: Family<D>> Walks<D> for BondState<D, F> {
                 cut.push((self.family.byte(group, k), 1u8 << l));
             }
         }
-        if kind == CrackKind::Absent && self.counted.is_empty() && !cut.is_empty() {
+        if kind == CrackKind::Excluded && self.counted.is_empty() && !cut.is_empty() {
             (self.counted, _) = all_whole(&self.family);
         }
         for (byte, bit) in &cut {
             self.alive[*byte] &= !bit;
-            if kind == CrackKind::Absent {
+            if kind == CrackKind::Excluded {
                 self.counted[*byte] &= !bit;
             }
         }
-        if kind == CrackKind::Absent {
+        if kind == CrackKind::Excluded {
             self.directed -= cut.len() as u64;
         }
         if self.prepared {

@@ -9,8 +9,8 @@ use crate::interaction::bonds::AnyBonds;
 use crate::interaction::bonds::family::{Family, Slots};
 use crate::interaction::bonds::view::{BondView, grown};
 use crate::interaction::{
-    BondForce, EachForce, EachTangent, FactorsOf, Gradient, Interaction, PointEnergiesMut, Sweep,
-    Tally, Wearing,
+    BondFatigue, BondForce, EachForce, EachTangent, FactorsOf, Gradient, Interaction,
+    PointEnergiesMut, Sweep, Tally,
 };
 use crate::law::material::part_of;
 use crate::spec::Cycles;
@@ -49,17 +49,17 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
     fn shortest(&mut self, body: &Body<D>, u: FieldView<D>) -> f64 {
         self.check(body, &[u]);
         // of the largest frequency, which goes with the root of the stiffness
-        let torn = self.bonds.stiffened.sqrt().recip();
+        let damaged = self.bonds.stiffened.sqrt().recip();
         match self.bonds.law.stiffens {
-            true => torn * (1.0 - self.bonds.shortest(u)).max(0.0).sqrt(),
-            false => torn,
+            true => damaged * (1.0 - self.bonds.shortest(u)).max(0.0).sqrt(),
+            false => damaged,
         }
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: FieldView<D>) -> [f64; 2] {
-        let room = self.take_room(u, self.bonds.step);
-        let sums = self.energies(body, u, &room, None);
-        self.bonds.room = room;
+        let workspace = self.take_workspace(u, self.bonds.step);
+        let sums = self.energies(body, u, &workspace, None);
+        self.bonds.workspace = workspace;
         sums
     }
 
@@ -129,9 +129,9 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
 
     fn each_force(&mut self, body: &Body<D>, u: FieldView<D>, visit: &mut EachForce<D>) -> bool {
         self.check(body, &[u]);
-        let room = self.take_room(u, self.bonds.step);
-        self.settle(body, u, &room);
-        let law = self.asked(self.bonds.view(u, &room));
+        let workspace = self.take_workspace(u, self.bonds.step);
+        self.point_update(body, u, &workspace);
+        let law = self.asked(self.bonds.view(u, &workspace));
         let family = &self.bonds.family;
         // force states of both ends, and the own ones where they are told, of groups some of whose points are still to come: ids need not be in their order
         let mut open: HashMap<usize, ([Vec<f64>; 2], usize)> = HashMap::new();
@@ -166,16 +166,16 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
                 free.extend(open.remove(&group).map(|(all, _)| all));
             }
         }
-        self.bonds.room = room;
+        self.bonds.workspace = workspace;
         true
     }
 
     fn scale_bonds(&mut self, _: &Body<D>, _: &FactorsOf<D>) -> Result<(), BuildError> {
         Err(BuildError::unsupported(
             "bonds",
-            "factors of bonds and corrections of surfaces multiply what a bond pulls by its own stretch and its ends' dilatation; the bonds of this body do more: they remember (work, stress or strain that they break by, plastic flow), expand, or answer to tensors",
+            "bond stiffness scaling and surface corrections multiply forces that follow from the stretch of a bond and the dilatation of its ends; the bonds of this body depend on more: history (work, stress or strain that they break by, plastic flow), expansion, or tensors",
         )
-        .help("leave both out, or take a law with fused kernels (pmb, lps, lps_as_typed, eam_like) without expansion, which breaks by critical_stretch or energy"))
+        .help("leave both out, or take a law with fused kernels (pmb, lps, lps_3d, eam_like) without expansion, which breaks by critical_stretch or energy"))
     }
 
     fn prepare(&mut self, body: &Body<D>) {
@@ -210,16 +210,16 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         if self.bonds.law.gathers {
             return false;
         }
-        let room = self.take_room(u, self.bonds.step);
-        self.settle(body, u, &room);
+        let workspace = self.take_workspace(u, self.bonds.step);
+        self.point_update(body, u, &workspace);
         for slot in body.slots.iter().map(|s| *s as usize) {
             if self.bonds.family.find(slot).is_some() {
-                let at = self.bonds.plain_point(&room.constants, slot);
+                let at = self.bonds.plain_point(&workspace.constants, slot);
                 let across = self.law.across(&at, &self.bonds.point.numbers(slot));
                 trace[slot] += part_of(self.bonds.integrity_at(slot), across);
             }
         }
-        self.bonds.room = room;
+        self.bonds.workspace = workspace;
         true
     }
 
@@ -239,13 +239,18 @@ impl<const D: usize, F: Family<D>> Interaction<D> for MaterialInteraction<D, F> 
         self.bonds.step = step;
     }
 
-    fn wearing(&self, body: &Body<D>, u: FieldView<D>, load: &Cycles) -> Option<Vec<Wearing>> {
+    fn fatigue_of_bonds(
+        &self,
+        body: &Body<D>,
+        u: FieldView<D>,
+        load: &Cycles,
+    ) -> Option<Vec<BondFatigue>> {
         self.check(body, &[u]);
-        self.bonds.wearing(body, u, load)
+        self.bonds.fatigue_of_bonds(body, u, load)
     }
 
-    fn wear(&mut self, bonds: &mut dyn Iterator<Item = Wearing>, cycles: f64) {
-        self.bonds.wear(bonds, cycles);
+    fn accumulate_fatigue(&mut self, bonds: &mut dyn Iterator<Item = BondFatigue>, cycles: f64) {
+        self.bonds.accumulate_fatigue(bonds, cycles);
     }
 
     fn bytes(&self) -> usize {

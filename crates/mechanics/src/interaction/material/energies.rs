@@ -11,7 +11,7 @@ use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::bonds::family::{Family, Slots, put};
 use crate::interaction::bonds::repulsion::Pushed;
 
-/// Energy pass: strain and repulsion energy densities, `Σ ω ν V |ξ|² s` and `Σ ω ν V |ξ|²` over whole bonds.
+/// Energy pass: strain and repulsion energy densities, `Σ ω ν V |ξ|² s` and `Σ ω ν V |ξ|²` over intact bonds.
 pub struct Energies<'a, const D: usize, F> {
     pub law: LawView<'a, D, F>,
     /// Is s a stretch to the law, or e ([`Material::STRETCHES`](crate::law::material::Material::STRETCHES))?

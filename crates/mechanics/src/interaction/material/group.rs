@@ -39,7 +39,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> GroupEnergy<'_, D, F, M> {
         let ends = v.family.ends(at.number, k);
         // SAFETY: the caller's promise
         unsafe {
-            let mut eta = v.apart::<L>(at, ends, dead);
+            let mut eta = v.relative_displacement::<L>(at, ends, dead);
             if let Some(drift) = &self.of.drift {
                 for a in 0..D {
                     let column = drift.v[a].as_ptr();
@@ -113,11 +113,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for GroupEnergy<'_, D,
                     if last {
                         energy = weight.fma(v.law.energy(&bond, &end), energy);
                     } else {
-                        sum = sum.plus(weight, v.law.share(pass, &bond, &end));
+                        sum = sum.plus(weight, v.law.pair_pass(pass, &bond, &end));
                     }
                 }
                 if !last {
-                    v.law.settle(pass, &site, sum, &mut point);
+                    v.law.point_update(pass, &site, sum, &mut point);
                 }
             }
             part_of(v.integrity::<L>(at.rows), energy).to_array()
@@ -182,7 +182,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> GroupForces<'_, D, F, M> {
                     point: &point,
                     memory: &memory,
                 };
-                states[n] = Some(v.law.answer(&seen, &end));
+                states[n] = Some(v.law.force_state(&seen, &end));
             }
             let [Some(mut own), other] = states else {
                 return [L::splat(0.0); D];

@@ -2,6 +2,7 @@
 //! points; a lattice and a cloud differ in where partners are and what of a bond is stored. What bonds are is the business of
 //! [`bonds`](super::bonds), which know no law; what is compiled for every law are its [`LawSweeps`] alone.
 
+mod break_bonds;
 mod contract;
 mod energies;
 mod group;
@@ -12,7 +13,6 @@ mod slopes;
 mod step;
 mod sweeps;
 mod tangents;
-mod tear;
 mod view;
 
 use super::bonds::family::Family;

@@ -5,7 +5,7 @@ use crate::interaction::along;
 use crate::interaction::bonds::law::PointLaw;
 use crate::interaction::bonds::points::PlainPoint;
 use crate::interaction::bonds::state::WholeBond;
-use crate::law::material::{Around, Bond, End, Kin, Material, Numbers, Site};
+use crate::law::material::{Around, Bond, End, Material, Numbers, ReferenceFamily, Site};
 use crate::space::Point;
 
 /// What is asked of a law one point or one bond at a time, by numbers in its order.
@@ -30,15 +30,15 @@ pub trait PlainLaw<const D: usize>: PointLaw<D> {
 pub struct Compiled<M>(pub M);
 
 impl<const D: usize, M: Material<D>> PointLaw<D> for Compiled<M> {
-    fn form(&self, material: usize, kin: Kin<D>, numbers: &mut [f64]) {
-        let form = self.0.form(material, kin);
+    fn form(&self, material: usize, reference: ReferenceFamily<D>, numbers: &mut [f64]) {
+        let form = self.0.form(material, reference);
         for (n, x) in numbers.iter_mut().enumerate() {
             *x = form.get(n);
         }
     }
 
-    fn stiffness(&self, material: usize, kin: Kin<D>) -> f64 {
-        self.0.stiffness(material, kin)
+    fn stiffness(&self, material: usize, reference: ReferenceFamily<D>) -> f64 {
+        self.0.stiffness(material, reference)
     }
 
     fn at_place(&self, material: usize, place: &Point) -> Vec<f64> {
@@ -80,9 +80,9 @@ impl<const D: usize, M: Material<D>> PlainLaw<D> for Compiled<M> {
                     point: &point,
                     memory: &memory,
                 };
-                sum = sum.plus(*weight, self.0.share(pass, &bond(xi, *omega), &end));
+                sum = sum.plus(*weight, self.0.pair_pass(pass, &bond(xi, *omega), &end));
             }
-            self.0.settle(pass, &site, sum, &mut point);
+            self.0.point_update(pass, &site, sum, &mut point);
         }
         let mut energy = self.0.point_energy(&site, sum, &point);
         let (mut share, mut whole) = (0.0, 0.0);

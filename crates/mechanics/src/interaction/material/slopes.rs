@@ -86,7 +86,7 @@ pub struct PlainEnd<'a> {
     pub memory: &'a [f64],
 }
 
-/// Slopes of what an end answers to a bond.
+/// Slopes of the force state of an end.
 pub struct AnswerSlopes<const D: usize> {
     /// By η (rows are components of the force).
     pub by_eta: [[f64; D]; D],
@@ -106,7 +106,7 @@ pub trait LawSlopes<const D: usize>: Send + Sync {
         bonds: &[Bent<D>],
     ) -> PassSlopes<D>;
 
-    /// What an end answers to a bond, the `own` one or the other, as the force on the own one.
+    /// The force state of an end, the `own` one or the other, as the force on the own one.
     fn answer_slopes(&self, b: &Bent<D>, end: PlainEnd, own: bool) -> AnswerSlopes<D>;
 }
 
@@ -118,7 +118,7 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
         point: &[f64],
         bonds: &[Bent<D>],
     ) -> PassSlopes<D> {
-        f64::apart(Pass {
+        f64::out_of_line(Pass {
             law: &self.0,
             constants: lifted(&at.constants, None),
             form: lifted(&at.form, None),
@@ -132,7 +132,7 @@ impl<const D: usize, M: Material<D>> LawSlopes<D> for Compiled<M> {
 
     fn answer_slopes(&self, b: &Bent<D>, end: PlainEnd, own: bool) -> AnswerSlopes<D> {
         let others: M::Constants<Real> = lifted(end.others, None);
-        f64::apart(Answer {
+        f64::out_of_line(ForceStateAt {
             law: &self.0,
             constants: self.0.between(lifted(end.constants, None), &others),
             memory: lifted(end.memory, None),
@@ -158,19 +158,19 @@ struct Pass<'a, const D: usize, M: Material<D>> {
 impl<const D: usize, M: Material<D>> Pass<'_, D, M> {
     /// What a bond gives to the point, where η grows along an axis or a number of the point grows.
     #[inline(always)]
-    fn share(&self, b: &Bent<D>, axis: Option<usize>, number: Option<usize>) -> M::Sum<Real> {
+    fn pair_pass(&self, b: &Bent<D>, axis: Option<usize>, number: Option<usize>) -> M::Sum<Real> {
         let bond = bent(&b.xi, &b.eta, b.omega, axis);
         let end = End {
             constants: &self.constants,
             point: &lifted(self.point, number),
             memory: &lifted(&b.memory, None),
         };
-        self.law.share(self.pass, &bond, &end)
+        self.law.pair_pass(self.pass, &bond, &end)
     }
 
     /// The point after the pass, where a number of the sum or of the point before grows.
     #[inline(always)]
-    fn settle(
+    fn point_update(
         &self,
         sum: &[f64],
         by_sum: Option<usize>,
@@ -186,7 +186,7 @@ impl<const D: usize, M: Material<D>> Pass<'_, D, M> {
         };
         let mut point = lifted(self.point, by_point);
         self.law
-            .settle(self.pass, &site, lifted(sum, by_sum), &mut point);
+            .point_update(self.pass, &site, lifted(sum, by_sum), &mut point);
         point
     }
 }
@@ -206,7 +206,7 @@ impl<const D: usize, M: Material<D>> Piece for Pass<'_, D, M> {
         for b in self.bonds {
             let mut own = vec![[0.0; D]; sums];
             for n in 0..moved {
-                let slopes = self.share(b, Some(n).filter(|n| *n < D), n.checked_sub(D));
+                let slopes = self.pair_pass(b, Some(n).filter(|n| *n < D), n.checked_sub(D));
                 for s in 0..sums {
                     let slope = slopes.get(s).slope;
                     match n.checked_sub(D) {
@@ -223,7 +223,7 @@ impl<const D: usize, M: Material<D>> Piece for Pass<'_, D, M> {
         let (mut by_sum, mut by_point, mut point) = (vec![], vec![], vec![]);
         // by numbers of the sum, by those of the point, and the point itself
         for n in 0..=sums + points {
-            let after = self.settle(&sum, Some(n).filter(|n| *n < sums), n.checked_sub(sums));
+            let after = self.point_update(&sum, Some(n).filter(|n| *n < sums), n.checked_sub(sums));
             let slopes = (0..points).map(|n| after.get(n).slope).collect();
             match n.checked_sub(sums) {
                 None => by_sum.push(slopes),
@@ -241,8 +241,8 @@ impl<const D: usize, M: Material<D>> Piece for Pass<'_, D, M> {
     }
 }
 
-/// What an end answers to a bond.
-struct Answer<'a, const D: usize, M: Material<D>> {
+/// The force state of an end.
+struct ForceStateAt<'a, const D: usize, M: Material<D>> {
     law: &'a M,
     constants: M::Constants<Real>,
     memory: M::Memory<Real>,
@@ -251,7 +251,7 @@ struct Answer<'a, const D: usize, M: Material<D>> {
     own: bool,
 }
 
-impl<const D: usize, M: Material<D>> Answer<'_, D, M> {
+impl<const D: usize, M: Material<D>> ForceStateAt<'_, D, M> {
     /// The force where η grows along an axis, or a number of the point grows.
     #[inline(always)]
     fn pull(&self, axis: Option<usize>, number: Option<usize>) -> [Real; D] {
@@ -263,7 +263,7 @@ impl<const D: usize, M: Material<D>> Answer<'_, D, M> {
             memory: &self.memory,
         };
         let seen = if self.own { bond } else { mirrored(&bond) };
-        let mut force = self.law.answer(&seen, &end).alone(&seen);
+        let mut force = self.law.force_state(&seen, &end).alone(&seen);
         if !self.own {
             for f in &mut force {
                 *f = still(0.0) - *f;
@@ -273,7 +273,7 @@ impl<const D: usize, M: Material<D>> Answer<'_, D, M> {
     }
 }
 
-impl<const D: usize, M: Material<D>> Piece for Answer<'_, D, M> {
+impl<const D: usize, M: Material<D>> Piece for ForceStateAt<'_, D, M> {
     type Out = AnswerSlopes<D>;
 
     #[inline(always)]

@@ -1,20 +1,20 @@
 //! A step of bonds: they are settled, tear, pull and remember, in the order that their law asks for.
 
 use super::MaterialInteraction;
+use super::break_bonds::{BreakBonds, Breaking};
 use super::energies::Energies;
 use super::law::LawView;
 use super::measured::{Limits, VonMises, Work};
-use super::tear::{Tear, Torn};
 use super::view::Drift;
 use crate::body::{Body, Column, FieldView, FieldViewMut, view, view_mut};
 use crate::execute::blocks::Shared;
 use crate::interaction::bonds::family::Family;
-use crate::interaction::bonds::state::{Before, Room};
+use crate::interaction::bonds::state::{Before, Workspace};
 use crate::interaction::bonds::store::Store;
 use crate::interaction::bonds::view::BondView;
 use crate::interaction::criterion::Measure;
 use crate::interaction::{EnergyFields, Motion, PointEnergiesMut, Tally, history};
-use crate::spec::Release;
+use crate::spec::Breakage;
 
 impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     /// Constants of materials for a step of this length.
@@ -22,27 +22,29 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         self.law.constants(self.bonds.toughness.len(), dt, all);
     }
 
-    /// Room with constants, and without displacements.
-    pub(super) fn constants(&self) -> Room {
-        let mut room = Room::default();
-        self.fill_constants(self.bonds.step, &mut room.constants);
-        room
+    /// Workspace with constants, and without displacements.
+    pub(super) fn constants(&self) -> Workspace {
+        let mut workspace = Workspace::default();
+        self.fill_constants(self.bonds.step, &mut workspace.constants);
+        workspace
     }
 
     /// The room, filled for these displacements and a step of this length; give it back.
-    pub(super) fn take_room(&mut self, u: FieldView<D>, dt: f64) -> Room {
-        let mut room = self.bonds.take_room(u);
-        self.fill_constants(dt, &mut room.constants);
-        self.fill_constants(0.0, &mut room.still);
-        room
+    pub(super) fn take_workspace(&mut self, u: FieldView<D>, dt: f64) -> Workspace {
+        let mut workspace = self.bonds.take_workspace(u);
+        self.fill_constants(dt, &mut workspace.constants);
+        self.fill_constants(0.0, &mut workspace.still);
+        workspace
     }
 
     /// The same for those who only look.
-    pub(super) fn look_room(&self, u: FieldView<D>) -> Room {
-        let mut room = self.constants();
-        room.records.resize(self.bonds.room.records.len(), 0.0);
-        self.bonds.pack(u, &mut room.records);
-        room
+    pub(super) fn look_room(&self, u: FieldView<D>) -> Workspace {
+        let mut workspace = self.constants();
+        workspace
+            .records
+            .resize(self.bonds.workspace.records.len(), 0.0);
+        self.bonds.pack(u, &mut workspace.records);
+        workspace
     }
 
     /// [`forces`](crate::interaction::Interaction::forces)
@@ -58,13 +60,13 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             Some(m) if self.bonds.step == 0.0 => m.steps[0],
             _ => self.bonds.step,
         };
-        let mut room = self.take_room(u, dt);
+        let mut workspace = self.take_workspace(u, dt);
         let breaks = motion.filter(|_| !self.bonds.critical.is_empty());
         if let Some(m) =
             breaks.filter(|_| self.bonds.law.form_of_whole && !self.bonds.law.potential)
         {
-            let total = self.step_of_rates(body, u, f, (m, &mut room), seen);
-            self.bonds.room = room;
+            let total = self.step_of_rates(body, u, f, (m, &mut workspace), seen);
+            self.bonds.workspace = workspace;
             return total;
         }
         // of a watched step: the bonds before any breaks
@@ -77,31 +79,31 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         });
         let mut total = Tally::default();
         if motion.is_some() {
-            self.work_before(body, u, &room);
+            self.work_before(body, u, &workspace);
         }
-        if let Some(m) = breaks.filter(|m| m.release == Release::AtOnce) {
+        if let Some(m) = breaks.filter(|m| m.breakage == Breakage::BeforeForce) {
             if self.measures() {
-                self.settle(body, u, &room);
-                self.measure(body, u, &room);
+                self.point_update(body, u, &workspace);
+                self.measure(body, u, &workspace);
             }
             total += self
-                .tear(body, u, &room, away(&m, -m.steps[0]))
+                .break_bonds(body, u, &workspace, away(&m, -m.steps[0]))
                 .unwrap_or_default();
         }
-        self.settle(body, u, &room);
-        self.pull(body, u, &room, f);
-        if let Some(m) = breaks.filter(|m| m.release == Release::AfterForce) {
-            self.measure(body, u, &room);
+        self.point_update(body, u, &workspace);
+        self.pull(body, u, &workspace, f);
+        if let Some(m) = breaks.filter(|m| m.breakage == Breakage::AfterForce) {
+            self.measure(body, u, &workspace);
             total += self
-                .tear(body, u, &room, away(&m, m.steps[1]))
+                .break_bonds(body, u, &workspace, away(&m, m.steps[1]))
                 .unwrap_or_default();
         }
         if motion.is_some() {
-            total += self.remember(body, u, &room);
+            total += self.remember(body, u, &workspace);
             self.bonds.step = 0.0;
         }
         if motion.is_some() || self.bonds.before.is_none() {
-            self.keep(u, &room);
+            self.keep(u, &workspace);
         }
         if let (Some(seen), Some(whole)) = (seen, &mut whole) {
             // what the step remembers is part of this instant, what breaks in it is of the next
@@ -112,20 +114,20 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         if breaks.is_some() {
             self.bonds.next_critical(body);
         }
-        self.bonds.room = room;
+        self.bonds.workspace = workspace;
         total
     }
 
     /// All passes: points as the bonds see them.
-    pub(super) fn settle(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
-        self.settle_only(body, u, room, &[]);
+    pub(super) fn point_update(&mut self, body: &Body<D>, u: FieldView<D>, workspace: &Workspace) {
+        self.settle_only(body, u, workspace, &[]);
     }
 
     /// Of the points that are marked; no marks: of all.
-    fn settle_only(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room, only: &[u8]) {
+    fn settle_only(&mut self, body: &Body<D>, u: FieldView<D>, workspace: &Workspace, only: &[u8]) {
         for pass in 0..self.bonds.law.passes {
             let out = self.bonds.point.shared();
-            let mut view = self.bonds.view(u, room);
+            let mut view = self.bonds.view(u, workspace);
             view.point = out.seen();
             self.law.sums(&self.bonds.blocks, view, pass, out, only);
             self.bonds.point.fill(&body.exchange);
@@ -133,8 +135,8 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     }
 
     /// Forces on points that have settled.
-    fn pull(&self, body: &Body<D>, u: FieldView<D>, room: &Room, f: FieldViewMut<D>) {
-        let view = self.bonds.view(u, room);
+    fn pull(&self, body: &Body<D>, u: FieldView<D>, workspace: &Workspace, f: FieldViewMut<D>) {
+        let view = self.bonds.view(u, workspace);
         let f = f.map(|column| Shared(column.as_mut_ptr()));
         self.law
             .forces(&self.bonds.blocks, view, f, self.bonds.pushed(body));
@@ -147,39 +149,39 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         body: &Body<D>,
         u: FieldView<D>,
         mut f: FieldViewMut<D>,
-        (motion, room): (Motion<D>, &mut Room),
+        (motion, workspace): (Motion<D>, &mut Workspace),
         seen: Option<&mut PointEnergiesMut>,
     ) -> Tally {
-        let after = motion.release == Release::AfterForce;
-        self.work_before(body, u, room);
-        self.settle(body, u, room);
+        let after = motion.breakage == Breakage::AfterForce;
+        self.work_before(body, u, workspace);
+        self.point_update(body, u, workspace);
         if after {
-            self.pull(body, u, room, view_mut(&mut f));
+            self.pull(body, u, workspace, view_mut(&mut f));
         }
         if after || self.measures() {
-            self.measure(body, u, room);
+            self.measure(body, u, workspace);
         }
-        let mut total = self.remember(body, u, room);
+        let mut total = self.remember(body, u, workspace);
         self.bonds.step = 0.0;
-        room.constants.clone_from(&room.still);
+        workspace.constants.clone_from(&workspace.still);
         if let Some(seen) = seen {
-            self.seen(body, u, room, seen);
+            self.seen(body, u, workspace, seen);
         }
         let drift = match after {
             true => motion.steps[1],
             false => -motion.steps[0],
         };
-        if let Some(tear) = self.tear(body, u, room, away(&motion, drift)) {
-            let torn = std::mem::take(&mut self.bonds.torn);
-            self.settle_only(body, u, room, &torn);
-            total += self.remember_only(body, u, room, &torn);
-            self.bonds.torn = torn;
-            total += tear;
+        if let Some(break_bonds) = self.break_bonds(body, u, workspace, away(&motion, drift)) {
+            let damaged = std::mem::take(&mut self.bonds.damaged);
+            self.settle_only(body, u, workspace, &damaged);
+            total += self.remember_only(body, u, workspace, &damaged);
+            self.bonds.damaged = damaged;
+            total += break_bonds;
         }
         if !after {
-            self.pull(body, u, room, f);
+            self.pull(body, u, workspace, f);
         }
-        self.keep(u, room);
+        self.keep(u, workspace);
         self.bonds.next_critical(body);
         total
     }
@@ -188,13 +190,13 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         &self,
         body: &Body<D>,
         u: FieldView<D>,
-        room: &Room,
+        workspace: &Workspace,
         out: Option<&mut PointEnergiesMut>,
     ) -> [f64; 2] {
         let fields = out.map(|out| EnergyFields::of(out, body.len));
         let held = self.bonds.held_energies();
         self.bonds.blocks.sum(&Energies {
-            law: self.asked(self.bonds.view(u, room)),
+            law: self.asked(self.bonds.view(u, workspace)),
             stretches: self.bonds.law.stretches,
             held: &held,
             pushed: self.bonds.pushed(body),
@@ -216,39 +218,39 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         &self,
         body: &Body<D>,
         u: FieldView<D>,
-        room: &Room,
+        workspace: &Workspace,
         out: &mut PointEnergiesMut,
     ) {
-        self.energies(body, u, room, Some(&mut *out));
+        self.energies(body, u, workspace, Some(&mut *out));
         self.bonds.dilate(out);
     }
 
     /// Test and break, and what points lose; `None`: nothing broke, on any rank.
-    fn tear(
+    fn break_bonds(
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        room: &Room,
+        workspace: &Workspace,
         drift: Drift<D>,
     ) -> Option<Tally> {
-        if !self.bonds.find_breaking(body, u, room, drift.v) {
+        if !self.bonds.find_breaking(body, u, workspace, drift.v) {
             return None;
         }
         let form = self.bonds.form.shared();
         let breaks = Shared(self.bonds.breaks.as_mut_ptr());
         let alive = Shared(self.bonds.alive.as_mut_ptr());
         let integrity = Shared(self.bonds.integrity.as_mut_ptr());
-        let mut view = self.bonds.view(u, room);
+        let mut view = self.bonds.view(u, workspace);
         (view.form, view.alive) = (form.seen(), alive.seen());
-        let torn = Torn {
+        let damaged = Breaking {
             // a step of equilibrium is at its end already, with its relaxed forces
             still: if self.bonds.step > 0.0 {
-                &room.constants
+                &workspace.constants
             } else {
-                &room.still
+                &workspace.still
             },
             body,
-            groups: &self.bonds.torn,
+            groups: &self.bonds.damaged,
             breaks,
             alive,
             form,
@@ -256,10 +258,10 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             drift,
         };
         let of_whole = self.bonds.law.form_of_whole;
-        let (tally, _) = self.bonds.blocks.tally(&Tear {
+        let (tally, _) = self.bonds.blocks.tally(&BreakBonds {
             law: self.asked(view),
             forms: if of_whole { self.bonds.law.form } else { 0 },
-            torn,
+            damaged,
         });
         self.bonds.look_integrity(body);
         self.bonds.look_stiffness(body, false);
@@ -267,8 +269,8 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     }
 
     /// Memory at the end of a step.
-    fn remember(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) -> Tally {
-        self.remember_only(body, u, room, &[])
+    fn remember(&mut self, body: &Body<D>, u: FieldView<D>, workspace: &Workspace) -> Tally {
+        self.remember_only(body, u, workspace, &[])
     }
 
     /// Of the points that are marked; no marks: of all.
@@ -276,7 +278,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         &mut self,
         body: &Body<D>,
         u: FieldView<D>,
-        room: &Room,
+        workspace: &Workspace,
         only: &[u8],
     ) -> Tally {
         if self.bonds.memory.is_empty() && self.bonds.past.data.is_empty() {
@@ -284,7 +286,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         }
         let past = self.bonds.past.shared();
         let memory = Shared(self.bonds.memory.as_mut_ptr());
-        let mut view = self.bonds.view(u, room);
+        let mut view = self.bonds.view(u, workspace);
         (view.past, view.memory) = (past.seen(), memory.seen());
         let written = (past, memory);
         let blocks = &self.bonds.blocks;
@@ -300,25 +302,25 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     }
 
     /// The first half of the work of the step that ends here, by the forces at its start.
-    fn work_before(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
+    fn work_before(&mut self, body: &Body<D>, u: FieldView<D>, workspace: &Workspace) {
         if self.bonds.work.is_empty() {
             return;
         }
         let Some(mut before) = self.bonds.before.take() else {
             return;
         };
-        let start = Room {
+        let start = Workspace {
             records: std::mem::take(&mut before.records),
-            constants: room.still.clone(),
+            constants: workspace.still.clone(),
             still: vec![],
         };
         std::mem::swap(&mut self.bonds.expansion, &mut before.expansion);
-        self.settle(body, view(&before.u), &start);
+        self.point_update(body, view(&before.u), &start);
         std::mem::swap(&mut self.bonds.expansion, &mut before.expansion);
         let work = Shared(self.bonds.work.as_mut_ptr());
         let mut there = self.bonds.view(view(&before.u), &start);
         there.expansion = &before.expansion;
-        let here = self.bonds.view(u, room);
+        let here = self.bonds.view(u, workspace);
         self.bonds.blocks.run(&Work {
             law: self.asked(there),
             other: here,
@@ -330,17 +332,17 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     }
 
     /// What bonds are measured by, at the forces of now, which are settled.
-    fn measure(&mut self, body: &Body<D>, u: FieldView<D>, room: &Room) {
+    fn measure(&mut self, body: &Body<D>, u: FieldView<D>, workspace: &Workspace) {
         if let Some(before) = self.bonds.before.take() {
-            let start = Room {
+            let start = Workspace {
                 records: before.records,
-                ..Room::default()
+                ..Workspace::default()
             };
             let work = Shared(self.bonds.work.as_mut_ptr());
             let mut there = self.bonds.view(view(&before.u), &start);
             there.expansion = &before.expansion;
-            there.constants = &room.constants;
-            let here = self.bonds.view(u, room);
+            there.constants = &workspace.constants;
+            let here = self.bonds.view(u, workspace);
             self.bonds.blocks.run(&Work {
                 law: self.asked(here),
                 other: there,
@@ -353,13 +355,13 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             });
         }
         let out = Shared(self.bonds.damage.as_mut_ptr());
-        if self.mises(body, u, room, out) {
+        if self.mises(body, u, workspace, out) {
             body.exchange.fill(&mut self.bonds.damage);
         }
     }
 
     /// Von Mises stress of points over their limits, where bonds break by that; do they?
-    fn mises(&self, body: &Body<D>, u: FieldView<D>, room: &Room, out: Shared) -> bool {
+    fn mises(&self, body: &Body<D>, u: FieldView<D>, workspace: &Workspace, out: Shared) -> bool {
         let Measure::VonMises(limit) = &self.bonds.criteria.measure else {
             return false;
         };
@@ -372,7 +374,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             out,
         };
         self.bonds.blocks.run(&VonMises {
-            law: self.asked(self.bonds.view(u, room)),
+            law: self.asked(self.bonds.view(u, workspace)),
             says_across: self.bonds.law.across,
             limits,
         });
@@ -385,10 +387,10 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
             return None;
         }
         let mut out = self.bonds.damage.clone();
-        let room = self.take_room(u, self.bonds.step);
-        self.settle(body, u, &room);
-        self.mises(body, u, &room, Shared(out.as_mut_ptr()));
-        self.bonds.room = room;
+        let workspace = self.take_workspace(u, self.bonds.step);
+        self.point_update(body, u, &workspace);
+        self.mises(body, u, &workspace, Shared(out.as_mut_ptr()));
+        self.bonds.workspace = workspace;
         body.exchange.fill(&mut out);
         Some(out.to_vec())
     }
@@ -403,16 +405,16 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         if self.bonds.work.is_empty() {
             return false;
         }
-        let room = self.take_room(u, self.bonds.step);
-        self.settle(body, u, &room);
-        let rest = Before::zeros(body.len, room.records.len());
-        let at_rest = Room {
+        let workspace = self.take_workspace(u, self.bonds.step);
+        self.point_update(body, u, &workspace);
+        let rest = Before::zeros(body.len, workspace.records.len());
+        let at_rest = Workspace {
             records: rest.records,
-            ..Room::default()
+            ..Workspace::default()
         };
         let mut done = vec![0.0; self.bonds.work.len()];
         self.bonds.blocks.run(&Work {
-            law: self.asked(self.bonds.view(u, &room)),
+            law: self.asked(self.bonds.view(u, &workspace)),
             other: self.bonds.view(view(&rest.u), &at_rest),
             part: -0.5,
             work: Shared(done.as_mut_ptr()),
@@ -427,7 +429,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
                 visit(i, j, bonds.family.bond(group, k, l).0, done[at] / limit);
             }
         });
-        self.bonds.room = room;
+        self.bonds.workspace = workspace;
         true
     }
 
@@ -440,7 +442,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
     }
 
     /// The next step begins here.
-    fn keep(&mut self, u: FieldView<D>, room: &Room) {
+    fn keep(&mut self, u: FieldView<D>, workspace: &Workspace) {
         if self.bonds.work.is_empty() {
             return;
         }
@@ -449,7 +451,7 @@ impl<const D: usize, F: Family<D>> MaterialInteraction<D, F> {
         for a in 0..D {
             before.u[a].copy_from_slice(u[a]);
         }
-        before.records.clone_from(&room.records);
+        before.records.clone_from(&workspace.records);
         before.expansion = self.bonds.expansion.clone();
     }
 }

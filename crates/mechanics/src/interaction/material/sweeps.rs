@@ -1,4 +1,4 @@
-//! The sweeps of a law: sums of each pass, answers of bonds, what is remembered, energies.
+//! The sweeps of a law: sums of each pass, force states of bonds, what is remembered, energies.
 
 use super::view::{GroupOf, View, mirrored, save};
 use crate::execute::blocks::Shared;
@@ -28,8 +28,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> 
     fn block<L: Lane>(&self, block: usize) {
         let (v, pass) = (&self.view, self.pass);
         for group in v.block(block) {
-            let meant = self.only.get(group).copied().unwrap_or(u8::MAX);
-            if meant == 0 {
+            let selected = self.only.get(group).copied().unwrap_or(u8::MAX);
+            if selected == 0 {
                 continue;
             }
             // SAFETY: groups of the family; each is written by one block
@@ -40,9 +40,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> 
                     point = v.point::<L>(at.rows);
                 }
                 let sum = v.sum::<L>(pass, &at, &point);
-                v.settle::<L>(pass, &at, sum, &mut point);
-                if meant != u8::MAX {
-                    point = kept(meant, &v.point::<L>(at.rows), &point);
+                v.point_update::<L>(pass, &at, sum, &mut point);
+                if selected != u8::MAX {
+                    point = kept(selected, &v.point::<L>(at.rows), &point);
                 }
                 save(self.out, at.rows, &point);
             }
@@ -52,8 +52,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> 
 
 /// What the points that are meant have now, and the others had before.
 #[inline(always)]
-fn kept<L: Lane, N: Numbers<L>>(meant: u8, before: &N, now: &N) -> N {
-    let (others, mut all) = (L::dead(meant), N::constant(0.0));
+fn kept<L: Lane, N: Numbers<L>>(selected: u8, before: &N, now: &N) -> N {
+    let (others, mut all) = (L::dead(selected), N::constant(0.0));
     for n in 0..N::COUNT {
         all.set(n, L::select(others, before.get(n), now.get(n)));
     }
@@ -148,7 +148,7 @@ unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
             point,
             memory: &memory,
         };
-        let mut own = v.law.answer(&bond, &end);
+        let mut own = v.law.force_state(&bond, &end);
         let mut other = if M::ALIKE && v.alike {
             own.mirrored()
         } else {
@@ -164,7 +164,7 @@ unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
                 let other = v.constants_at::<L>(ends);
                 v.law.between(other, &at.constants)
             };
-            v.law.answer(
+            v.law.force_state(
                 &mirrored(&bond),
                 &End {
                     constants: &constants,
@@ -202,8 +202,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
         let v = &self.view;
         let mut tally = BlockTally::default();
         for group in v.block(block) {
-            let meant = self.only.get(group).copied().unwrap_or(u8::MAX);
-            if meant == 0 {
+            let selected = self.only.get(group).copied().unwrap_or(u8::MAX);
+            if selected == 0 {
                 continue;
             }
             // SAFETY: groups of the family; each is written by one block
@@ -232,7 +232,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                             memory: &old,
                         };
                         let mut new = old;
-                        lost = weight.fma(v.law.advance(&bond, &end, &mut new), lost);
+                        lost = weight.fma(v.law.state_update(&bond, &end, &mut new), lost);
                         if M::GATHERS {
                             past = past.plus(weight, v.law.gathered(&bond, &end, &new));
                         }
@@ -240,7 +240,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                             let (old, new) = (old.get(n), new.get(n));
                             // a line that did not change is not written
                             if L::any(old.lt(new)) || L::any(new.lt(old)) {
-                                let x = L::select(L::or(dead, L::dead(meant)), old, new);
+                                let x = L::select(L::or(dead, L::dead(selected)), old, new);
                                 x.store(self.memory.at(v.family.own(group, k, n, count)));
                             }
                         }
@@ -254,12 +254,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                 };
                 lost = lost + v.law.remember(&site, &point, &mut past);
                 lost = part_of(v.integrity::<L>(at.rows), lost);
-                if meant != u8::MAX {
-                    past = kept(meant, &before, &past);
+                if selected != u8::MAX {
+                    past = kept(selected, &before, &past);
                 }
                 save(self.past, at.rows, &past);
                 for (l, x) in lost.to_array().iter().enumerate() {
-                    if v.family.is_point(group, l) && meant >> l & 1 == 1 {
+                    if v.family.is_point(group, l) && selected >> l & 1 == 1 {
                         tally.dissipated += x * self.volume.at(at.rows.slot(l));
                     }
                 }

@@ -1,7 +1,7 @@
 //! Tangents by dual numbers: every derivative of a law is that of its own functions.
 //!
 //! With direct sums `d_p = Σ_k ν V share_p′(η_k) δη_k` of each pass, the point is changed by `δ(point) = Σ_p G_p d_p`: a pass adds
-//! `J (d_p + Q δ(point)) + M δ(point)`, J and M the derivatives of `settle` by sum and point, Q that of the sum by the point.
+//! `J (d_p + Q δ(point)) + M δ(point)`, J and M the derivatives of `point_update` by sum and point, Q that of the sum by the point.
 
 use super::slopes::{Bent, LawSlopes, PlainEnd};
 use crate::body::{Body, FieldView};
@@ -101,9 +101,9 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
         }
     }
 
-    /// Derivatives of what one end of a node's bond answers, as the force density on i: by η, and by the channels of that end;
+    /// Derivatives of the force state of one end of a node's bond, as the force density on i: by η, and by the channels of that end;
     /// with the constants of the `other`.
-    fn answer(
+    fn force_state(
         &self,
         node: &Node<D>,
         b: &Bent<D>,
@@ -189,8 +189,8 @@ impl<const D: usize, F: Family<D>> Tangents<'_, D, F> {
             for (b, shares) in node.bonds.iter().zip(&node.shares) {
                 let j = body.exchange.original(b.end);
                 let Some(partner) = &nodes[j] else { continue };
-                let (own, pull, force) = self.answer(node, b, (node, partner), true);
-                let (other, partner_pull, more) = self.answer(node, b, (partner, node), false);
+                let (own, pull, force) = self.force_state(node, b, (node, partner), true);
+                let (other, partner_pull, more) = self.force_state(node, b, (partner, node), false);
                 let y: [f64; D] = crate::array::from_fn(|a| b.xi[a] + b.moved[a]);
                 let square: f64 = y.iter().map(|c| c * c).sum();
                 let along: f64 = (0..D).map(|a| (force[a] + more[a]) * y[a]).sum();

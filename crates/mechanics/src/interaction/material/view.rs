@@ -124,7 +124,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
     /// # Safety
     /// Ends of the group's bond.
     #[inline(always)]
-    pub unsafe fn apart<L: Lane>(
+    pub unsafe fn relative_displacement<L: Lane>(
         &self,
         at: &GroupOf<L, D, F, M>,
         ends: F::Slots,
@@ -152,7 +152,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
     ) -> (Bond<L, D>, L) {
         // SAFETY: the caller's promise
         unsafe {
-            let eta = self.apart::<L>(at, ends, dead);
+            let eta = self.relative_displacement::<L>(at, ends, dead);
             self.deformed(at, k, ends, dead, eta)
         }
     }
@@ -298,7 +298,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         unsafe { slots.load::<L, M::Point<L>>(self.point) }
     }
 
-    /// The sum of a pass over the whole bonds of a group, whose points are as the pass before left them.
+    /// The sum of a pass over the intact bonds of a group, whose points are as the pass before left them.
     ///
     /// # Safety
     /// A group of the family.
@@ -321,7 +321,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
                     point,
                     memory: &memory,
                 };
-                sum = sum.plus(weight, self.law.share(pass, &bond, &end));
+                sum = sum.plus(weight, self.law.pair_pass(pass, &bond, &end));
             }
         }
         sum
@@ -329,7 +329,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
 
     /// What points make of a sum.
     #[inline(always)]
-    pub unsafe fn settle<L: Lane>(
+    pub unsafe fn point_update<L: Lane>(
         &self,
         pass: usize,
         at: &GroupOf<L, D, F, M>,
@@ -346,7 +346,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
                 past: &past,
                 around: self.around::<L>(at.rows),
             };
-            self.law.settle(pass, &site, sum, point);
+            self.law.point_update(pass, &site, sum, point);
         }
     }
 }

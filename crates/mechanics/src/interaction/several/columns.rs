@@ -1,11 +1,11 @@
 //! Columns of several bodies: those of each side by side, then those of the bonds between them.
 
-use super::{SeveralInteraction, pieces};
+use super::{MultiBodyInteraction, pieces};
 use crate::body::{Body, FieldView, view};
 use crate::columns::On;
 use crate::interaction::Interaction;
 
-impl<const D: usize> SeveralInteraction<D> {
+impl<const D: usize> MultiBodyInteraction<D> {
     /// Bodies that have no such column have 0 at their points, and no bonds in it.
     pub(super) fn read_named(
         &self,

@@ -37,7 +37,7 @@ fn springs(body: &Body<3>, ends: [f64; 2]) -> Bonds {
                 crate::array::from_fn(|a| crate::array::from_fn(|b| if a == b { c } else { 0.0 }))
             })
             .to_vec(),
-        carriers: None,
+        load_map: None,
         mass: None,
     };
     Some(Box::new(MicromoduliInteraction::new(
@@ -61,12 +61,12 @@ fn atoms(body: &Body<3>) -> Box<dyn Interaction<3>> {
     ))
 }
 
-fn side_by_side(bonds: [fn(&Body<3>) -> Bonds; 3]) -> (Body<3>, SeveralInteraction<3>) {
+fn side_by_side(bonds: [fn(&Body<3>) -> Bonds; 3]) -> (Body<3>, MultiBodyInteraction<3>) {
     let bodies = [0.0, 10.0, 20.0].map(pair);
     let own = bodies.iter().zip(bonds).map(|(body, of)| of(body));
     let own = own.collect();
     let body = Body::several(bodies.to_vec());
-    let made = SeveralInteraction::new(&body, own, vec![]);
+    let made = MultiBodyInteraction::new(&body, own, vec![]);
     (body, made)
 }
 
@@ -126,7 +126,7 @@ fn atoms_alone_are_a_potential() {
         ([LOOSE, LOOSE, LOOSE], false),
     ] {
         let (_, it) = side_by_side(bonds);
-        assert_eq!((it.is_potential(), it.has_fans()), (potential, false));
+        assert_eq!((it.is_potential(), it.has_many_body()), (potential, false));
     }
 }
 
@@ -144,7 +144,7 @@ fn one_with_angles_has_terms_of_three() {
         Some(Box::new(made))
     };
     let (_, it) = side_by_side([ATOMS, molecules, LOOSE]);
-    assert!(it.has_fans() && it.is_potential());
+    assert!(it.has_many_body() && it.is_potential());
 }
 
 /// Between points at 0 and 1 and those at 2 and 3 two bonds are absent and the third is broken: of one whole bond and it half is lost.
@@ -168,9 +168,9 @@ fn absent_bonds_between_bodies_are_no_damage() {
         simd: Simd::detect(),
     });
     let long = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).abs() > 1.5;
-    assert_eq!(bonds.cut(&cloud, CrackKind::Absent, &long), 4);
+    assert_eq!(bonds.cut(&cloud, CrackKind::Excluded, &long), 4);
     let interface = Interface::new(&body, cloud, body.slots.clone(), Box::new(bonds));
-    let mut it = SeveralInteraction::new(&body, own, vec![interface]);
+    let mut it = MultiBodyInteraction::new(&body, own, vec![interface]);
     // that of the springs does not break
     assert_eq!(it.cut(&body, CrackKind::Broken, &|_, _| true), 2);
     it.prepare(&body);

@@ -145,9 +145,9 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             settled: false,
             most_contact,
             volume,
-            apart: Apart::default(),
+            out_of_line: Apart::default(),
         };
-        made.apart.blocks = made.by_partners(body, grid);
+        made.out_of_line.blocks = made.by_partners(body, grid);
         made.look();
         made
     }

@@ -9,11 +9,11 @@
 //! With `⟨(n·εn)²⟩ = (tr²ε + 2 ε:ε)/(D(D+2))`, `⟨|εn|²⟩ = ε:ε/D` and `M1 = Σ ω ν V |ξ|` uniform strain has
 //! `λ = M1 (c − κ)/(2D(D+2))` and `G = M1 (2c + Dκ)/(4D(D+2))`, λ of the D dimensions: `c = 2D (Dλ + 2G)/M1`, `κ = 4D (G − λ)/M1`.
 //! κ ≥ 0 makes W a sum of squares, whatever bonds are whole: then ν is at most 1/4, in plane stress 1/3, where κ = 0 is `pmb`.
-//! A point whose bonds do not span a plane has no rotation, and none of its bonds answers across.
+//! A point whose bonds do not span a plane has no rotation, and none of its bonds has a force state across.
 
 use super::tensor::{self, Matrix};
-use super::{Bond, End, Free, Kin, Material, Site};
-use crate::law::descriptor::{self, Descriptor, Given, MODULI, Shelved};
+use super::{Bond, End, Free, Material, ReferenceFamily, Site};
+use crate::law::descriptor::{self, Descriptor, Given, MODULI, Registered};
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Parameters, Plane};
 
@@ -59,7 +59,7 @@ const STEPS: usize = 14;
 
 /// `y − Rξ` and Rξ.
 #[inline(always)]
-fn apart<N: Number, const D: usize>(bond: &Bond<N, D>, turn: &Matrix<N, D>) -> [[N; D]; 2] {
+fn rotated<N: Number, const D: usize>(bond: &Bond<N, D>, turn: &Matrix<N, D>) -> [[N; D]; 2] {
     let more = tensor::times(turn, &bond.xi);
     let (mut off, mut turned) = (bond.eta, bond.xi);
     for a in 0..D {
@@ -88,9 +88,9 @@ impl<const D: usize> Material<D> for BondRotation {
         [0.5 * m.along, 0.5 * m.across]
     }
 
-    fn form(&self, _: usize, kin: Kin<D>) -> Form<f64, D> {
+    fn form(&self, _: usize, reference: ReferenceFamily<D>) -> Form<f64, D> {
         let mut k = tensor::zero::<f64, D>();
-        kin.each(|p| {
+        reference.each(|p| {
             let length = p.xi.iter().map(|x| x * x).sum::<f64>().sqrt();
             let weight = p.omega * p.volume / length;
             for r in 0..D {
@@ -119,7 +119,7 @@ impl<const D: usize> Material<D> for BondRotation {
     }
 
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N, D>) -> Matrix<N, D> {
+    fn pair_pass<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N, D>) -> Matrix<N, D> {
         let mut sum = tensor::zero();
         let weight = bond.omega * bond.inv_length;
         for r in 0..D {
@@ -131,7 +131,7 @@ impl<const D: usize> Material<D> for BondRotation {
     }
 
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         _: usize,
         site: &Site<N, [N; 2], Form<N, D>, [N; 0]>,
@@ -170,10 +170,10 @@ impl<const D: usize> Material<D> for BondRotation {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Free<N, D> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Free<N, D> {
         let (turn, known) = end.point;
         let [along, across] = *end.constants;
-        let [off, turned] = apart(bond, turn);
+        let [off, turned] = rotated(bond, turn);
         let pull = along * bond.stretch;
         let (across, weight) = (across * *known, bond.omega * bond.inv_current);
         let mut t = bond.xi;
@@ -189,7 +189,7 @@ impl<const D: usize> Material<D> for BondRotation {
     fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> N {
         let (turn, known) = end.point;
         let [along, across] = *end.constants;
-        let [off, _] = apart(bond, turn);
+        let [off, _] = rotated(bond, turn);
         let mut square = off[0] * off[0];
         for a in 1..D {
             square = off[a].fma(off[a], square);
@@ -201,13 +201,13 @@ impl<const D: usize> Material<D> for BondRotation {
     }
 }
 
-impl Shelved for BondRotation {
-    const TURNS: bool = true;
+impl Registered for BondRotation {
+    const TANGENTIAL_STIFFNESS: bool = true;
 
     fn descriptor() -> Descriptor {
         Descriptor::new(
             "bond_rotation",
-            "Bonds that resist stretch and turning against their point's rotation: W = ¼ Σ ω ν V |ξ| (c s² + κ γ²), κ ≥ 0. Two of young, poisson, bulk, shear; Poisson's ratio at most 1/4, plane stress 1/3, where it is pmb.",
+            "Bonds with normal and tangential stiffness (against the rotation of their points): W = ¼ Σ ω ν V |ξ| (c s² + κ γ²), κ ≥ 0. Two of young, poisson, bulk, shear; Poisson's ratio at most 1/4, plane stress 1/3, where it is pmb.",
         )
         .source("Zhu & Ni 2017; Gerstle, Sau & Silling 2007")
         .example("{ young = \"30 GPa\", poisson = 0.15 }")
@@ -234,7 +234,7 @@ impl Shelved for BondRotation {
                     _ => ("1/4", "three dimensions"),
                 };
                 return Err(format!(
-                    "a Poisson's ratio of {} asks for bonds that push aside when they turn, and torn families of such bonds are not stable: in {what} it is at most {most}; take lps for more",
+                    "a Poisson's ratio of {} needs a negative tangential stiffness, and damaged families of such bonds are not stable: in {what} it is at most {most}; take lps for more",
                     crate::quantity::rounded(moduli.poisson, 6)
                 ));
             }

@@ -1,13 +1,13 @@
 //! Laws of bonds that know nothing but their own stretch: two functions, and all else follows.
 
 use super::{Along, Bond, End, Material};
-use crate::law::descriptor::{self, Descriptor, Given, Key, Shelved};
+use crate::law::descriptor::{self, Descriptor, Given, Key, Registered};
 use crate::law::number::Number;
 use crate::law::solid::linear::{ONE_STIFFNESS, stiffness};
-use crate::spec::{InterfaceRule, LawSpec, Parameters, Plane};
+use crate::spec::{BondMixing, LawSpec, Parameters, Plane};
 use std::marker::PhantomData;
 
-/// Bonds that answer along themselves with `T = ½ c ω t(s)` and store `½ c ω |ξ| w(s)` at either end, `w′ = t`, `t = s + …` for small
+/// Bonds with a force state along themselves, `T = ½ c ω t(s)` and store `½ c ω |ξ| w(s)` at either end, `w′ = t`, `t = s + …` for small
 /// stretches. c is the micromodulus that one of young, bulk, micromodulus gives; `K` numbers beside it are read by the functions.
 pub trait BondLaw<const K: usize>: Send + Sync + 'static {
     /// Keys of those numbers.
@@ -30,7 +30,7 @@ pub struct Bonds<L, const K: usize> {
     /// ½ c and the numbers of each material.
     materials: Vec<([f64; 1], [f64; K])>,
     /// What bonds between unlike micromoduli have; in parallel where all are alike.
-    rule: InterfaceRule,
+    rule: BondMixing,
     law: PhantomData<L>,
 }
 
@@ -63,15 +63,15 @@ impl<L: BondLaw<K>, const K: usize, const D: usize> Material<D> for Bonds<L, K> 
         let half = match self.rule {
             // each end has its own
             _ if !L::RULED => own,
-            InterfaceRule::Parallel => N::constant(0.5) * (own + *other),
-            InterfaceRule::Series => (N::constant(2.0) * own * *other).div(own + *other),
-            InterfaceRule::Minimum => own.least(*other),
+            BondMixing::Arithmetic => N::constant(0.5) * (own + *other),
+            BondMixing::Harmonic => (N::constant(2.0) * own * *other).div(own + *other),
+            BondMixing::Minimum => own.least(*other),
         };
         ([half], numbers)
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, K>) -> Along<N> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, K>) -> Along<N> {
         let ([c], numbers) = *end.constants;
         Along(c * bond.omega * L::tension(numbers, bond.stretch) * bond.inv_current)
     }
@@ -83,7 +83,7 @@ impl<L: BondLaw<K>, const K: usize, const D: usize> Material<D> for Bonds<L, K> 
     }
 }
 
-impl<L: BondLaw<K>, const K: usize> Shelved for Bonds<L, K> {
+impl<L: BondLaw<K>, const K: usize> Registered for Bonds<L, K> {
     fn descriptor() -> Descriptor {
         L::descriptor().keys(&ONE_STIFFNESS).keys(&L::NUMBERS)
     }
@@ -99,12 +99,12 @@ impl<L: BondLaw<K>, const K: usize> Shelved for Bonds<L, K> {
         };
         Ok(Bonds {
             materials: descriptor::each(all, of)?,
-            rule: InterfaceRule::Parallel,
+            rule: BondMixing::Arithmetic,
             law: PhantomData,
         })
     }
 
-    fn meeting(self, rule: InterfaceRule) -> Self {
+    fn meeting(self, rule: BondMixing) -> Self {
         let mut unlike = self.materials.windows(2).map(|m| m[0].0 != m[1].0);
         match L::RULED && unlike.any(|is| is) {
             true => Bonds { rule, ..self },

@@ -3,8 +3,8 @@
 //!
 //! The linear peridynamic solid of [`Solid`], whose bonds keep a plastic extension e^p:
 //! `W = ½κθ² + (α/2) Σ ω (e − e^p)²`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`. The deviatoric force state of a bond is
-//! `t = α ω e^d`, `e^d = e − e^p − μ|ξ|` with `μ = Σ ω |ξ| (e − e^p) / Σ ω |ξ|²` over the whole bonds. In an intact family e^p has no
-//! part along |ξ| and `μ = θ/n`, which is Mitchell's; in a torn one this deviator, and no other, is orthogonal to the pressure, so that
+//! `t = α ω e^d`, `e^d = e − e^p − μ|ξ|` with `μ = Σ ω |ξ| (e − e^p) / Σ ω |ξ|²` over the intact bonds. In an intact family e^p has no
+//! part along |ξ| and `μ = θ/n`, which is Mitchell's; in a damaged one this deviator, and no other, is orthogonal to the pressure, so that
 //! flow dissipates what the energy loses. It yields where `½ Σ t²/ω = ψ0`, and flows along it, `ė^p = λ t/ω`.
 //! With the stress that this norm stands for in shear, `σ = ‖t‖ √(3m/(n(n+2)))`, the return is the classical one:
 //! `Δε̄ = (σ_trial − σ_y(ε̄))/(3G + H)`, and `ψ0 = n(n+2) σ_y²/(6m)`: for a full ball and ω = 1 that is Mitchell's `25 σ_y²/(8πδ⁵)`,
@@ -15,9 +15,9 @@
 //! `γ = Δε̄/σ`, to `σ_b/(1 + S_b γ)` and `σ_a/(1 + S_a γ)`, with S = 3G where d is given, less by what a free section gives way, and `S_b = α m_y/(n(n+2)/3)` of the bonds.
 
 use super::section::{self, Section};
-use super::{Along, Bond, Columns, End, Kin, Material, Site};
+use super::{Along, Bond, Columns, End, Material, ReferenceFamily, Site};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Memory, Shelved};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Memory, Registered};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
@@ -141,12 +141,12 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         (own, m.section)
     }
 
-    fn form(&self, _: usize, kin: Kin<D>) -> f64 {
-        kin.inverse_weight()
+    fn form(&self, _: usize, reference: ReferenceFamily<D>) -> f64 {
+        reference.inverse_weight()
     }
 
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &Ends<N>) -> [N; 4] {
+    fn pair_pass<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &Ends<N>) -> [N; 4] {
         let (weight, e) = (bond.omega * bond.length, bond.extension());
         let elastic = e - end.memory[0];
         [
@@ -158,7 +158,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     }
 
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         _: usize,
         site: &SiteOf<N>,
@@ -221,7 +221,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
         let elastic = bond.extension() - end.memory[0];
         let t = end.point[STIFF].fma(elastic, end.point[ALONG] * bond.length);
         Along(bond.omega * t * bond.inv_current)
@@ -258,7 +258,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     }
 
     #[inline(always)]
-    fn advance<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>, memory: &mut [N; 1]) -> N {
+    fn state_update<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>, memory: &mut [N; 1]) -> N {
         memory[0] = end.memory[0] + end.point[REST] * Self::trial(bond, end);
         N::constant(0.0)
     }
@@ -361,7 +361,7 @@ const HARDENS: Key = descriptor::number(
 )
 .or(0.0);
 
-impl Shelved for ElasticPlastic {
+impl Registered for ElasticPlastic {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             "elastic_plastic",

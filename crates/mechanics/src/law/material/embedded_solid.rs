@@ -5,10 +5,12 @@
 //! are counted from the reference (the C of (A.16)), where bonds may pull, as those of embedded atoms do. A broken bond stays in ϑ with what
 //! it had in the reference, as in lps the weighted volume stays that of the family; bonds of no weight are none.
 
-use super::{Along, Bond, End, Kin, Material, Site};
+use super::{Along, Bond, End, Material, ReferenceFamily, Site};
 use crate::columns::Dimension;
 use crate::expression::Expression;
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Shelved, Value, number};
+use crate::law::descriptor::{
+    self, Bounds, Descriptor, Given, Key, Need, Registered, Value, number,
+};
 use crate::law::function::Function;
 use crate::law::number::Number;
 use crate::law::partner::Partner;
@@ -155,15 +157,15 @@ impl<const D: usize> Material<D> for EmbeddedSolid {
         [material as f64]
     }
 
-    fn form(&self, material: usize, kin: Kin<D>) -> f64 {
+    fn form(&self, material: usize, reference: ReferenceFamily<D>) -> f64 {
         let mut family = vec![];
-        kin.each(|p| family.push(*p));
+        reference.each(|p| family.push(*p));
         let weight = &self.materials[material].weight;
         at_rest(weight, self.horizon, family.iter())
     }
 
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &Ends<N>) -> N {
+    fn pair_pass<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &Ends<N>) -> N {
         let [material] = *end.constants;
         let [now, _] = self.weight(material, distance(bond), bond);
         let [rest, _] = self.weight(material, bond.length, bond);
@@ -171,7 +173,7 @@ impl<const D: usize> Material<D> for EmbeddedSolid {
     }
 
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         _: usize,
         site: &Site<N, [N; 1], N, [N; 0]>,
@@ -187,7 +189,7 @@ impl<const D: usize> Material<D> for EmbeddedSolid {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
         let ([material], r) = (*end.constants, distance(bond));
         let [_, weight] = self.weight(material, r, bond);
         let [_, pair] = self.pair(material, r, end.point[AT_REST], bond);
@@ -258,7 +260,7 @@ const KEYS: [Key; 4] = [
     ),
 ];
 
-impl Shelved for EmbeddedSolid {
+impl Registered for EmbeddedSolid {
     /// Moduli of small strains are those of the functions, whatever `bulk` says.
     const ISOTROPIC: bool = false;
     const PULLS_AT_REST: bool = true;

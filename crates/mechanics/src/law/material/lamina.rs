@@ -19,7 +19,7 @@ use super::fibres::{Fibres, of_kind};
 use super::non_ordinary::stiffness::PAIRS;
 use super::{Along, Bond, End, Material, Partner};
 use crate::columns::Dimension;
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Shelved, Value};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Registered, Value};
 use crate::law::number::Number;
 use crate::quantity::rounded;
 use crate::space::{Point, length};
@@ -84,7 +84,7 @@ impl<const D: usize> Material<D> for Lamina {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Along<N> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Along<N> {
         Along(half(bond, end) * bond.omega * bond.stretch * bond.inv_current)
     }
 
@@ -265,9 +265,9 @@ fn constants(d: usize, plane: Plane, given: &Given) -> Result<LaminaConstants, S
     })
 }
 
-impl Shelved for Lamina {
+impl Registered for Lamina {
     const ISOTROPIC: bool = false;
-    const KINDS: bool = true;
+    const BOND_CLASSES: bool = true;
 
     fn descriptor() -> Descriptor {
         let list = |name, value, need, doc| Key {
@@ -293,7 +293,7 @@ impl Shelved for Lamina {
                 FIBRE,
                 Value::List(3, Dimension::NUMBER, Bounds::ANY),
                 Need::Optional,
-                "Direction of the fibre, three numbers, along which the lattice has bonds; [1, 0, 0] when left out.",
+                "Direction of the fibre, three numbers, along which the lattice has bonds; [1, 0, 0] by default.",
             ),
             descriptor::number(
                 CRITICAL,

@@ -21,7 +21,7 @@ pub mod thermoelastic_solid;
 pub mod viscoelastic;
 
 use crate::columns::Declaration;
-use crate::law::descriptor::Shelved;
+use crate::law::descriptor::Registered;
 use crate::law::number::Number;
 pub use crate::law::partner::Partner;
 use crate::space::Point;
@@ -53,13 +53,13 @@ pub trait Kinds {
     /// One of every dimension.
     fn law<M>(&mut self)
     where
-        M: Shelved + Material<1> + Material<2> + Material<3>;
+        M: Registered + Material<1> + Material<2> + Material<3>;
 
     /// One that a smaller law S takes the place of where that fits the parameters of all materials.
     fn law_or_smaller<M, S>(&mut self, _fits: fn(&Parameters) -> bool)
     where
-        M: Shelved + Material<1> + Material<2> + Material<3>,
-        S: Shelved + Material<1> + Material<2> + Material<3>,
+        M: Registered + Material<1> + Material<2> + Material<3>,
+        S: Registered + Material<1> + Material<2> + Material<3>,
     {
         self.law::<M>();
     }
@@ -67,13 +67,13 @@ pub trait Kinds {
     /// One that means nothing on a line.
     fn solid<M>(&mut self)
     where
-        M: Shelved + Material<2> + Material<3>;
+        M: Registered + Material<2> + Material<3>;
 
     /// One that another takes the place of where that fits the parameters of all materials.
     fn solid_or<M, O>(&mut self, _fits: fn(&Parameters) -> bool)
     where
-        M: Shelved + Material<2> + Material<3>,
-        O: Shelved + Material<2> + Material<3>,
+        M: Registered + Material<2> + Material<3>,
+        O: Registered + Material<2> + Material<3>,
     {
         self.solid::<M>();
     }
@@ -139,7 +139,7 @@ impl<N: Number, const D: usize> Bond<N, D> {
 pub struct End<'a, C, P, M> {
     /// Constants of the material of this end.
     pub constants: &'a C,
-    /// What [`Material::settle`] made.
+    /// What [`Material::point_update`] made.
     pub point: &'a P,
     /// What this end's bond remembers.
     pub memory: &'a M,
@@ -166,11 +166,11 @@ pub struct Around<N> {
 
 /// The force state T⟨ξ⟩ of one end (force / volume²).
 pub trait ForceState<N, const D: usize>: Copy {
-    /// `T_i⟨ξ⟩ − T_j⟨−ξ⟩` at i, where `other` is what j answers to the bond as it sees it.
+    /// `T_i⟨ξ⟩ − T_j⟨−ξ⟩` at i, where `other` is the force state of j, of the bond as j sees it.
     fn pull(self, other: Self, bond: &Bond<N, D>) -> [N; D];
     /// `T⟨ξ⟩`
     fn alone(self, bond: &Bond<N, D>) -> [N; D];
-    /// What the other end answers that is in the same state.
+    /// The force state of the other end, which is in the same state.
     fn mirrored(self) -> Self;
     /// So many times as much.
     fn times(self, factor: N) -> Self;
@@ -246,32 +246,32 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
 
 /// The reference family of a point, as a law may ask for it: any sum over its bonds.
 #[derive(Clone, Copy)]
-pub struct Kin<'a, const D: usize> {
+pub struct ReferenceFamily<'a, const D: usize> {
     each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>)),
     /// Horizon of the point over that of the material, which has the longest one of the body (–).
     pub reach: f64,
     /// Has it lost any of its bonds?
-    pub torn: bool,
+    pub damaged: bool,
 }
 
-impl<'a, const D: usize> Kin<'a, D> {
+impl<'a, const D: usize> ReferenceFamily<'a, D> {
     /// Of what visits every bond, always in the same order.
     pub fn new(each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>))) -> Self {
-        Kin {
+        ReferenceFamily {
             each,
             reach: 1.0,
-            torn: false,
+            damaged: false,
         }
     }
 
     /// The same of a point with a horizon of its own.
     pub fn within(self, reach: f64) -> Self {
-        Kin { reach, ..self }
+        ReferenceFamily { reach, ..self }
     }
 
     /// The same, which has lost bonds or not.
-    pub fn torn(self, torn: bool) -> Self {
-        Kin { torn, ..self }
+    pub fn damaged(self, damaged: bool) -> Self {
+        ReferenceFamily { damaged, ..self }
     }
 
     /// Visit every bond.
@@ -321,15 +321,15 @@ pub struct Columns {
 /// A law.
 ///
 /// # Contract
-/// - All functions are pure. Sums are over the whole bonds of a point, each times `ν V_j`.
-/// - For every pass p below [`Material::PASSES`]: `S = Σ ν V_j share(p, bond, …)`, then `settle(p, …, S, point)`. Passes begin with a
-///   `point` of zeros; `share` sees the own point as the pass before left it. Then every bond answers from both ends.
+/// - All functions are pure. Sums are over the intact bonds of a point, each times `ν V_j`.
+/// - For every pass p below [`Material::PASSES`]: `S = Σ ν V_j share(p, bond, …)`, then `point_update(p, …, S, point)`. Passes begin with a
+///   `point` of zeros; `pair_pass` sees the own point as the pass before left it. Then the force states of both ends of every bond are taken.
 /// - [`Material::energy`] and [`Material::point_energy`] add up to a strain energy density `W_i`; with the memory held, the force state is
 ///   its derivative, `T_i⟨ξ⟩ = ∂W_i/∂(ξ+η) / (ν V_j)`. Energies of broken bonds and tests of force against energy rely on it. A law of
 ///   rates, which has no potential, has the work of its force state since the reference instead, to second order in the step.
 /// - A rigid motion leaves `T` at rest and energies at 0, and turns `T` with the body.
-/// - A step ends with [`Material::advance`] for every whole bond and [`Material::remember`] for every point, at its end's displacements. The
-///   answers of before must be those of after with a step of no length: they see the memory of before, and the constants know the step.
+/// - A step ends with [`Material::state_update`] for every whole bond and [`Material::remember`] for every point, at its end's displacements. The
+///   force states of before must be those of after with a step of no length: they see the memory of before, and the constants know the step.
 /// - Tangents are derivatives of these functions by dual numbers: nothing else about a law is assumed.
 pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Numbers of a material that its functions read.
@@ -346,15 +346,15 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     type Memory<N: Number>: Numbers<N>;
     /// [`Along`] or [`Free`].
     type State<N: Number>: ForceState<N, D>;
-    /// Sums before bonds answer.
+    /// Sums before force states are taken.
     const PASSES: usize;
     /// Do its functions read the stretch of bonds?
     const STRETCHES: bool = true;
-    /// Is a bond of one material in the same state at both its ends: do answers and memory know nothing of points? True saves half.
+    /// Is a bond of one material in the same state at both its ends: do force state and memory not depend on points? True saves half.
     const ALIKE: bool = false;
-    /// Do the sums of the family make its stiffness, with ω once in each of them and in each answer? Points may have horizons of their own then.
+    /// Do the sums of the family make its stiffness, with ω once in each of them and in each force state? Points may have horizons of their own then.
     const OF_FAMILY: bool = false;
-    /// Do bonds make its stiffness, each with a micromodulus for all of its answer and ω once in it, and once in each sum? Points may have horizons of their
+    /// Do bonds make its stiffness, each with a micromodulus for all of its force state and ω once in it, and once in each sum? Points may have horizons of their
     /// own then, too: c goes as `1/∫ω|ξ|dV`, of each end its own, of laws that are [`ALIKE`](Material::ALIKE) at both ends the mean.
     const OF_BONDS: bool = false;
     /// Does it look at what is across a body in plane strain ([`Around::section`])? Bonds of a law that does not are expanded by (1 + ν) times
@@ -363,9 +363,9 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Does it say what the stress across a body in plane strain is ([`Material::across`])? That of a law that does not is the one of the
     /// linear isotropic solid of its moduli.
     const ACROSS: bool = false;
-    /// Does an answer read constants? False saves finding those of the other end.
+    /// Does a force state read constants? False saves finding those of the other end.
     const READS: bool = true;
-    /// Do bonds between unlike materials answer and store by constants of their own ([`Material::between`])?
+    /// Do bonds between unlike materials have forces and energies by constants of their own ([`Material::between`])?
     const MEETS: bool = false;
     /// Are its force states slopes of its energy? Laws of rates have no potential.
     const POTENTIAL: bool = true;
@@ -374,7 +374,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Are bonds stiffer the shorter they are? Then steps that are stable in the reference need not be later.
     const STIFFENS: bool = false;
     /// Are points stiffer the fewer bonds they have ([`Material::stiffness`])? Likewise.
-    const STIFFENS_TORN: bool = false;
+    const STIFFENS_DAMAGED: bool = false;
     /// Does a point remember the sum of what its bonds do ([`Material::gathered`])?
     const GATHERS: bool = false;
     /// May its constants differ from place to place ([`Material::varies`])?
@@ -423,19 +423,19 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     }
 
     /// From its reference family.
-    fn form(&self, _material: usize, _kin: Kin<D>) -> Self::Form<f64> {
+    fn form(&self, _material: usize, _reference: ReferenceFamily<D>) -> Self::Form<f64> {
         <Self::Form<f64> as Numbers<f64>>::constant(0.0)
     }
 
     /// What the stiffness of a point against its bonds goes with, of any measure: the least c of `W ≤ c Σ ω ν V_j |η|²`, or what is above it by a
-    /// factor that is the same for whole and torn families.
-    fn stiffness(&self, _material: usize, _kin: Kin<D>) -> f64 {
+    /// factor that is the same for intact and damaged families.
+    fn stiffness(&self, _material: usize, _reference: ReferenceFamily<D>) -> f64 {
         1.0
     }
 
     /// What a bond gives to its point.
     #[inline(always)]
-    fn share<N: Number>(
+    fn pair_pass<N: Number>(
         &self,
         _pass: usize,
         _bond: &Bond<N, D>,
@@ -446,7 +446,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
 
     /// What the point makes of the sum.
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         _pass: usize,
         _site: &Site<N, Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
@@ -455,7 +455,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     ) {
     }
 
-    /// Constants of this end's half of a bond, `own` those of its material and `_other` of the other end's; answers and energies read them.
+    /// Constants of this end's half of a bond, `own` those of its material and `_other` of the other end's; force states and energies read them.
     #[inline(always)]
     fn between<N: Number>(
         &self,
@@ -466,7 +466,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     }
 
     /// The force state of this end.
-    fn answer<N: Number>(
+    fn force_state<N: Number>(
         &self,
         bond: &Bond<N, D>,
         end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
@@ -507,7 +507,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     }
 
     /// The bond's memory at the end of a step; returns what that dissipated (energy / volume²), to second order in the step.
-    fn advance<N: Number>(
+    fn state_update<N: Number>(
         &self,
         _bond: &Bond<N, D>,
         _end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,

@@ -7,16 +7,16 @@
 //! the norm of sums over the family, of those that give `Σ ω |ξ| e_K = tr H_K` and `Σ σ ε_K² = d_K:d_K`. The trial functions are the
 //! influence function of the body, scaled so that they are right in an isotropic family, where this is the linear peridynamic solid.
 //!
-//! `T⟨ξ⟩ = (κθ − (2μ/D) Σ σ ε |ξ|) ω|ξ| + 2μ σ ε`, over whole bonds: new surfaces are seen, too. A family whose probes do not tell its
+//! `T⟨ξ⟩ = (κθ − (2μ/D) Σ σ ε |ξ|) ω|ξ| + 2μ σ ε`, over intact bonds: new surfaces are seen, too. A family whose probes do not tell its
 //! multipliers apart has those of least size.
 //!
 //! Nothing in that keeps σ from being negative, and with it the energy. A whole family is as they have it. Of one that has lost bonds the
 //! τ_K are made smaller together until no σ is below 0: breaking may only take energy away, and could not from what is below 0.
 
 use super::tensor;
-use super::{Along, Bond, End, Kin, Material, Site};
+use super::{Along, Bond, End, Material, ReferenceFamily, Site};
 use crate::columns::Dimension;
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Need, Shelved};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Need, Registered};
 use crate::law::number::Number;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
@@ -108,9 +108,9 @@ fn influences<N: Number, const D: usize>(bond: &Bond<N, D>, of: &Multipliers<N>)
 }
 
 /// The multipliers of a family.
-fn multipliers<const D: usize>(kin: &Kin<D>, trial: Option<f64>) -> Form<f64> {
+fn multipliers<const D: usize>(reference: &ReferenceFamily<D>, trial: Option<f64>) -> Form<f64> {
     let d = D as f64;
-    let m = tensor::trace(&kin.shape());
+    let m = tensor::trace(&reference.shape());
     if !(m > 0.0) {
         return (([0.0; 2], [[0.0; PROBES]; 2]), 0.0);
     }
@@ -126,7 +126,7 @@ fn multipliers<const D: usize>(kin: &Kin<D>, trial: Option<f64>) -> Form<f64> {
         left[0][k] = if a == b { 1.0 } else { 0.0 };
         left[1][k] = if a == b { 1.0 - 1.0 / d } else { 2.0 };
     }
-    kin.each(|p| {
+    reference.each(|p| {
         if !(p.omega > 0.0) {
             return;
         }
@@ -147,10 +147,10 @@ fn multipliers<const D: usize>(kin: &Kin<D>, trial: Option<f64>) -> Form<f64> {
         let (inverse, _) = tensor::inverse_within(gram[n], SINGULAR);
         found[n] = tensor::times(&inverse, &left[n]);
     }
-    if kin.torn {
+    if reference.damaged {
         // energies of shear may be of either sign where weights are
         let mut part = 1.0f64;
-        kin.each(|p| {
+        reference.each(|p| {
             let bond = Bond::new(p.xi, [0.0; D], p.omega);
             let [_, trial] = influences(&bond, &(scale, [[0.0; PROBES]; 2]));
             let [_, sigma] = influences(&bond, &(scale, found));
@@ -162,7 +162,7 @@ fn multipliers<const D: usize>(kin: &Kin<D>, trial: Option<f64>) -> Form<f64> {
     }
     let own = (scale, found);
     let mut square = 0.0;
-    kin.each(|p| {
+    reference.each(|p| {
         let bond = Bond::new(p.xi, [0.0; D], p.omega);
         let [_, sigma] = influences(&bond, &own);
         square += sigma * p.volume * bond.length * bond.length;
@@ -184,23 +184,23 @@ impl<const D: usize> Material<D> for PositionAware {
     type State<N: Number> = Along<N>;
     const PASSES: usize = 1;
     const FORM_OF_WHOLE: bool = true;
-    const STIFFENS_TORN: bool = true;
+    const STIFFENS_DAMAGED: bool = true;
 
     fn constants(&self, material: usize, _: f64) -> [f64; 2] {
         let m = &self.materials[material];
         [m.bulk, m.shear]
     }
 
-    fn form(&self, material: usize, kin: Kin<D>) -> Form<f64> {
-        multipliers(&kin, self.materials[material].trial)
+    fn form(&self, material: usize, reference: ReferenceFamily<D>) -> Form<f64> {
+        multipliers(&reference, self.materials[material].trial)
     }
 
     /// `θ² ≤ A Σ ω₀ ν V e²` with `A = Σ ν V (ω|ξ|)²/ω₀` of the influence function ω₀, and `Σ σ ε² ≤ 2 Σ |σ| (e² + θ²|ξ|²/D²)`.
-    fn stiffness(&self, material: usize, kin: Kin<D>) -> f64 {
+    fn stiffness(&self, material: usize, reference: ReferenceFamily<D>) -> f64 {
         let m = &self.materials[material];
-        let (own, _) = multipliers(&kin, m.trial);
+        let (own, _) = multipliers(&reference, m.trial);
         let (mut spread, mut most, mut square) = (0.0, 0.0f64, 0.0);
-        kin.each(|p| {
+        reference.each(|p| {
             if p.omega > 0.0 {
                 let bond = Bond::new(p.xi, [0.0; D], p.omega);
                 let [omega, sigma] = influences(&bond, &own);
@@ -215,7 +215,7 @@ impl<const D: usize> Material<D> for PositionAware {
     }
 
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N>) -> Sum<N> {
+    fn pair_pass<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N>) -> Sum<N> {
         let zero = N::constant(0.0);
         let e = zero.choose(bond.omega, bond.extension(), zero);
         let pull = bond.length * e;
@@ -229,7 +229,7 @@ impl<const D: usize> Material<D> for PositionAware {
     }
 
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         _: usize,
         site: &Site<N, [N; 2], Form<N>, [N; 0]>,
@@ -252,7 +252,7 @@ impl<const D: usize> Material<D> for PositionAware {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
         let ([theta, pressure], own) = end.point;
         let [omega, sigma] = influences(bond, own);
         let mean = theta.times(1.0 / D as f64);
@@ -283,10 +283,10 @@ impl<const D: usize> Material<D> for PositionAware {
     }
 }
 
-impl Shelved for PositionAware {
+impl Registered for PositionAware {
     fn descriptor() -> Descriptor {
         Descriptor::new(
-            "position_aware",
+            "pals",
             "Linear peridynamic solid whose points near surfaces weigh their bonds so that dilatation and shear are those of any uniform strain: W = ½ K θ² + μ Σ σ ε². Two of young, poisson, bulk, shear.",
         )
         .source("Mitchell, Silling & Littlewood 2015")
@@ -297,7 +297,7 @@ impl Shelved for PositionAware {
             "trial",
             Dimension([-5, 0, 0, 0]),
             Bounds::POSITIVE,
-            "How many times the influence function the trial functions ω₀ and σ₀ are, which the weights of bonds are nearest to; left out: n/m and n(n + 2)/(2m), as is right in an isotropic family.",
+            "How many times the influence function the trial functions ω₀ and σ₀ are, which the weights of bonds are nearest to; by default n/m and n(n + 2)/(2m), as is right in an isotropic family.",
         )
         .need(Need::Optional)])
     }
@@ -331,7 +331,7 @@ mod tests {
     use super::super::Partner;
     use super::*;
 
-    /// Bonds of a corner, whole and torn: traces of all strains are exact, and so is the shear energy of the probes.
+    /// Bonds of a corner, intact and damaged: traces of all strains are exact, and so is the shear energy of the probes.
     #[test]
     fn probes_are_met_at_a_corner() {
         let mut bonds = vec![];
@@ -352,7 +352,7 @@ mod tests {
         }
         for trial in [None, Some(0.3)] {
             let each = |visit: &mut dyn FnMut(&Partner<3>)| bonds.iter().for_each(visit);
-            let (own, _) = multipliers(&Kin::new(&each), trial);
+            let (own, _) = multipliers(&ReferenceFamily::new(&each), trial);
             let h = [[0.3, -0.2, 0.5], [-0.2, 0.1, 0.4], [0.5, 0.4, -0.7]];
             let mut theta = 0.0;
             let mut energies = [0.0; PROBES];
@@ -395,8 +395,8 @@ mod tests {
             }
         }
         let each = |visit: &mut dyn FnMut(&Partner<3>)| bonds.iter().for_each(visit);
-        let least = |torn: bool| {
-            let (own, _) = multipliers(&Kin::new(&each).torn(torn), None);
+        let least = |damaged: bool| {
+            let (own, _) = multipliers(&ReferenceFamily::new(&each).damaged(damaged), None);
             let of = |p: &Partner<3>| influences(&Bond::new(p.xi, [0.0; 3], p.omega), &own);
             let all: Vec<[f64; 2]> = bonds.iter().map(of).collect();
             let theta = |k: usize| {
@@ -407,7 +407,7 @@ mod tests {
             all.iter().fold(f64::INFINITY, |least, w| least.min(w[1]))
         };
         assert!(least(false) < 0.0, "{}", least(false));
-        let torn = least(true);
-        assert!(torn.abs() < 1e-12, "{torn}");
+        let damaged = least(true);
+        assert!(damaged.abs() < 1e-12, "{damaged}");
     }
 }

@@ -1,7 +1,7 @@
 //! A bond that softens: linear up to a stretch s0, then falling to nothing at the critical stretch s_c along a curve; it unloads to the
 //! origin and remembers its greatest stretch. Pushed together it is linear.
 //!
-//! Each end answers `½ c ω (1 − d) s` along the bond. With `x = (s − s0)/(s_c − s0)`, `(1 − d) s = s0 g(x)` on the way down:
+//! The force state of each end is `½ c ω (1 − d) s` along the bond. With `x = (s − s0)/(s_c − s0)`, `(1 − d) s = s0 g(x)` on the way down:
 //! linear `g = 1 − x` (bilinear law of cohesive zones, Petersson 1981, on bonds; Zaccariotto et al. 2015); trilinear, by way of a kink at
 //! (x_k, g_k) (Yang, Dong, Liu, Yi & Hu 2018); exponential `g = (e^(−ax) − e^(−a))/(1 − e^(−a))` (Cornelissen, Hordijk & Reinhardt 1986 have
 //! this term; Tong, Shen, Shao & Chen 2020 on bonds).
@@ -10,7 +10,9 @@
 
 use super::{Along, Bond, Columns, End, Material};
 use crate::columns::{Declaration, Dimension};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};
+use crate::law::descriptor::{
+    self, Bounds, Descriptor, Given, Key, Memory, Need, Registered, Value,
+};
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Parameters, Plane, PmbStiffness};
 
@@ -42,7 +44,7 @@ impl Curve {
         match self {
             Curve::Linear => 0.5,
             Curve::Trilinear([x, g]) => 0.5 * (x + g),
-            Curve::Exponential(a) => 1.0 / a - 1.0 / a.exp_m1(),
+            Curve::Exponential(a) => 1.0 / a - 1.0 / libm::expm1(a),
         }
     }
 }
@@ -150,7 +152,7 @@ impl<const D: usize> Material<D> for Softening {
         let ([kink, level], [steep, scale]) = match m.curve {
             Curve::Linear => ([1.0, 0.0], [0.0, 0.0]),
             Curve::Trilinear(kink) => (kink, [0.0, 0.0]),
-            Curve::Exponential(a) => ([1.0, 0.0], [a, -1.0 / (-a).exp_m1()]),
+            Curve::Exponential(a) => ([1.0, 0.0], [a, -1.0 / libm::expm1(-a)]),
         };
         let second = match 1.0 - kink {
             0.0 => 0.0,
@@ -165,7 +167,7 @@ impl<const D: usize> Material<D> for Softening {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
         let b = branch(bond.stretch, end.constants, end.memory[0], self.exponential);
         Along(end.constants[C] * bond.omega * b.force * bond.inv_current)
     }
@@ -181,7 +183,7 @@ impl<const D: usize> Material<D> for Softening {
     }
 
     #[inline(always)]
-    fn advance<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>, memory: &mut [N; 1]) -> N {
+    fn state_update<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>, memory: &mut [N; 1]) -> N {
         let (c, past) = (end.constants, end.memory[0]);
         let b = branch(bond.stretch, c, past, self.exponential);
         let before = branch(past, c, past, self.exponential);
@@ -214,9 +216,9 @@ fn curve(parameters: &Parameters) -> Result<Curve, String> {
     }
 }
 
-impl Shelved for Softening {
-    const ENDS: bool = true;
-    const FADES: bool = true;
+impl Registered for Softening {
+    const OWN_CRITICAL_STRETCH: bool = true;
+    const SOFTENS_TO_ZERO: bool = true;
 
     fn descriptor() -> Descriptor {
         Descriptor::new(

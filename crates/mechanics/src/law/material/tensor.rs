@@ -325,8 +325,8 @@ pub fn eigen<const D: usize>(mut a: Matrix<f64, D>) -> ([f64; D], Matrix<f64, D>
                     continue;
                 }
                 let theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-                let c = 1.0 / t.hypot(1.0);
+                let t = theta.signum() / (theta.abs() + libm::hypot(theta, 1.0));
+                let c = 1.0 / libm::hypot(t, 1.0);
                 let s = t * c;
                 for k in 0..D {
                     let (x, y) = (a[k][p], a[k][q]);

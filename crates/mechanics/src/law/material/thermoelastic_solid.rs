@@ -2,11 +2,11 @@
 //! [`Solid`], with the extension e counted, as for every law of this folder, from the length that the ends' temperature or concentration gives a bond.
 //! `T⟨ξ⟩ = ω ((nκθ/m) |ξ| + α e)` along the bond, over its whole bonds, with the m of the family as it was.
 
-use super::{Along, Bond, End, Kin, Material, Site};
-use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Shelved, word};
+use super::{Along, Bond, End, Material, ReferenceFamily, Site};
+use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Registered, word};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
-use crate::law::solid::linear::{EamLike, Linear, Lps, LpsAsTyped};
+use crate::law::solid::linear::{EamLike, Linear, Lps, Lps3d};
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
 /// See the module.
@@ -35,7 +35,7 @@ const FORMULAS: Key = word(
             "those of a solid of as many dimensions as the body has",
         ),
         (
-            LpsAsTyped::NAME,
+            Lps3d::NAME,
             "those of three dimensions in any body: κ = K − 5G/3, β = 15 G",
         ),
         (
@@ -69,17 +69,17 @@ impl<const D: usize> Material<D> for ThermoelasticSolid {
         [m.n * m.n * m.kappa, m.beta]
     }
 
-    fn form(&self, _: usize, kin: Kin<D>) -> f64 {
-        kin.inverse_weight()
+    fn form(&self, _: usize, reference: ReferenceFamily<D>) -> f64 {
+        reference.inverse_weight()
     }
 
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N>) -> N {
+    fn pair_pass<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N>) -> N {
         bond.omega * bond.length * bond.extension()
     }
 
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         _: usize,
         site: &Site<N, [N; 2], N, [N; 0]>,
@@ -93,7 +93,7 @@ impl<const D: usize> Material<D> for ThermoelasticSolid {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
         let along = end.point[PRESSURE] * bond.length;
         let t = end.point[ALPHA].fma(bond.extension(), along);
         Along(bond.omega * t * bond.inv_current)
@@ -116,7 +116,7 @@ impl<const D: usize> Material<D> for ThermoelasticSolid {
     }
 }
 
-impl Shelved for ThermoelasticSolid {
+impl Registered for ThermoelasticSolid {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             Self::NAME,
@@ -137,7 +137,7 @@ impl Shelved for ThermoelasticSolid {
             _ => [moduli.bulk(), moduli.shear()],
         };
         Ok(match parameters.word(Self::FORMULAS) {
-            Some(LpsAsTyped::NAME) => LawSpec::LpsAsTyped { bulk, shear },
+            Some(Lps3d::NAME) => LawSpec::Lps3d { bulk, shear },
             Some(EamLike::NAME) => LawSpec::EamLike {
                 pair: 30.0 * shear,
                 volume: 3.0 * bulk - 5.0 * shear,

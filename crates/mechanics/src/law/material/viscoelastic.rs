@@ -3,8 +3,8 @@
 //!
 //! The linear peridynamic solid of [`Solid`], whose shear relaxes: `G(t) = G (1 − Σ λ_b + Σ λ_b e^(−t/τ_b))`. A bond keeps its
 //! extension e of the last step and a back extension of each branch, `q̇_b = (e − q_b)^d/τ_b`, integrated exactly for an e that is
-//! linear over the step. The deviator `x^d = x − (Σ ω |ξ| x / Σ ω |ξ|²) |ξ|` is over the whole bonds. In an intact family it is Mitchell's
-//! e − θ|ξ|/n, and q is a deviator itself; in a torn one this deviator, and no other, is orthogonal to the pressure, so that no branch
+//! linear over the step. The deviator `x^d = x − (Σ ω |ξ| x / Σ ω |ξ|²) |ξ|` is over the intact bonds. In an intact family it is Mitchell's
+//! e − θ|ξ|/n, and q is a deviator itself; in a damaged one this deviator, and no other, is orthogonal to the pressure, so that no branch
 //! can gain energy.
 //! `W = ½κθ² + (α/2) Σ ω ((1 − Σλ) e² + Σ_b λ_b (e − q_b)²)`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`.
 //!
@@ -13,9 +13,11 @@
 //! begins at the d of the bonds that are whole now: what breaks changes d at once.
 
 use super::section::{self, Section};
-use super::{Along, Bond, Columns, End, Kin, Material, Site};
+use super::{Along, Bond, Columns, End, Material, ReferenceFamily, Site};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Need, Shelved, Value};
+use crate::law::descriptor::{
+    self, Bounds, Descriptor, Given, Key, MODULI, Need, Registered, Value,
+};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
@@ -171,7 +173,7 @@ impl<N: Number, const B: usize> Across<N, B> {
 /// Of `1 − (1 − e^(−x))/x`, without cancellation where x is small.
 fn growth(x: f64) -> f64 {
     if x > 1e-3 {
-        1.0 + (-x).exp_m1() / x
+        1.0 + libm::expm1(-x) / x
     } else {
         x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x / 120.0)))
     }
@@ -235,7 +237,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         let n = m.solid.n;
         let branch = |(part, time): &(f64, f64)| {
             let x = dt / time;
-            [*part, -(-x).exp_m1(), growth(x)]
+            [*part, -libm::expm1(-x), growth(x)]
         };
         let none = [0.0; 3];
         (
@@ -244,12 +246,17 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         )
     }
 
-    fn form(&self, _: usize, kin: Kin<D>) -> f64 {
-        kin.inverse_weight()
+    fn form(&self, _: usize, reference: ReferenceFamily<D>) -> f64 {
+        reference.inverse_weight()
     }
 
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &EndOf<N, B>) -> ([N; 3], [N; B]) {
+    fn pair_pass<N: Number>(
+        &self,
+        _: usize,
+        bond: &Bond<N, D>,
+        end: &EndOf<N, B>,
+    ) -> ([N; 3], [N; B]) {
         let weight = bond.omega * bond.length;
         let mut growth = Self::growth(bond, end);
         for b in 0..B {
@@ -264,7 +271,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     }
 
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         _: usize,
         site: &SiteOf<N, B>,
@@ -290,7 +297,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, B>) -> Along<N> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, B>) -> Along<N> {
         let back = Self::next(bond, end);
         let mut e = bond.extension();
         for b in 0..B {
@@ -347,7 +354,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     }
 
     #[inline(always)]
-    fn advance<N: Number>(
+    fn state_update<N: Number>(
         &self,
         bond: &Bond<N, D>,
         end: &EndOf<N, B>,
@@ -385,7 +392,7 @@ pub fn one_branch(parameters: &Parameters) -> bool {
     parameters.rows("branches").is_some_and(|r| r.len() == 1)
 }
 
-impl<const B: usize> Shelved for Viscoelastic<B> {
+impl<const B: usize> Registered for Viscoelastic<B> {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             "viscoelastic",

@@ -19,7 +19,7 @@ pub const KEYS: [Key; 3] = [
     word(
         "end",
         &[
-            ("truncated", "Cut (when left out)."),
+            ("truncated", "Cut (by default)."),
             ("shifted", "No jump of the energy."),
             ("shifted_force", "No jump of the force either."),
             ("smooth", "Switched off smoothly."),
@@ -30,7 +30,7 @@ pub const KEYS: [Key; 3] = [
         "smooth_from",
         Dimension::LENGTH,
         Bounds::POSITIVE,
-        "Where a smooth end begins; 0.9 of the cut-off when left out.",
+        "Where a smooth end begins; 0.9 of the cut-off by default.",
     )
     .need(Need::Optional),
 ];

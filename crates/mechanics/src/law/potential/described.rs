@@ -4,7 +4,7 @@ use super::cut::Ends;
 use super::{Potential, each};
 use crate::family::stencil::Stencil;
 use crate::law::descriptor::{Descriptor, Wrong};
-use crate::law::fan;
+use crate::law::many_body;
 use crate::law::scaled::by_dimension;
 use crate::space::lattice::LatticeKind;
 use crate::spec::{End, Mixing, Parameters, PotentialSpec};
@@ -127,7 +127,7 @@ fn find<O: Of>(name: &str, todo: O) -> Result<O::Out, String> {
     };
     each(&mut find);
     let known = find.known.join(", ");
-    let unknown = || match fan::is_known(name) {
+    let unknown = || match many_body::is_known(name) {
         true => format!(
             "{name} has terms of more than two atoms, and this is known for pairs and densities only: {known}"
         ),
@@ -207,8 +207,8 @@ impl PotentialSpec {
                 self.0
             }
         }
-        if let Some(fan) = self.scaled_fan(length, energy) {
-            return Ok(fan);
+        if let Some(many_body) = self.scaled_many_body(length, energy) {
+            return Ok(many_body);
         }
         let parameters = self.parameters.clone();
         Ok(PotentialSpec {

@@ -92,7 +92,7 @@ impl Described for LennardJones {
         let sums = |stencil| (lattice_sum(stencil, 6), lattice_sum(stencil, 12));
         let ((a6, a12), (b6, b12)) = (sums(kept.fine), sums(kept.coarse));
         let mut lj = *self;
-        lj.sigma *= kept.factor * ((b6 / b12) / (a6 / a12)).powf(1.0 / 6.0);
+        lj.sigma *= kept.factor * libm::pow((b6 / b12) / (a6 / a12), 1.0 / 6.0);
         lj.epsilon *=
             kept.factor.powi(kept.dimension as i32) * (b12 / (b6 * b6)) / (a12 / (a6 * a6));
         Some(lj)
@@ -103,6 +103,6 @@ impl Described for LennardJones {
 fn lattice_sum(stencil: &Stencil, p: i32) -> f64 {
     let all = &stencil.offsets[0];
     all.iter()
-        .map(|o| (o.squared as f64 / 16.0).powf(-0.5 * f64::from(p)))
+        .map(|o| libm::pow(o.squared as f64 / 16.0, -0.5 * f64::from(p)))
         .sum()
 }

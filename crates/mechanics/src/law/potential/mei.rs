@@ -173,28 +173,28 @@ const KEYS: [Key; 15] = [
         "nearest",
         Dimension::LENGTH,
         Bounds::POSITIVE,
-        "Nearest distance of the crystal at equilibrium; the lattice's when left out.",
+        "Nearest distance of the crystal at equilibrium; the lattice's by default.",
     )
     .need(Need::Optional),
     number(
         "pair_length",
         PLAIN,
         Bounds::POSITIVE,
-        "Length scale μ of the pair term in nearest distances; 1 when left out.",
+        "Length scale μ of the pair term in nearest distances; 1 by default.",
     )
     .or(1.0),
     number(
         "density_length",
         PLAIN,
         Bounds::POSITIVE,
-        "Length scale of the density in nearest distances; 1 when left out.",
+        "Length scale of the density in nearest distances; 1 by default.",
     )
     .or(1.0),
     number(
         "shell_scale",
         PLAIN,
         Bounds::POSITIVE,
-        "What the shells' distances are multiplied by in the embedding energy; 1/pair_length when left out.",
+        "What the shells' distances are multiplied by in the embedding energy; 1/pair_length by default.",
     )
     .need(Need::Optional),
     number(
@@ -216,7 +216,7 @@ const KEYS: [Key; 15] = [
             ("distance", PLAIN, Bounds::POSITIVE),
         ]),
         need: Need::Optional,
-        doc: "[atoms, distance in nearest distances] of each shell that the embedding energy is made for; those of the lattice when left out.",
+        doc: "[atoms, distance in nearest distances] of each shell that the embedding energy is made for; those of the lattice by default.",
     },
 ];
 

@@ -32,7 +32,7 @@ impl Described for NoPotential {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             Self::NAME,
-            "Atoms: no potential, of a kind or of a pair of kinds that does not feel each other.",
+            "Atoms: no potential, of a kind or of a pair of kinds that does not interact.",
         )
         .example("{}")
     }

@@ -55,11 +55,11 @@ impl Described for Eam {
             },
             scale(
                 "length_scale",
-                "Lengths of the table are multiplied by this; 1 when left out.",
+                "Lengths of the table are multiplied by this; 1 by default.",
             ),
             scale(
                 "energy_scale",
-                "Energies of the table are multiplied by this; 1 when left out.",
+                "Energies of the table are multiplied by this; 1 by default.",
             ),
         ])
     }

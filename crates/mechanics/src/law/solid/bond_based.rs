@@ -6,7 +6,7 @@
 
 use crate::execute::lane::Lane;
 use crate::law::Law;
-use crate::spec::InterfaceRule;
+use crate::spec::BondMixing;
 
 /// One micromodulus for all bonds; it is part of the bond constant.
 #[derive(Debug, Clone, Copy)]
@@ -40,16 +40,16 @@ impl Law for BondBased {
 /// A micromodulus per point (field 0); bonds between unlike points follow an interface rule.
 #[derive(Debug, Clone, Copy)]
 pub struct BondBasedMixed {
-    pub rule: InterfaceRule,
+    pub rule: BondMixing,
 }
 
 /// What a bond between unlike ends has of their two numbers.
 #[inline(always)]
-pub fn between<L: Lane>(rule: InterfaceRule, a: L, b: L) -> L {
+pub fn between<L: Lane>(rule: BondMixing, a: L, b: L) -> L {
     match rule {
-        InterfaceRule::Parallel => L::splat(0.5) * (a + b),
-        InterfaceRule::Series => (L::splat(2.0) * a * b).div(a + b),
-        InterfaceRule::Minimum => a.min(b),
+        BondMixing::Arithmetic => L::splat(0.5) * (a + b),
+        BondMixing::Harmonic => (L::splat(2.0) * a * b).div(a + b),
+        BondMixing::Minimum => a.min(b),
     }
 }
 

@@ -1,4 +1,4 @@
-//! The EAM-like solid with a quadratic volume energy: the linear peridynamic solid (LPS) and its kin.
+//! The EAM-like solid with a quadratic volume energy: the linear peridynamic solid (LPS) and related laws.
 //!
 //! `W_i = ½ κ θ_i² + (β / 2 m_i) Σ_j ω ν V_j e²`, `θ_i = (n/m_i) Σ_j ω r0 ν V_j e`, `m_i = Σ_j ω r0² ν V_j`,
 //! `e = |ξ+η| − |ξ|`. This is seleson2014 (A.9)–(A.13) with the pair term (A.14) and the volume term (A.16); the
@@ -77,7 +77,7 @@ impl Solid {
     pub fn of_law(d: usize, plane: Plane, law: &LawSpec) -> Option<Solid> {
         match law {
             LawSpec::Lps(moduli) => Some(Solid::lps(d, moduli.lame_of(d, plane), moduli.shear())),
-            LawSpec::LpsAsTyped { bulk, shear } => Some(Solid {
+            LawSpec::Lps3d { bulk, shear } => Some(Solid {
                 n: 3.0,
                 kappa: bulk - 5.0 / 3.0 * shear,
                 beta: 15.0 * shear,

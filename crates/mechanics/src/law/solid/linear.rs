@@ -30,7 +30,7 @@ pub trait Laws {
 pub fn each(laws: &mut impl Laws) {
     laws.linear::<Pmb>();
     laws.linear::<Lps>();
-    laws.linear::<LpsAsTyped>();
+    laws.linear::<Lps3d>();
     laws.linear::<EamLike>();
     laws.linear::<Springs>();
     laws.linear::<Micromoduli>();
@@ -174,10 +174,10 @@ impl Linear for Lps {
 }
 
 /// The linear peridynamic solid of LAMMPS.
-pub struct LpsAsTyped;
+pub struct Lps3d;
 
-impl Linear for LpsAsTyped {
-    const NAME: &'static str = "lps_as_typed";
+impl Linear for Lps3d {
+    const NAME: &'static str = "lps_3d";
 
     fn descriptor() -> Descriptor {
         let pressure = Dimension::PRESSURE;
@@ -194,12 +194,12 @@ impl Linear for LpsAsTyped {
 
     fn law(p: &Parameters) -> Result<LawSpec, String> {
         let [bulk, shear] = p.all(["bulk", "shear"])?;
-        Ok(LawSpec::LpsAsTyped { bulk, shear })
+        Ok(LawSpec::Lps3d { bulk, shear })
     }
 
     fn parameters(law: &LawSpec) -> Option<Parameters> {
         match law {
-            LawSpec::LpsAsTyped { bulk, shear } => {
+            LawSpec::Lps3d { bulk, shear } => {
                 Some(Parameters::numbers(&[("bulk", *bulk), ("shear", *shear)]))
             }
             _ => None,

@@ -10,7 +10,7 @@ pub static OBSERVABLE: Observable = Observable {
         "displacement_gradient",
         Shape::Tensor,
         Dimension::NUMBER,
-        "Gradient of the displacement in the reference, by weighted least squares over the whole bonds; exact for homogeneous deformations. 0 at points whose whole bonds do not span the space.",
+        "Gradient of the displacement in the reference, by weighted least squares over the intact bonds; exact for homogeneous deformations. 0 at points whose intact bonds do not span the space.",
     ).derived(),
     equation: "H = (Σ_j ω V_j η ⊗ ξ) K⁻¹, K = Σ_j ω V_j ξ ⊗ ξ",
     source: "Silling et al. 2007, (134)",

@@ -9,7 +9,7 @@ pub static OBSERVABLE: Observable = Observable {
         "fragment",
         Shape::Scalar,
         Dimension::NUMBER,
-        "Number of the piece that whole bonds connect the point to; 0 is the largest.",
+        "Number of the piece that intact bonds connect the point to; 0 is the largest.",
     )
     .derived(),
     equation: "",

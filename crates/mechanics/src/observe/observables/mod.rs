@@ -1,5 +1,6 @@
 //! Observables: a file each, and a line here.
 
+mod block;
 mod body;
 mod damage;
 mod density;
@@ -10,7 +11,6 @@ mod energy_density;
 mod force_density;
 mod fragment;
 mod kinetic_energy_density;
-mod mark;
 mod material;
 mod position;
 mod reference;
@@ -47,7 +47,7 @@ pub static ALL: &[&Observable] = &[
     &temperature::OBSERVABLE,
     &volume::OBSERVABLE,
     &density::OBSERVABLE,
-    &mark::OBSERVABLE,
+    &block::OBSERVABLE,
     &material::OBSERVABLE,
     &body::OBSERVABLE,
     &fragment::OBSERVABLE,
@@ -60,7 +60,7 @@ pub const USUAL: [&str; 7] = [
     "damage",
     "energy_density",
     "dilatation",
-    "mark",
+    "block",
     "body",
 ];
 

@@ -11,7 +11,7 @@ pub static OBSERVABLE: Observable = Observable {
         "strain",
         Shape::Symmetric,
         Dimension::NUMBER,
-        "Green-Lagrange strain of the displacement gradient: no rotation shows in it, and for small gradients it is the linear strain. 0 at points whose whole bonds do not span the space.",
+        "Green-Lagrange strain of the displacement gradient: no rotation shows in it, and for small gradients it is the linear strain. 0 at points whose intact bonds do not span the space.",
     ).derived(),
     equation: "E = ½ (H + Hᵀ + Hᵀ H), H = displacement_gradient",
     source: "Silling et al. 2007, (134)",

@@ -9,7 +9,7 @@ pub static OBSERVABLE: Observable = Observable {
         "strain_energy_density",
         Shape::Scalar,
         Dimension::PRESSURE,
-        "Energy of the whole bonds, half of a bond at either end.",
+        "Energy of the intact bonds, half of a bond at either end.",
     )
     .derived(),
     equation: "W = Σ_j ½ w(r_ij) V_j",

@@ -130,7 +130,7 @@ impl Solid {
         }
         if !(six > 0.0) {
             return Err(if six < 0.0 {
-                "the normals of the surface point inwards: corners of a triangle turn counter-clockwise when seen from outside. Turn the surface inside out".into()
+                "the normals of the surface point inwards: corners of a triangle turn counter-clockwise when seen from outside. Reverse the order of the corners".into()
             } else {
                 "the surface encloses no volume".into()
             });
@@ -164,7 +164,7 @@ impl Solid {
             for k in 0..3 {
                 let (next, last) = ((k + 1) % 3, (k + 2) % 3);
                 let (p, q) = (sub(&x[next], &x[k]), sub(&x[last], &x[k]));
-                let angle = length(&cross(&p, &q)).atan2(dot(&p, &q));
+                let angle = libm::atan2(length(&cross(&p, &q)), dot(&p, &q));
                 let ends = (face[k].min(face[next]), face[k].max(face[next]));
                 let sum = of_edge.entry(ends).or_insert([0.0; 3]);
                 for a in 0..3 {

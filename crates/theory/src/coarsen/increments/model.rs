@@ -56,8 +56,8 @@ pub fn alone(spec: &Spec) -> Spec {
         | Measure::Opening { .. } => true,
         Measure::Reaction
         | Measure::Moment { .. }
-        | Measure::Indenter { .. }
-        | Measure::Contour(_)
+        | Measure::RigidBody { .. }
+        | Measure::JIntegral(_)
         | Measure::CrackTip(_)
         | Measure::Fragments { .. } => false,
     });
@@ -79,7 +79,7 @@ fn cut<const D: usize>(u: &[Point]) -> Vec<[f64; D]> {
 fn about<const D: usize>(sim: &mut dyn Simulation) -> LinearBody<D> {
     let body = sim.linear_body().of();
     LinearBody {
-        carriers: None,
+        load_map: None,
         ..body.unwrap_or_else(LinearBody::nothing)
     }
 }

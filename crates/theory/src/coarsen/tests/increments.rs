@@ -7,7 +7,7 @@ use super::super::increments::{
 use super::super::{CoarsenError, Options, Radius, Scheme, Selection, coarsen};
 use super::bodies::{apart, equilibrium, random};
 use peridyne::error::SolveError;
-use peridyne::spec::{Carriers, LinearBody};
+use peridyne::spec::{LinearBody, LoadMap};
 
 /// `g` and `g′`.
 type Law = fn(f64) -> [f64; 2];
@@ -235,7 +235,7 @@ fn equal_springs_in_series_are_exact_whatever_the_increment() {
     };
     for options in [exact(), balls] {
         for increments in [1, 3, 10] {
-            let plan = plan(levels.clone(), options, 20, Removed::Carried);
+            let plan = plan(levels.clone(), options, 20, Removed::KinematicPoints);
             let mut net = chain(&stiffness, rubber);
             let load = pulled(13, force);
             let (u, done) = gone(&mut net, 13, &plan, increments, load).unwrap();
@@ -249,7 +249,7 @@ fn equal_springs_in_series_are_exact_whatever_the_increment() {
     }
     // without corrections it is not exact, and comes nearer with the square of the increment
     let off = |increments| {
-        let plan = plan(levels.clone(), exact(), 0, Removed::Carried);
+        let plan = plan(levels.clone(), exact(), 0, Removed::KinematicPoints);
         let (u, _) = gone(
             &mut chain(&stiffness, rubber),
             13,
@@ -298,9 +298,17 @@ fn unlike_springs_in_series_have_the_orders_that_theory_says() {
     };
     // an independent program (NumPy, dense) has these errors after 40 increments
     for (corrections, removed, numbers) in [
-        (0, Removed::Carried, [9.912_373_728e-5, 1.813_164_510e-4]),
+        (
+            0,
+            Removed::KinematicPoints,
+            [9.912_373_728e-5, 1.813_164_510e-4],
+        ),
         (0, Removed::Relaxed, [9.646_955_534e-5, 9.307_153_730e-5]),
-        (30, Removed::Carried, [2.696_657_736e-6, 8.830_888_158e-5]),
+        (
+            30,
+            Removed::KinematicPoints,
+            [2.696_657_736e-6, 8.830_888_158e-5],
+        ),
     ] {
         let found = off(40, corrections, removed);
         for (a, b) in found.iter().zip(numbers) {
@@ -308,10 +316,10 @@ fn unlike_springs_in_series_have_the_orders_that_theory_says() {
         }
     }
     // removed points: first order. Retained ones: second, as the work of SᵀK on them is 0
-    let carried = order(30, Removed::Carried, 1);
+    let carried = order(30, Removed::KinematicPoints, 1);
     assert!((carried - 1.0).abs() < 0.1, "{carried}");
     for corrections in [0, 30] {
-        let kept = order(corrections, Removed::Carried, 0);
+        let kept = order(corrections, Removed::KinematicPoints, 0);
         assert!((kept - 2.0).abs() < 0.05, "{corrections}: {kept}");
     }
     // relaxed ones do not lag behind: Newton's method on all points
@@ -350,14 +358,14 @@ fn a_linear_body_has_the_answer_of_its_levels_whatever_the_increments() {
         // today's way: loads are passed on level by level
         let mut whole = body.clone();
         let (position, volume) = (body.position.clone(), body.volume.clone());
-        whole.carriers = Some(Carriers::of(position, volume, 1.0, &loaded));
+        whole.load_map = Some(LoadMap::of(position, volume, 1.0, &loaded));
         let (level1, first) = coarsen(&whole, &one, &options).unwrap();
         let (level2, _) = coarsen(&level1, &two, &options).unwrap();
-        let carriers = level2.carriers.as_ref().unwrap();
+        let load_map = level2.load_map.as_ref().unwrap();
         let mut forces = vec![[0.0; 2]; level2.points()];
-        for p in 0..carriers.points() {
-            let f = density(&carriers.position[p]).map(|f| f * carriers.volume[p]);
-            let (targets, blocks) = carriers.row(p);
+        for p in 0..load_map.points() {
+            let f = density(&load_map.position[p]).map(|f| f * load_map.volume[p]);
+            let (targets, blocks) = load_map.row(p);
             for (q, t) in targets.iter().zip(blocks) {
                 for a in 0..2 {
                     forces[*q as usize][a] += t[a][0] * f[0] + t[a][1] * f[1];
@@ -377,7 +385,7 @@ fn a_linear_body_has_the_answer_of_its_levels_whatever_the_increments() {
                 vec![one.clone(), two.clone()],
                 options,
                 corrections,
-                Removed::Carried,
+                Removed::KinematicPoints,
             );
             let load = |t: f64| Load {
                 force: (0..n)
@@ -458,7 +466,7 @@ fn a_plate_of_rubber_is_followed_to_a_fifth() {
         gone(&mut plate(size), n, &plan, increments, &load).unwrap()
     };
     // Newton's method on all points: nothing is missing
-    let (truth, done) = run(vec![], exact(), 50, Removed::Carried, 4);
+    let (truth, done) = run(vec![], exact(), 50, Removed::KinematicPoints, 4);
     let all: Vec<u32> = (0..n as u32).collect();
     let force = pull(done.last().unwrap(), &all, &net);
     let mut missing = plate(size).forces(&truth);
@@ -475,9 +483,23 @@ fn a_plate_of_rubber_is_followed_to_a_fifth() {
     };
     let coarse = vec![retained.clone()];
     let each: Vec<[f64; 3]> = [5, 10, 20, 40]
-        .map(|increments| off(&run(coarse.clone(), balls, 0, Removed::Carried, increments)))
+        .map(|increments| {
+            off(&run(
+                coarse.clone(),
+                balls,
+                0,
+                Removed::KinematicPoints,
+                increments,
+            ))
+        })
         .to_vec();
-    let corrected = off(&run(coarse.clone(), balls, 10, Removed::Carried, 10));
+    let corrected = off(&run(
+        coarse.clone(),
+        balls,
+        10,
+        Removed::KinematicPoints,
+        10,
+    ));
     let relaxed: Vec<[f64; 3]> = [5, 10, 20]
         .map(|increments| {
             off(&run(
@@ -539,7 +561,7 @@ fn uniform_stretches_are_exact_without_corrections() {
     };
     let truth: Vec<[f64; 2]> = position.iter().map(|x| uniform(x, 1.0)).collect();
     for increments in [1, 3] {
-        let plan = plan(vec![retained.clone()], exact(), 0, Removed::Carried);
+        let plan = plan(vec![retained.clone()], exact(), 0, Removed::KinematicPoints);
         let (u, _) = gone(&mut net, 63, &plan, increments, load).unwrap();
         let off = apart(&u, &truth);
         assert!(off < 1e-12, "{increments}: {off}");
@@ -595,7 +617,7 @@ fn broken_springs_are_counted_and_what_falls_apart_is_refused() {
 fn loads_beyond_the_limit_are_refused() {
     // springs that bear 1/(4 e) = 0.092 at most, pulled by 0.12
     let mut net = chain(&[1.0; 4], soft);
-    let plan = plan(vec![vec![0, 2, 4]], exact(), 20, Removed::Carried);
+    let plan = plan(vec![vec![0, 2, 4]], exact(), 20, Removed::KinematicPoints);
     let load = pulled(5, 0.12);
     let mut way = Increments::new(&mut net, plan, vec![[0.0]; 5]);
     let mut end = None;

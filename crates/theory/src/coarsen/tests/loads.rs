@@ -2,7 +2,7 @@
 
 use super::super::{LinearBody, Options, Radius, Scheme, Selection, Stability, coarsen};
 use super::bodies::{apart, equilibrium, random, state_based};
-use peridyne::spec::Carriers;
+use peridyne::spec::LoadMap;
 
 fn with(scheme: Scheme, radius: f64) -> Options {
     Options {
@@ -26,7 +26,7 @@ fn kept(body: &LinearBody<2>, k: u32) -> Vec<u32> {
 fn carrying(mut body: LinearBody<2>, from: f64) -> LinearBody<2> {
     let loaded: Vec<bool> = body.position.iter().map(|x| x[0] >= from).collect();
     let (position, volume) = (body.position.clone(), body.volume.clone());
-    body.carriers = Some(Carriers::of(position, volume, 1.0, &loaded));
+    body.load_map = Some(LoadMap::of(position, volume, 1.0, &loaded));
     body
 }
 
@@ -37,11 +37,11 @@ fn density(x: &[f64; 2]) -> [f64; 2] {
 
 /// Displacements, held at x = 0, under the loads that reach the points of a body.
 fn loaded(body: &LinearBody<2>) -> Vec<[f64; 2]> {
-    let carriers = body.carriers.as_ref().unwrap();
+    let load_map = body.load_map.as_ref().unwrap();
     let mut force = vec![[0.0; 2]; body.points()];
-    for p in 0..carriers.points() {
-        let f = density(&carriers.position[p]).map(|f| f * carriers.volume[p]);
-        let (targets, blocks) = carriers.row(p);
+    for p in 0..load_map.points() {
+        let f = density(&load_map.position[p]).map(|f| f * load_map.volume[p]);
+        let (targets, blocks) = load_map.row(p);
         for (q, t) in targets.iter().zip(blocks) {
             for a in 0..2 {
                 force[*q as usize][a] += t[a][0] * f[0] + t[a][1] * f[1];

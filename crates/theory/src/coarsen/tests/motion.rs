@@ -302,7 +302,7 @@ fn prescribed_ends_pull_what_is_coupled_to_them() {
         let mut sim = started(&stepped(&body, dt, held), &body, 0.0);
         (0..(40.0 / dt) as usize).for_each(|_| sim.step().unwrap());
         let ledger = sim.ledger().unwrap();
-        (ledger.residual() / ledger.work_conditions).abs()
+        (ledger.residual() / ledger.work_boundary_conditions).abs()
     };
     let [coarse, half] = [missing(1.0), missing(0.5)];
     assert!(coarse < 0.02 && half < 0.3 * coarse, "{coarse} {half}");

@@ -23,7 +23,7 @@ pub enum ThermalError {
     )]
     Many { constants: usize, classes: usize },
     #[error(
-        "the frames do not tell all constants apart: give more frames, further apart in time, or a shorter radius of bonds"
+        "the frames do not determine all constants: give more frames, further apart in time, or a shorter radius of bonds"
     )]
     Singular,
 }

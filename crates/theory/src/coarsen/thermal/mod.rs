@@ -18,7 +18,7 @@ mod constants;
 mod error;
 mod fit;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use error::ThermalError;
 
@@ -241,7 +241,7 @@ fn body<const D: usize>(
         start: alike.start.clone(),
         partner: alike.partner.clone(),
         block,
-        carriers: None,
+        load_map: None,
         mass: None,
     }
 }

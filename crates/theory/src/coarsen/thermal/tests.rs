@@ -36,7 +36,7 @@ fn lennard_jones(cutoff: f64) -> PotentialSpec {
 }
 
 /// The copper-like constants of seleson2014, Table 1, nearest distance 1, cut off at 1.95.
-fn embedded() -> PotentialSpec {
+pub(crate) fn embedded() -> PotentialSpec {
     PotentialSpec::of(EamForm {
         cohesive: 3.54,
         pair: 0.1217,
@@ -62,7 +62,7 @@ fn embedded() -> PotentialSpec {
 }
 
 /// A periodic face-centred crystal of unit masses.
-fn fcc(potential: PotentialSpec, a: f64, cells: i32) -> Spec {
+pub(crate) fn fcc(potential: PotentialSpec, a: f64, cells: i32) -> Spec {
     let long = f64::from(cells) * a;
     let region = Region::Block {
         low: [-0.1 * a; 3],
@@ -75,7 +75,7 @@ fn fcc(potential: PotentialSpec, a: f64, cells: i32) -> Spec {
     spec
 }
 
-fn model(spec: &Spec) -> Box<dyn Simulation> {
+pub(crate) fn model(spec: &Spec) -> Box<dyn Simulation> {
     let options = Build {
         trust_time_step: true,
         ..Build::default()
@@ -385,7 +385,7 @@ fn what_cannot_be_fitted_is_told() {
         (of(8, -1.0), "must be a positive number"),
         (of(8, 0.5), "give a longer radius"),
         (of(1, 2.0), "the fit needs at least 2"),
-        (of(8, 2.0), "do not tell all constants apart"),
+        (of(8, 2.0), "do not determine all constants"),
     ] {
         let told = found.message().to_string();
         assert!(told.contains(expected), "{told}");

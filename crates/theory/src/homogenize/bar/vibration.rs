@@ -35,7 +35,9 @@ impl Rod {
         let term = |n: usize| {
             let k = (2 * n + 1) as f64;
             let sign = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
-            sign / (k * k) * (k * FRAC_PI_2 * x / self.length).sin() * (self.frequency(n) * t).cos()
+            sign / (k * k)
+                * libm::sin(k * FRAC_PI_2 * x / self.length)
+                * libm::cos(self.frequency(n) * t)
         };
         8.0 * strain * self.length / (PI * PI) * (0..terms).map(term).sum::<f64>()
     }
@@ -131,7 +133,7 @@ impl Vibration {
         // beside the eigenvalue, so that the matrix has an inverse
         let shift = low - 1e-12 * high;
         let mut u: Vec<f64> = (0..self.size())
-            .map(|i| (1.7 * (i * i) as f64).sin())
+            .map(|i| libm::sin(1.7 * (i * i) as f64))
             .collect();
         if let Some(factored) = self.shifted(shift) {
             for _ in 0..4 {

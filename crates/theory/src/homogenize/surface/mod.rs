@@ -41,7 +41,7 @@ const ONE: f64 = 1e-15;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
     #[error(
-        "a surface correction multiplies what single bonds pull, of pmb, springs, lps, lps_as_typed and eam_like: atoms have no horizon to be missing in, and the bonds of laws with memory, tensors or several stiffnesses pull with what their whole family says"
+        "a surface correction multiplies the forces of single bonds, of pmb, springs, lps, lps_3d and eam_like: atoms have no horizon to be missing in, and the bonds of correspondence and history-dependent laws depend on their whole family"
     )]
     Law,
     #[error(
@@ -206,7 +206,7 @@ impl LatticeBody {
             .iter()
             .map(|o| {
                 let r = h * (o.squared as f64).sqrt() / 4.0;
-                let nu = match spec.bonds.volume_scaling {
+                let nu = match spec.bonds.partial_volume_correction {
                     true => volume_fraction(r, horizon, h),
                     false => 1.0,
                 };
@@ -230,7 +230,7 @@ impl LatticeBody {
             lattice,
             bonds,
             state_based,
-            conducts: !spec.interactions.transfers.is_empty(),
+            conducts: !spec.interactions.diffusions.is_empty(),
         })
     }
 

@@ -83,10 +83,12 @@ pub fn row(sites: &Sites, bonds: &[StencilBond], method: SurfaceMethod, place: u
             match method {
                 SurfaceMethod::Energy => {
                     let (_, n) = bond.direction();
-                    (0..3)
-                        .map(|a| (2.0 * n[a] / (own[a] + other[a])).powi(2))
-                        .sum::<f64>()
-                        .powf(-0.5)
+                    libm::pow(
+                        (0..3)
+                            .map(|a| (2.0 * n[a] / (own[a] + other[a])).powi(2))
+                            .sum::<f64>(),
+                        -0.5,
+                    )
                 }
                 // of the sums, not of their inverses
                 SurfaceMethod::Volume | SurfaceMethod::Force | SurfaceMethod::Exact => {

@@ -59,7 +59,7 @@ fn blocks_have_factors_without_negative_ones() {
 fn horizon_two_in_the_plane_is_the_closed_form_along_an_edge() {
     for (scaling, inward) in [(false, 2.0), (true, 1.5)] {
         let mut spec = block(2, [20, 20, 1], 2);
-        spec.bonds.volume_scaling = scaling;
+        spec.bonds.partial_volume_correction = scaling;
         let (factors, _) = correct(&spec, SurfaceMethod::Exact).unwrap();
         // half a cell, far from corners
         let row = factors.row[10] as usize;

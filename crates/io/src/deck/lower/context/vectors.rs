@@ -1,8 +1,9 @@
 //! Lists and vectors of numbers and expressions.
 
 use super::{Context, Result, placed};
+use crate::deck::quantity::Measure;
 use crate::deck::units::{Dim, Kind};
-use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Written};
+use crate::deck::value::{At, Components, ComponentsWritten, Number, Quantity, Vector, Written};
 use peridyne::expression::Expression;
 use peridyne::spec::Parameter;
 use std::ops::Range;
@@ -52,7 +53,11 @@ impl Context<'_> {
         }
     }
 
-    fn list<'v>(&self, numbers: &'v [Number], span: &Range<usize>) -> Result<&'v [Number]> {
+    fn list<'v, K>(
+        &self,
+        numbers: &'v [Quantity<K>],
+        span: &Range<usize>,
+    ) -> Result<&'v [Quantity<K>]> {
         if numbers.len() == self.dimension {
             return Ok(numbers);
         }
@@ -66,16 +71,16 @@ impl Context<'_> {
     }
 
     /// A vector, `fill` on the unused axes.
-    pub fn vector(&self, vector: &Vector, dim: Dim, fill: f64) -> Result<[f64; 3]> {
+    pub fn vector<K: Measure>(&self, vector: &Vector<K>, fill: f64) -> Result<[f64; 3]> {
         let mut out = [fill; 3];
         for (a, number) in self.list(&vector.value.0, &vector.span)?.iter().enumerate() {
-            out[a] = self.number(&placed(number, &vector.span), dim)?;
+            out[a] = self.limit(&placed(number, &vector.span))?;
         }
         Ok(out)
     }
 
-    pub fn finite_vector(&self, vector: &Vector, dim: Dim) -> Result<[f64; 3]> {
-        let value = self.vector(vector, dim, 0.0)?;
+    pub fn finite_vector<K: Measure>(&self, vector: &Vector<K>) -> Result<[f64; 3]> {
+        let value = self.vector(vector, 0.0)?;
         if value.iter().all(|c| c.is_finite()) {
             Ok(value)
         } else {
@@ -84,22 +89,37 @@ impl Context<'_> {
     }
 
     /// Expressions of a vector, 0 on the unused axes.
-    pub fn expressions(&self, vector: &Vector, dim: Dim) -> Result<[Expression; 3]> {
+    pub fn expressions<K: Measure>(&self, vector: &Vector<K>) -> Result<[Expression; 3]> {
         let mut out = [const { None }; 3];
         for (a, number) in self.list(&vector.value.0, &vector.span)?.iter().enumerate() {
-            out[a] = Some(self.expression(&placed(number, &vector.span), dim)?);
+            out[a] = Some(self.expression(&placed(number, &vector.span))?);
         }
         Ok(out.map(|e| e.unwrap_or_else(|| Expression::constant(0.0))))
     }
 
+    /// Those of what may be left out.
+    pub fn components_or_none<K: Measure>(
+        &self,
+        components: &Option<Components<K>>,
+    ) -> Result<[Option<Expression>; 3]> {
+        let none = || Ok([const { None }; 3]);
+        components
+            .as_ref()
+            .map_or_else(none, |c| self.components(c))
+    }
+
     /// Components that may be left free.
-    pub fn components(&self, components: &Components, dim: Dim) -> Result<[Option<Expression>; 3]> {
+    pub fn components<K: Measure>(
+        &self,
+        components: &Components<K>,
+    ) -> Result<[Option<Expression>; 3]> {
         let mut out = [const { None }; 3];
         match &components.value {
             ComponentsWritten::List(numbers) => {
                 for (a, number) in self.list(numbers, &components.span)?.iter().enumerate() {
-                    if !matches!(&number.value, Written::Text(text) if text.trim() == "free") {
-                        out[a] = Some(self.expression(number, dim)?);
+                    if !matches!(&number.value.written, Written::Text(text) if text.trim() == "free")
+                    {
+                        out[a] = Some(self.expression(number)?);
                     }
                 }
             }
@@ -111,7 +131,7 @@ impl Context<'_> {
                             format!("there is no {} in {}-D", ["x", "y", "z"][a], self.dimension);
                         return Err(self.error(&number.span, message));
                     }
-                    out[a] = Some(self.expression(number, dim)?);
+                    out[a] = Some(self.expression(number)?);
                 }
             }
         }

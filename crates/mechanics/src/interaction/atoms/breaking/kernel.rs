@@ -71,10 +71,10 @@ impl<const D: usize> Kernel for Test<'_, D> {
                         L::bits(limit.lt(work)) & L::bits(L::splat(0.0).lt(e))
                     }
                 };
-                let mut torn = beyond as u8 & there;
-                while torn != 0 {
-                    found.push(place as u32 + torn.trailing_zeros());
-                    torn &= torn - 1;
+                let mut damaged = beyond as u8 & there;
+                while damaged != 0 {
+                    found.push(place as u32 + damaged.trailing_zeros());
+                    damaged &= damaged - 1;
                 }
             }
             if self.work.is_empty() {

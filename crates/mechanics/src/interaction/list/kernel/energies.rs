@@ -7,7 +7,7 @@ use crate::execute::simd::Kernel;
 use crate::interaction::EnergyFields;
 use crate::law::Law;
 
-/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds.
+/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over intact bonds.
 pub struct Energies<'a, const D: usize, W> {
     pub view: View<'a, D, W>,
     pub fields: Option<EnergyFields>,

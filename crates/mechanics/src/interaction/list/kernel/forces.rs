@@ -8,7 +8,7 @@ use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::{BlockTally, Motion, Toughness, history};
 use crate::law::Law;
-use crate::spec::Release;
+use crate::spec::Breakage;
 
 /// Force pass.
 pub struct Forces<'a, const D: usize, W, const FULL: bool> {
@@ -95,13 +95,16 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                             let s = Stretch::exact(e);
                             let share = b.k * b.r0_squared * s;
                             let x = v.law.pair_energy(k * b.r0_squared * s * s, own, other)
-                                + motion.farewell(pull, parting(motion.v, b.y, rows, partners));
+                                + motion.breaking_correction(
+                                    pull,
+                                    parting(motion.v, b.y, rows, partners),
+                                );
                             let sum = lost.unwrap_or([zero; 2]);
                             lost = Some([
                                 sum[0] + L::select(breaks, x, zero),
                                 sum[1] + L::select(breaks, share, zero),
                             ]);
-                            if motion.release == Release::AtOnce {
+                            if motion.breakage == Breakage::BeforeForce {
                                 pull = pull.zero_if(breaks);
                             }
                         }

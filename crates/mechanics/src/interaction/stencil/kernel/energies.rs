@@ -10,7 +10,7 @@ use crate::interaction::EnergyFields;
 use crate::interaction::scale::TileFactors;
 use crate::law::Law;
 
-/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds. Sums are returned,
+/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over intact bonds. Sums are returned,
 /// fields are written where wanted.
 pub struct Energies<'a, const D: usize, W> {
     pub view: View<'a, D, W>,

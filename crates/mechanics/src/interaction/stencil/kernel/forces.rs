@@ -11,7 +11,7 @@ use crate::execute::simd::Kernel;
 use crate::interaction::scale::TileFactors;
 use crate::interaction::{BlockTally, Motion, Toughness, history};
 use crate::law::Law;
-use crate::spec::Release;
+use crate::spec::Breakage;
 use std::mem::MaybeUninit;
 
 /// Bonds that a hot loop left for later.
@@ -186,7 +186,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 acc[a] = total.fma(at.u[a], acc[a]);
             }
             if FULL && waiting > 0 {
-                L::apart(Rare::<L, D, W, FULL, SCALED> {
+                L::out_of_line(Rare::<L, D, W, FULL, SCALED> {
                     pass: self,
                     at: &at,
                     bonds: &rare[..waiting],
@@ -361,13 +361,13 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                             }
                         }
                         let held = v.law.pair_energy(pair, own, other)
-                            + motion.farewell(own_pull, parting(motion.v, y, i, j));
+                            + motion.breaking_correction(own_pull, parting(motion.v, y, i, j));
                         let sum = lost.unwrap_or([zero; 2]);
                         lost = Some([
                             sum[0] + L::select(breaks, held, zero),
                             sum[1] + L::select(breaks, share, zero),
                         ]);
-                        if motion.release == Release::AtOnce {
+                        if motion.breakage == Breakage::BeforeForce {
                             pull = pull.zero_if(breaks);
                         }
                     }

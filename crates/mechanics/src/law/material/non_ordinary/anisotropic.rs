@@ -11,7 +11,7 @@ use super::stiffness::{
 };
 use super::{Classical, Stressed, Unseen};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{Bounds, Descriptor, Given, Key, Need, Shelved, Value};
+use crate::law::descriptor::{Bounds, Descriptor, Given, Key, Need, Registered, Value};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
 use crate::space::Point;
@@ -225,7 +225,7 @@ const fn list(
 const MODULI: (usize, Dimension, Bounds) = (3, Dimension::PRESSURE, Bounds::POSITIVE);
 const NUMBERS: (usize, Dimension, Bounds) = (3, Dimension::NUMBER, Bounds::ANY);
 
-impl Shelved for Anisotropic {
+impl Registered for Anisotropic {
     const ISOTROPIC: bool = false;
 
     fn descriptor() -> Descriptor {

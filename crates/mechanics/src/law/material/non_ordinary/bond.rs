@@ -11,15 +11,15 @@
 //! Breitzman and Dayal take the mean of the F of both ends; here each end has its own, so that its energy is of its own family.
 //!
 //! Every directed bond remembers what the law remembers; the point has the mean over its bonds to show. Points whose bonds span no space
-//! answer nothing.
+//! have no force state.
 
 use super::equation_of_state::is_pressed;
 use super::family::CONTROL;
 use super::{Asked, Classical, GRADIENT, Stressed, Unseen, answered, on_a_family, takes_bonds};
 use crate::columns::{Declaration, On};
-use crate::law::descriptor::{Descriptor, Given, Shelved};
+use crate::law::descriptor::{Descriptor, Given, Registered};
 use crate::law::material::tensor::{self, Matrix};
-use crate::law::material::{Bond, Columns, End, Free, Kin, Material, Numbers, Site};
+use crate::law::material::{Bond, Columns, End, Free, Material, Numbers, ReferenceFamily, Site};
 use crate::law::number::Number;
 use crate::space::Point as Place;
 use crate::spec::{LawSpec, Parameters, Plane};
@@ -49,7 +49,7 @@ struct Answered<N, P, const D: usize> {
 }
 
 impl<L> BondAssociated<L> {
-    /// What the law answers to F̄_b.
+    /// The stress of the law at F̄_b.
     #[inline(always)]
     fn stressed<N: Number, const D: usize>(
         &self,
@@ -165,7 +165,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     const STRETCHES: bool = false;
     const POTENTIAL: bool = L::POTENTIAL;
     const STIFFENS: bool = true;
-    const STIFFENS_TORN: bool = true;
+    const STIFFENS_DAMAGED: bool = true;
     const FORM_OF_WHOLE: bool = true;
     const GATHERS: bool = true;
     const PLACED: bool = L::PLACED;
@@ -208,20 +208,20 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
         self.law.at_place(material, place)
     }
 
-    fn form(&self, _: usize, kin: Kin<D>) -> Form<f64, D> {
-        let (inverse, whole) = tensor::inverse(kin.shape());
+    fn form(&self, _: usize, reference: ReferenceFamily<D>) -> Form<f64, D> {
+        let (inverse, whole) = tensor::inverse(reference.shape());
         (inverse, if whole { 1.0 } else { 0.0 })
     }
 
     /// `|δF_b|² ≤ 4 |δF|² + 2 |η|²/|ξ|²`, whose mean is at most `Σ ω ν V |η|²` times `4 |K⁻¹| + 2/(|ξ|² Σ ω ν V)` of the shortest bond; points
-    /// without F answer nothing.
-    fn stiffness(&self, _: usize, kin: Kin<D>) -> f64 {
-        let shape = kin.shape();
+    /// without F have no force state.
+    fn stiffness(&self, _: usize, reference: ReferenceFamily<D>) -> f64 {
+        let shape = reference.shape();
         if !tensor::inverse(shape).1 {
             return 0.0;
         }
         let (mut all, mut shortest) = (0.0, f64::INFINITY);
-        kin.each(|p| {
+        reference.each(|p| {
             all += p.omega * p.volume;
             shortest = p.xi.iter().map(|x| x * x).sum::<f64>().min(shortest);
         });
@@ -230,7 +230,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
 
     /// `ω η⊗ξ` and ω; then `ω A_b (1 − n⊗n)` and ω tr τ_b
     #[inline(always)]
-    fn share<N: Number>(
+    fn pair_pass<N: Number>(
         &self,
         pass: usize,
         bond: &Bond<N, D>,
@@ -260,7 +260,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     }
 
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         pass: usize,
         site: &SiteOf<N, L, D>,
@@ -301,7 +301,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> Free<N, D> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> Free<N, D> {
         let ([_, q], [part, _]) = end.point;
         let across = self.stressed(bond, end).across;
         let along = tensor::times(&across, &bond.xi);
@@ -320,7 +320,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     }
 
     #[inline(always)]
-    fn advance<N: Number>(
+    fn state_update<N: Number>(
         &self,
         bond: &Bond<N, D>,
         end: &EndOf<N, L, D>,
@@ -370,9 +370,9 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     }
 }
 
-impl<L: Shelved> Shelved for BondAssociated<L> {
+impl<L: Registered> Registered for BondAssociated<L> {
     const ISOTROPIC: bool = L::ISOTROPIC;
-    const ENDS: bool = L::ENDS;
+    const OWN_CRITICAL_STRETCH: bool = L::OWN_CRITICAL_STRETCH;
 
     fn descriptor() -> Descriptor {
         on_a_family::<L>()

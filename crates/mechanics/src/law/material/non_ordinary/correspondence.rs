@@ -4,7 +4,9 @@
 use super::rest::{exp_rest, ln_rest};
 use super::{Classical, Stressed, Unseen};
 use crate::columns::Dimension;
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Shelved, number, word};
+use crate::law::descriptor::{
+    self, Bounds, Descriptor, Given, Key, MODULI, Registered, number, word,
+};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Parameters, Plane};
@@ -273,11 +275,11 @@ const KEYS: [Key; 2] = [
     .or(0.0),
 ];
 
-impl Shelved for Correspondence {
+impl Registered for Correspondence {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             "correspondence",
-            "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z what it does not see. Two of young, poisson, bulk, shear.",
+            "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z the zero-energy modes. Two of young, poisson, bulk, shear.",
         )
         .source("Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017")
         .example("{ young = \"1 GPa\", poisson = 0.45, stress = \"neo_hookean\" }")

@@ -8,11 +8,11 @@ use crate::spec::Parameters;
 /// The keys of axis 1 and axis 3.
 pub const FIBRE: Key = key(
     "fibre",
-    "Direction of axis 1, numbers or expressions of x, y, z in the reference; [1, 0, 0] when left out.",
+    "Direction of axis 1, numbers or expressions of x, y, z in the reference; [1, 0, 0] by default.",
 );
 pub const NORMAL: Key = key(
     "normal",
-    "Direction of axis 3, from which its part along the fibre is taken, as `fibre`; [0, 0, 1] when left out.",
+    "Direction of axis 3, from which its part along the fibre is taken, as `fibre`; [0, 0, 1] by default.",
 );
 
 const fn key(name: &'static str, doc: &'static str) -> Key {
@@ -95,7 +95,7 @@ impl Axes {
         let mut third: Point = crate::array::from_fn(|k| third[k] / b - along * first[k]);
         let rest = size(&third);
         if !(rest > 1e-6) {
-            return Err("`fibre` and `normal` are parallel: say another `normal`, the third axis of the material ([0, 0, 1] when left out)".into());
+            return Err("`fibre` and `normal` are parallel: say another `normal`, the third axis of the material ([0, 0, 1] by default)".into());
         }
         third = third.map(|x| x / rest);
         // e₂ = e₃ × e₁

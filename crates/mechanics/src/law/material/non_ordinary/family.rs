@@ -9,10 +9,10 @@
 
 use super::{Asked, Classical, GRADIENT, Unseen, answered, on_a_family};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Shelved};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Registered};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::material::{
-    Bond, Columns, End, Free, Kin, Material, Numbers, Site, Source, inverse_weight,
+    Bond, Columns, End, Free, Material, Numbers, ReferenceFamily, Site, Source, inverse_weight,
 };
 use crate::law::number::Number;
 use crate::space::Point as Place;
@@ -26,13 +26,13 @@ pub struct NonOrdinary<L> {
     pub control: Vec<f64>,
 }
 
-/// `K⁻¹`, 1/m, 1 where K can be inverted, and [`Kin::reach`].
+/// `K⁻¹`, 1/m, 1 where K can be inverted, and [`ReferenceFamily::reach`].
 type Form<N, const D: usize> = (Matrix<N, D>, [N; 3]);
 /// `P K⁻¹ − g H`, g.
 type Answers<N, const D: usize> = (Matrix<N, D>, N);
 /// `G_z β`, and what the stress reads.
 type Constants<N, C> = (N, C);
-/// What the bonds answer with, and what is remembered at the end of the step.
+/// What force states are made of, and what is remembered at the end of the step.
 type Point<N, P, const D: usize> = (Answers<N, D>, P);
 type EndOf<'a, N, L, const D: usize> = End<
     'a,
@@ -130,7 +130,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     const STRETCHES: bool = false;
     const POTENTIAL: bool = L::POTENTIAL;
     const STIFFENS: bool = true;
-    const STIFFENS_TORN: bool = true;
+    const STIFFENS_DAMAGED: bool = true;
     const FORM_OF_WHOLE: bool = true;
     const PLACED: bool = L::PLACED;
     const READS: bool = false;
@@ -176,21 +176,21 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         self.law.at_place(material, place)
     }
 
-    fn form(&self, _: usize, kin: Kin<D>) -> Form<f64, D> {
-        let shape = kin.shape();
+    fn form(&self, _: usize, reference: ReferenceFamily<D>) -> Form<f64, D> {
+        let shape = reference.shape();
         let (inverse, whole) = tensor::inverse(shape);
         let sound = if whole { 1.0 } else { 0.0 };
-        (inverse, [inverse_weight(&shape), sound, kin.reach])
+        (inverse, [inverse_weight(&shape), sound, reference.reach])
     }
 
     /// `|δF|² ≤ |K⁻¹| Σ ω ν V |η|²`; of points without F the control alone, which goes with 1/m.
-    fn stiffness(&self, _: usize, kin: Kin<D>) -> f64 {
-        tensor::greatest_of_inverse(kin.shape())
+    fn stiffness(&self, _: usize, reference: ReferenceFamily<D>) -> f64 {
+        tensor::greatest_of_inverse(reference.shape())
     }
 
     /// `ω η⊗ξ`, and `ω η²`
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &EndOf<N, L, D>) -> Sum<N, D> {
+    fn pair_pass<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &EndOf<N, L, D>) -> Sum<N, D> {
         let mut sum = tensor::zero();
         for r in 0..D {
             let eta = bond.omega * bond.eta[r];
@@ -206,7 +206,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     }
 
     #[inline(always)]
-    fn settle<N: Number>(
+    fn point_update<N: Number>(
         &self,
         _: usize,
         site: &SiteOf<N, L, D>,
@@ -243,7 +243,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> Free<N, D> {
+    fn force_state<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> Free<N, D> {
         let (along, g) = &end.point.0;
         let mut t = tensor::times(along, &bond.xi);
         for a in 0..D {
@@ -300,16 +300,16 @@ pub(super) const CONTROL: Key = descriptor::number(
     "control",
     Dimension::NUMBER,
     Bounds::NOT_NEGATIVE,
-    "Stiffness G_z against deformations that the F of a family does not see, 1: that of the linear peridynamic solid; 0.1 where it is left out.",
+    "Stiffness G_z of the zero-energy-mode stabilisation, 1: that of the linear peridynamic solid; 0.1 by default.",
 )
 .need(Need::Optional);
 
 /// G_z where nobody says.
 const USUAL: f64 = 0.1;
 
-impl<L: Shelved> Shelved for NonOrdinary<L> {
+impl<L: Registered> Registered for NonOrdinary<L> {
     const ISOTROPIC: bool = L::ISOTROPIC;
-    const ENDS: bool = L::ENDS;
+    const OWN_CRITICAL_STRETCH: bool = L::OWN_CRITICAL_STRETCH;
 
     fn descriptor() -> Descriptor {
         on_a_family::<L>()

@@ -7,7 +7,9 @@
 use super::equation_of_state::{self, EquationOfState, HUGONIOT, Kind, VISCOSITY, energy_at_rest};
 use super::{Classical, Stressed, Unseen};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};
+use crate::law::descriptor::{
+    self, Bounds, Descriptor, Given, Key, Memory, Need, Registered, Value,
+};
 use crate::law::material::tensor::Matrix;
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Moduli, Parameters, Plane};
@@ -190,7 +192,7 @@ fn numbers(parameters: &Parameters) -> Result<[f64; 2], String> {
     Ok(found)
 }
 
-impl Shelved for Fluid {
+impl Registered for Fluid {
     /// There is no shear.
     const ISOTROPIC: bool = false;
 
@@ -223,13 +225,13 @@ impl Shelved for Fluid {
         let kind_of = kind(first.parameters).map_err(|why| (0, why))?;
         let of = |m: &Given| {
             if d == 2 && plane == Plane::Stress {
-                return Err("a pressure is the same in all directions, and a sheet of fluid whose faces are free bears none: write plane = \"strain\"".into());
+                return Err("a pressure is the same in all directions, and a sheet of fluid with free faces sustains none: write plane = \"strain\"".into());
             }
             if m.breaks {
                 return Err("a fluid has no bonds that break: its volume is that of its family, whole or not; leave `fracture` out".into());
             }
             if m.parameters.word("gradient") == Some("bond") {
-                return Err("a fluid has the gradient of its family: that of a bond differs in shape alone, which a pressure does not feel; leave `gradient` out".into());
+                return Err("a fluid has the gradient of its family: that of a bond differs in shape alone, on which a pressure does not depend; leave `gradient` out".into());
             }
             if kind(m.parameters)? != kind_of {
                 return Err("all materials of a body have the same equation of state".into());

@@ -130,7 +130,7 @@ pub const KEYS: [Key; 13] = [
     optional(
         "softening_strain",
         Dimension::NUMBER,
-        "ε₁ of `swift`, beyond which it softens (Needleman); left out: it does not.",
+        "ε₁ of `swift`, beyond which it softens (Needleman); no softening by default.",
     ),
     Key {
         name: "table",
@@ -159,7 +159,7 @@ pub const KEYS: [Key; 13] = [
     optional(
         "melting_temperature",
         Dimension::TEMPERATURE,
-        "T_m, where nothing is left of the yield stress; left out: heat does not soften.",
+        "T_m, where nothing is left of the yield stress; no thermal softening by default.",
     ),
     optional(
         "reference_temperature",

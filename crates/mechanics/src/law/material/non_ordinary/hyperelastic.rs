@@ -8,7 +8,7 @@
 use super::energy::{Energy, INVARIANTS};
 use super::{Classical, Stressed, Unseen};
 use crate::columns::Dimension;
-use crate::law::descriptor::{Descriptor, Given, Key, Need, Shelved, Value};
+use crate::law::descriptor::{Descriptor, Given, Key, Need, Registered, Value};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::{Dual, Number};
 use crate::spec::{LawSpec, Moduli, Parameters, Plane};
@@ -211,7 +211,7 @@ const ENERGY: Key = Key {
     doc: "Stored energy ψ per reference volume, an expression of I1 = tr C, I2 = ½ (tr²C − tr C²) and J = det F with + − * / ^ exp ln sqrt, numbers and [constants]: without stress in the reference, with positive moduli there.",
 };
 
-impl Shelved for Hyperelastic {
+impl Registered for Hyperelastic {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             "hyperelastic",

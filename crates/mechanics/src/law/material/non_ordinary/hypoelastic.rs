@@ -10,7 +10,7 @@
 use super::rate::{self, INCREMENT, Increment, Step};
 use super::{Classical, Stressed, Unseen};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Descriptor, Given, MODULI, Memory, Shelved};
+use crate::law::descriptor::{self, Descriptor, Given, MODULI, Memory, Registered};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Parameters, Plane};
@@ -116,7 +116,7 @@ impl<const D: usize> Classical<D> for Hypoelastic {
     }
 }
 
-impl Shelved for Hypoelastic {
+impl Registered for Hypoelastic {
     fn descriptor() -> Descriptor {
         Descriptor::new(
             "hypoelastic",

@@ -27,12 +27,12 @@ use super::tensor::{self, Matrix};
 use super::{Kinds, Numbers};
 use crate::columns::Declaration;
 use crate::execute::lane::Piece;
-use crate::law::descriptor::{Descriptor, Key, Need, Shelved, Value};
+use crate::law::descriptor::{Descriptor, Key, Need, Registered, Value};
 use crate::law::number::Number;
 use crate::space::Point;
 use crate::spec::Parameters;
 
-/// A law of the deformation gradient alone. With [`Shelved`] it is on the shelf twice: [`NonOrdinary`], and [`BondAssociated`].
+/// A law of the deformation gradient alone. With [`Registered`] it is on the registry twice: [`NonOrdinary`], and [`BondAssociated`].
 pub trait Classical<const D: usize>: Send + Sync + 'static {
     /// Numbers of a material that its stress reads.
     type Constants<N: Number>: Numbers<N>;
@@ -141,7 +141,7 @@ pub struct Unseen<N> {
     pub square: N,
     /// Elastic strain across a plane: [`Around::section`](super::Around::section), or that of a sheet.
     pub across: N,
-    /// [`Kin::reach`](super::Kin::reach), 1 of a bond.
+    /// [`ReferenceFamily::reach`](super::ReferenceFamily::reach), 1 of a bond.
     pub reach: N,
 }
 
@@ -164,7 +164,7 @@ impl<N: Number> Unseen<N> {
     }
 }
 
-/// What a classical law answers to a deformation gradient.
+/// The stress of a classical law at a deformation gradient.
 #[derive(Debug, Clone, Copy)]
 pub struct Stressed<N, P, const D: usize> {
     /// First Piola–Kirchhoff stress P.
@@ -196,20 +196,20 @@ impl<L: Classical<D>, N: Number, const D: usize> Piece for Asked<'_, L, N, D> {
     }
 }
 
-/// What a law answers, which finds the thickness of a sheet itself.
+/// The stress of a law, which finds the thickness of a sheet itself.
 #[inline(always)]
 fn answered<N: Number, L: Classical<D>, const D: usize>(
     asked: Asked<'_, L, N, D>,
 ) -> Stressed<N, L::Past<N>, D> {
     match D == 2 && asked.law.is_sheet() {
         true => thickness::relaxed(&asked),
-        false => N::apart(asked),
+        false => N::out_of_line(asked),
     }
 }
 
 /// All of them, a line each.
 pub(super) fn each(kinds: &mut impl Kinds) {
-    fn both<L: Shelved + Classical<2> + Classical<3>>(kinds: &mut impl Kinds) {
+    fn both<L: Registered + Classical<2> + Classical<3>>(kinds: &mut impl Kinds) {
         kinds.solid_or::<NonOrdinary<L>, BondAssociated<L>>(takes_bonds);
     }
     both::<correspondence::Correspondence>(kinds);
@@ -227,7 +227,7 @@ const GRADIENT: Key = Key {
     value: Value::Word(&[
         (
             "family",
-            "one F for the family, and a control of what it does not see (Silling et al. 2007; Silling 2017)",
+            "one F for the family, and a zero-energy-mode stabilisation (Silling et al. 2007; Silling 2017)",
         ),
         (
             "bond",
@@ -244,7 +244,7 @@ pub fn takes_bonds(parameters: &Parameters) -> bool {
 }
 
 /// What a classical law says of itself, on a family.
-fn on_a_family<L: Shelved>() -> Descriptor {
+fn on_a_family<L: Registered>() -> Descriptor {
     let mut descriptor = L::descriptor();
     descriptor.keys.extend([GRADIENT, family::CONTROL]);
     descriptor

@@ -16,13 +16,13 @@ const CLOSE: f64 = 1e-14;
 /// Beyond any strain across.
 const THICK: f64 = 1e6;
 
-/// What the law answers at a strain across.
+/// The stress of the law at a strain across.
 #[inline(always)]
 fn at<N: Number, L: Classical<D>, const D: usize>(
     asked: &Asked<'_, L, N, D>,
     across: N,
 ) -> Stressed<N, L::Past<N>, D> {
-    N::apart(Asked {
+    N::out_of_line(Asked {
         unseen: Unseen {
             across,
             ..asked.unseen
@@ -31,7 +31,7 @@ fn at<N: Number, L: Classical<D>, const D: usize>(
     })
 }
 
-/// The answer of a law at the thickness that it gives itself, by the secant method between bounds.
+/// The stress of a law at the thickness that it gives itself, by the secant method between bounds.
 #[inline(always)]
 pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
     asked: &Asked<'_, L, N, D>,
@@ -41,9 +41,9 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
     let strain = tensor::contraction(asked.h, asked.h);
     let mut x = asked.law.thickness(asked.past, tensor::dilation(asked.h));
     let mut f = at(asked, x).across;
-    let apart = N::constant(APART);
-    let ends = at(asked, x + apart).across - at(asked, x - apart).across;
-    let mut slope = ends.div(two * apart);
+    let out_of_line = N::constant(APART);
+    let ends = at(asked, x + out_of_line).across - at(asked, x - out_of_line).across;
+    let mut slope = ends.div(two * out_of_line);
     let (mut low, mut high) = (N::constant(-1.0), N::constant(THICK));
     // 2 until it is close, 1 in the last step: what other lanes are still after changes no last digit of this one
     let mut sought = two;
@@ -85,7 +85,7 @@ mod tests {
     use super::super::{answered, energy};
     use super::*;
     use crate::expression::Expression;
-    use crate::law::descriptor::Shelved;
+    use crate::law::descriptor::Registered;
     use crate::law::material::Numbers;
     use crate::law::material::tensor::Matrix;
     use crate::law::number::Dual;
@@ -133,7 +133,7 @@ mod tests {
     }
 
     /// The solid of three dimensions whose stretch across is found by halving, beside the sheet, along a path with memory.
-    fn beside<L: Shelved + Classical<2> + Classical<3>>(
+    fn beside<L: Registered + Classical<2> + Classical<3>>(
         name: &str,
         parameters: &Parameters,
         size: f64,
@@ -224,7 +224,7 @@ mod tests {
         Parameters::default().with("energy", Parameter::Formula(formula))
     }
 
-    fn checked<L: Shelved>(mut parameters: Parameters) -> Parameters {
+    fn checked<L: Registered>(mut parameters: Parameters) -> Parameters {
         let wrong = L::descriptor().check(&mut parameters).err();
         assert!(wrong.is_none(), "{wrong:?}");
         parameters

@@ -1,7 +1,7 @@
 //! What tests of these laws share.
 
 use super::Unseen;
-use crate::law::descriptor::{Given, Shelved};
+use crate::law::descriptor::{Given, Registered};
 use crate::law::material::tensor::Matrix;
 use crate::spec::{Parameters, Plane};
 
@@ -14,7 +14,7 @@ pub const SEEN: Unseen<f64> = Unseen {
 };
 
 /// A law of one material.
-pub fn made<L: Shelved>(d: usize, plane: Plane, parameters: &Parameters) -> Result<L, String> {
+pub fn made<L: Registered>(d: usize, plane: Plane, parameters: &Parameters) -> Result<L, String> {
     let given = Given {
         parameters,
         solid: None,

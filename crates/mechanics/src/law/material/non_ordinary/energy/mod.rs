@@ -158,7 +158,7 @@ impl Energy {
                 | Step::Polynomial(at, ..)
                 | Step::Power(at, _) => {
                     let a = stack[n - 1];
-                    stack[n - 1] = function(step, &a, at, apart(&a, at, change));
+                    stack[n - 1] = function(step, &a, at, strain_change(&a, at, change));
                 }
             }
         }
@@ -168,7 +168,7 @@ impl Energy {
 
 /// Δa of a part.
 #[inline(always)]
-fn apart<N: Number>(a: &Beyond<N>, at: &At, change: &[N; 3]) -> N {
+fn strain_change<N: Number>(a: &Beyond<N>, at: &At, change: &[N; 3]) -> N {
     let mut all = a.rest;
     for k in 0..3 {
         if at.slope[k] != 0.0 {
@@ -198,7 +198,10 @@ fn product<N: Number>(
     at_b: &At,
     change: &[N; 3],
 ) -> Beyond<N> {
-    let (da, db) = (apart(a, at_a, change), apart(b, at_b, change));
+    let (da, db) = (
+        strain_change(a, at_a, change),
+        strain_change(b, at_b, change),
+    );
     let (a0, b0) = (N::constant(at_a.value), N::constant(at_b.value));
     let mut out = *a;
     out.rest = da.fma(db, a0.fma(b.rest, b0 * a.rest));
@@ -232,7 +235,7 @@ fn function<N: Number>(step: &Step, a: &Beyond<N>, at: &At, d: N) -> Beyond<N> {
             (0.5 / before, (share * d).div(both), share.div(now))
         }
         Step::Exp(_) => {
-            let before = at.value.exp();
+            let before = libm::exp(at.value);
             let (rest, change) = (exp_rest(d), d.exp_m1());
             (before, rest.times(before), change.times(before))
         }
@@ -251,10 +254,14 @@ fn function<N: Number>(step: &Step, a: &Beyond<N>, at: &At, d: N) -> Beyond<N> {
         Step::Power(_, p) => {
             let x = d.times(at.value.recip());
             let log = x.ln_1p();
-            let first = p * at.value.powf(p - 1.0);
+            let first = p * libm::pow(at.value, p - 1.0);
             let rest = exp_rest(log.times(*p)) + ln_rest(x).times(*p);
             let change = log.times(p - 1.0).exp_m1();
-            (first, rest.times(at.value.powf(*p)), change.times(first))
+            (
+                first,
+                rest.times(libm::pow(at.value, *p)),
+                change.times(first),
+            )
         }
         Step::Variable | Step::Scale(_) | Step::Add | Step::Subtract | Step::Multiply(..) => {
             (1.0, zero, zero)

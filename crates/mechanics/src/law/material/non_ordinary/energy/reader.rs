@@ -21,7 +21,7 @@ pub(super) fn read(expression: &Expression) -> Result<(Vec<Step>, At), String> {
                 let value = AT_REST[k];
                 reader.push(Step::Variable, At { value, slope });
             }
-            Op::Time => return Err("an energy knows no time".into()),
+            Op::Time => return Err("an energy does not depend on time".into()),
             Op::One(f) => reader.one(f)?,
             Op::Two(f) => reader.two(f)?,
             Op::Three(f) => return Err(unsmooth(&f)),
@@ -90,10 +90,10 @@ impl Reader {
         };
         match f {
             Unary::Negate => self.scaled(at, -1.0),
-            Unary::Exp => self.push(Step::Exp(at), at.chain(a.exp(), a.exp())),
+            Unary::Exp => self.push(Step::Exp(at), at.chain(libm::exp(a), libm::exp(a))),
             Unary::Log => {
                 positive("the logarithm")?;
-                self.push(Step::Log(at), at.chain(a.ln(), a.recip()));
+                self.push(Step::Log(at), at.chain(libm::log(a), a.recip()));
             }
             Unary::Sqrt => {
                 positive("the root")?;
@@ -144,13 +144,13 @@ impl Reader {
             }
             (Part::Varies(at), Binary::Power, Part::Number(p)) => self.power(at, p)?,
             (Part::Number(base), Binary::Power, Part::Varies(at)) if base > 0.0 => {
-                let ln = base.ln();
+                let ln = libm::log(base);
                 let at = At {
                     value: ln * at.value,
                     slope: at.slope.map(|g| ln * g),
                 };
                 self.steps.push(Step::Scale(ln));
-                let value = at.value.exp();
+                let value = libm::exp(at.value);
                 self.push(Step::Exp(at), at.chain(value, value));
             }
             (_, Binary::Power, _) => {
@@ -177,7 +177,7 @@ impl Reader {
                 "it takes {a} to the power of {p} in the reference, expected a positive number or a power that is a whole number from 0 to {HIGHEST}"
             ));
         }
-        let out = at.chain(a.powf(p), p * a.powf(p - 1.0));
+        let out = at.chain(libm::pow(a, p), p * libm::pow(a, p - 1.0));
         if !whole {
             self.push(Step::Power(at, p), out);
             return Ok(());

@@ -13,7 +13,7 @@
 //! conducts it ([`Classical::temperature`]). A step flows at the temperature of its start. Damage of Johnson & Cook (1985):
 //! `ΔD = Δε̄/ε_f`, `ε_f = (D₁ + D₂ exp(D₃ p/q)) (1 + D₄ ln(ε̄̇/ε̇₀)) (1 + D₅ T*)`; what it does to bonds is a matter of their fracture.
 
-mod shelved;
+mod registered;
 
 use super::equation_of_state::{self, EquationOfState};
 use super::hardening::{self, Hardening, Kind};
