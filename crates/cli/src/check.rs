@@ -85,8 +85,6 @@ struct Findings<'a> {
     fields: Vec<continuum::Found>,
     /// Points of each rigid_body that two of its sides push alike.
     ties: Vec<usize>,
-    /// Can ranks share the run? What they do not share yet.
-    ranks: Result<(), String>,
 }
 
 impl Findings<'_> {
@@ -155,7 +153,6 @@ struct Subject {
     steps: u64,
     increments: u64,
     fields: Option<FieldsPlan>,
-    ranks: Result<(), String>,
 }
 
 impl Subject {
@@ -164,7 +161,6 @@ impl Subject {
             steps: deck.steps(info.time_step) - deck.increments(),
             increments: deck.increments(),
             fields: crate::run::continuum(deck),
-            ranks: shared(&deck.spec),
             units: deck.units,
             spec: deck.spec.clone(),
             script: false,
@@ -173,17 +169,11 @@ impl Subject {
     }
 }
 
-/// Can ranks share the run of a spec?
-fn shared(spec: &Spec) -> Result<(), String> {
-    peridyne::run::ranks::shared(spec).map_err(|e| e.message.to_string())
-}
-
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let input = &arguments.input;
     if !deck::is_deck(input) {
         return with_threads(arguments.threads, |threads| {
             let (mut prepared, setup) = script::prepare(input)?;
-            let ranks = shared(&prepared.spec);
             let subject = Subject {
                 spec: prepared.spec,
                 units: setup.units.system(),
@@ -192,7 +182,6 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
                 steps: setup.steps,
                 increments: 0,
                 fields: None,
-                ranks,
             };
             report(arguments, &subject, prepared.simulation.as_mut(), threads)
         });
@@ -370,7 +359,6 @@ fn find<'a>(
         threads,
         fields: vec![],
         ties: vec![],
-        ranks: subject.ranks.clone(),
     };
     let until = until(found.spec, found.steps, found.info.time_step);
     found.ties = ties::ties(found.spec, reference, found.info.spacing, until);

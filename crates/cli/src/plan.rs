@@ -231,15 +231,13 @@ pub fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
         return Err(Failure::input(why));
     }
     let deck = read(&arguments.input)?;
-    let explained = |e| Failure::Input(deck.explain(&e).into());
-    peridyne::run::ranks::shared(&deck.spec).map_err(explained)?;
     let options = Options {
         simd: simd(&arguments.input)?,
         ..Options::default()
     };
     with_threads(arguments.threads.or(deck.threads), |threads| {
         let made = planned(&deck.spec, options, arguments.steps, &arguments.nodes);
-        let made = made.map_err(explained)?;
+        let made = made.map_err(|e| Failure::Input(deck.explain(&e).into()))?;
         let steps = deck.steps(made.0.time_step);
         let plan = Plan::of(arguments, made, (steps, threads));
         say(&match arguments.json {

@@ -1,10 +1,12 @@
 //! `peridyne ranks`: which MPI this program finds under a launcher, whether messages between all ranks come as they were sent, and how fast.
 
 use crate::failure::{Failure, note, say};
-use peridyne_comm::{Comm, launcher};
+use peridyne_comm::{Comm, Work, launcher};
 use peridyne_io::drive::refused_threads;
+use peridyne_io::write::checkpoint::work_before;
 use serde_json::json;
 use std::fmt::Write;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -50,6 +52,27 @@ pub fn shared(
         .iter()
         .position(|end| !matches!(end, Ok(()) | Err(Failure::Elsewhere)));
     all.swap_remove(told.unwrap_or(0))
+}
+
+/// Tells all ranks what those of an earlier run had to do, as the first one reads it.
+pub fn share_as_before(comm: &Comm, dir: &Path) -> Result<(), Failure> {
+    let work = match comm.rank() {
+        0 => work_before(dir),
+        _ => vec![],
+    };
+    let words = work
+        .iter()
+        .flat_map(|of| [of.points as u64, of.seconds.to_bits()]);
+    let said: Vec<u8> = words.flat_map(u64::to_le_bytes).collect();
+    let all = comm.all(&said).map_err(input)?;
+    let words = all[0].as_chunks().0.iter().map(|w| u64::from_le_bytes(*w));
+    let words: Vec<u64> = words.collect();
+    let work = words.as_chunks().0.iter().map(|[points, seconds]| Work {
+        points: *points as usize,
+        seconds: f64::from_bits(*seconds),
+    });
+    comm.share_by(work.collect());
+    Ok(())
 }
 
 /// What this rank made of the input; where one could not, one says why. All ranks come here at once.

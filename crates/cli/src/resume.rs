@@ -5,7 +5,7 @@ use crate::deck;
 use crate::early::{Early, same_files};
 use crate::failure::{Failure, note};
 use crate::law;
-use crate::ranks::{agreed, by_the_first, shared, threads_here};
+use crate::ranks::{agreed, by_the_first, share_as_before, shared, threads_here};
 use crate::run::{Begin, RunArguments, run_deck, with_threads};
 use crate::script;
 use peridyne_comm::Comm;
@@ -53,6 +53,7 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
 fn resume_among(arguments: &ResumeArguments, comm: &Arc<Comm>) -> Result<(), Failure> {
     let newest = Checkpoint::newest(&arguments.dir).map_err(|e| Failure::input(e.to_string()));
     let from = agreed(comm, newest)?;
+    share_as_before(comm, &arguments.dir)?;
     let asked = from.asked.clone();
     let anew = arguments.as_initial.as_ref();
     if anew.is_none() && deck::is_piped(&asked.deck) {

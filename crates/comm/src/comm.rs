@@ -5,6 +5,7 @@ use crate::launcher;
 #[cfg(unix)]
 use crate::mpi;
 use crate::threads;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -13,6 +14,16 @@ use std::time::Instant;
 pub struct Comm {
     pub(crate) kind: Kind,
     counted: Counted,
+    earlier: OnceLock<Vec<Work>>,
+}
+
+/// What a rank had to do in a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Work {
+    /// Points that it had.
+    pub points: usize,
+    /// How long a step took it, without waits (time of the clock).
+    pub seconds: f64,
 }
 
 /// What this rank has sent so far.
@@ -25,6 +36,8 @@ pub struct Traffic {
     pub rounds: u64,
     /// Nanoseconds that it worked while messages were on their way.
     pub worked: u64,
+    /// And those that it did nothing else.
+    pub waited: u64,
 }
 
 #[derive(Debug, Default)]
@@ -33,6 +46,7 @@ struct Counted {
     bytes: AtomicU64,
     rounds: AtomicU64,
     worked: AtomicU64,
+    waited: AtomicU64,
 }
 
 #[derive(Debug)]
@@ -74,17 +88,19 @@ impl Comm {
         Comm {
             kind,
             counted: Counted::default(),
+            earlier: OnceLock::new(),
         }
     }
 
     /// What this rank has sent so far.
     pub fn traffic(&self) -> Traffic {
         let counted = &self.counted;
-        let [messages, bytes, rounds, worked] = [
+        let [messages, bytes, rounds, worked, waited] = [
             &counted.messages,
             &counted.bytes,
             &counted.rounds,
             &counted.worked,
+            &counted.waited,
         ]
         .map(|n| n.load(Ordering::Relaxed));
         Traffic {
@@ -92,7 +108,19 @@ impl Comm {
             bytes,
             rounds,
             worked,
+            waited,
         }
+    }
+
+    /// What ranks had to do in an earlier run, in their order: bodies are shared out by it. All ranks are told the same, before they make one; only once.
+    pub fn share_by(&self, earlier: Vec<Work>) {
+        // a body stays where it is
+        let _ = self.earlier.set(earlier);
+    }
+
+    /// What ranks had to do in an earlier run, if anybody knows.
+    pub fn earlier(&self) -> &[Work] {
+        self.earlier.get().map_or(&[], |all| all)
     }
 
     /// One more round of all.
@@ -149,13 +177,16 @@ impl Comm {
                 .bytes
                 .fetch_add(bytes.len() as u64, Ordering::Relaxed);
         }
-        self.trade(send, receive, || {
+        let mut worked = 0;
+        let answer = self.trade(send, receive, || {
             let begun = Instant::now();
             let answer = work();
-            let worked = begun.elapsed().as_nanos() as u64;
-            self.counted.worked.fetch_add(worked, Ordering::Relaxed);
+            worked = begun.elapsed().as_nanos() as u64;
             answer
-        })
+        });
+        self.counted.worked.fetch_add(worked, Ordering::Relaxed);
+        self.counted.waited.fetch_sub(worked, Ordering::Relaxed);
+        answer
     }
 
     /// [`Comm::exchange`], of which nobody keeps count.
@@ -173,17 +204,21 @@ impl Comm {
         }
         let own = self.rank();
         self.to_oneself(send, receive)?;
-        match &self.kind {
+        let begun = Instant::now();
+        let answer = match &self.kind {
             Kind::Alone => Ok(work()),
             Kind::Thread(thread) => {
                 thread.send(send.iter().filter(|(to, _)| *to != own));
                 let answer = work();
-                thread.receive(receive.iter_mut().filter(|(from, _)| *from != own))?;
-                Ok(answer)
+                let received = thread.receive(receive.iter_mut().filter(|(from, _)| *from != own));
+                received.map(|()| answer)
             }
             #[cfg(unix)]
             Kind::Mpi(mpi) => mpi.exchange(send, receive, work),
-        }
+        };
+        let waited = begun.elapsed().as_nanos() as u64;
+        self.counted.waited.fetch_add(waited, Ordering::Relaxed);
+        answer
     }
 
     /// What a rank sends to itself is copied.

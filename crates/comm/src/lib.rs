@@ -20,6 +20,6 @@ pub mod mpi;
 mod on_threads;
 mod threads;
 
-pub use comm::{Comm, Traffic};
+pub use comm::{Comm, Traffic, Work};
 pub use failure::Failure;
 pub use on_threads::{on_threads, on_threads_apart};

@@ -247,6 +247,8 @@ impl Run {
         let written = self.checkpoints.write(&mut asked, |archive| {
             pass(sim, known, writers, archive);
         });
+        let work = sim.work_of_ranks();
+        let written = written.and_then(|()| self.checkpoints.write_work(&work));
         if let Err(error) = written {
             let text = format!(
                 "step {}: no state to go on from was written: {error}",

@@ -78,7 +78,6 @@ pub fn of(found: &Findings) -> Value {
             "bodies": g.bodies.map(|b| info.bodies[b].0.as_str()), "distance": g.distance, "contact": g.contact,
         })).collect::<Vec<_>>(),
         "memory_bytes": info.bytes,
-        "ranks": json!({"shared": found.ranks.is_ok(), "why_not": found.ranks.as_ref().err()}),
         "threads": found.threads,
         "simd": info.simd,
         "seconds_per_step": found.trial.seconds_per_step,

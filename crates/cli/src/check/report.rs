@@ -97,13 +97,8 @@ fn cost(found: &Findings) -> String {
             row(&mut out, "speed", "motion was not reached in the trial");
         }
     }
-    let of_one = |why: &String| format!("one process: {why}");
     let shared = "share the run, one for each 256 points at most, with bitwise the same results (mpiexec -n)";
-    row(
-        &mut out,
-        "ranks",
-        found.ranks.as_ref().err().map_or(shared.into(), of_one),
-    );
+    row(&mut out, "ranks", shared);
     if let Some(why) = &found.untried {
         row(&mut out, "not tried", why);
     }

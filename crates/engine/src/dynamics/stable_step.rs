@@ -3,6 +3,7 @@
 
 use crate::body::{Body, Field, Layout, view, view_mut, zeros};
 use crate::interaction::{Interaction, Sweep};
+use crate::spec::LinearBody;
 use std::cmp::Ordering;
 
 /// Krylov steps; the top of a peridynamic spectrum is found to about a percent in these.
@@ -37,61 +38,62 @@ pub fn largest_ratio<const D: usize>(
     lanczos(body, &inner, &mut |w| tiny.pull(w, |i| mass[i]))
 }
 
-/// Masses that couple points, in order of ids: `M x`, and the accelerations `M⁻¹F`.
+/// Masses that couple points, in order of ids: `x · M y`, and the accelerations `M⁻¹F`.
 pub struct Coupled<'a, const D: usize> {
-    pub times: &'a dyn Fn(&[[f64; D]]) -> Vec<[f64; D]>,
+    pub dot: &'a dyn Fn(&[[f64; D]], &[[f64; D]]) -> f64,
     pub solve: &'a dyn Fn(&[[f64; D]]) -> Vec<[f64; D]>,
 }
 
 impl<const D: usize> Coupled<'_, D> {
-    fn inner(&self, x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
-        let times = (self.times)(y);
-        let both = x.as_flattened().iter().zip(times.as_flattened());
-        both.map(|(x, y)| x * y).sum()
-    }
-
     /// Largest eigenvalue of `M⁻¹K` (1 / time²) at the reference configuration.
     pub fn largest_eigenvalue(&self, body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
         let mut tiny = Tiny::new(body, interaction);
-        let inner = |x: &[[f64; D]], y: &[[f64; D]]| self.inner(x, y);
-        lanczos(body, &inner, &mut |w| (self.solve)(&tiny.pull(w, |_| 1.0)))
+        lanczos(body, self.dot, &mut |w| {
+            (self.solve)(&tiny.pull(w, |_| 1.0))
+        })
     }
 
-    /// A bound on every eigenvalue of `M⁻¹K` (1 / time²) of bonds that act directly, symmetric or not: with L the masses lumped,
-    /// `|L^-½ K L^-½| ≤ √(|L⁻¹K|_∞ |L⁻¹Kᵀ|_∞)` times the largest eigenvalue of `M⁻¹L`.
-    pub fn bound(&self, body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
-        let mut own = vec![[[0.0; D]; D]; body.len()];
-        let (mut across, mut down) = (vec![[0.0f64; D]; body.len()], vec![[0.0f64; D]; body.len()]);
-        interaction.tangents(body, view(&body.at_rest()), &mut |bond| {
-            for a in 0..D {
-                for b in 0..D {
-                    let c = body.volume().at(bond.i) * bond.stiffness[a][b];
-                    own[bond.i][a][b] += c;
-                    across[bond.i][a] += c.abs();
-                    down[bond.j][b] += c.abs();
-                }
-            }
-        });
+    /// Largest eigenvalue of `M⁻¹L` (–), L the masses lumped.
+    pub fn lightest(&self, body: &Body<D>) -> f64 {
         let mass = |i: usize| body.volume().at(i) * body.density().at(i);
-        let (mut rows, mut columns) = (0.0f64, 0.0f64);
-        for &s in body.slots() {
-            let i = s as usize;
-            for a in 0..D {
-                let row: f64 = (0..D).map(|b| own[i][a][b].abs()).sum();
-                let column: f64 = (0..D).map(|b| own[i][b][a].abs()).sum();
-                rows = rows.max((row + across[i][a]) / mass(i));
-                columns = columns.max((column + down[i][a]) / mass(i));
-            }
-        }
-        let lumped: Vec<f64> = body.slots().iter().map(|s| mass(*s as usize)).collect();
-        let inner = |x: &[[f64; D]], y: &[[f64; D]]| self.inner(x, y);
-        let lighter = lanczos(body, &inner, &mut |w| {
+        let lumped = body.by_id(mass);
+        lanczos(body, self.dot, &mut |w| {
             let weighed = w.iter().zip(&lumped);
             let weighed: Vec<[f64; D]> = weighed.map(|(w, m)| w.map(|c| m * c)).collect();
             (self.solve)(&weighed)
-        });
-        (rows * columns).sqrt() * lighter
+        })
     }
+}
+
+/// `√(|L⁻¹K|_∞ |L⁻¹Kᵀ|_∞)` (1 / time²), L the masses lumped, of bonds that act directly, symmetric or not: with the largest eigenvalue of `M⁻¹L` a
+/// bound on every one of `M⁻¹K`, as `|L^-½ K L^-½|` is no larger.
+pub fn lumped_bound<const D: usize>(linear: &LinearBody<D>) -> f64 {
+    let n = linear.points();
+    let mut own = vec![[[0.0; D]; D]; n];
+    let (mut across, mut down) = (vec![[0.0f64; D]; n], vec![[0.0f64; D]; n]);
+    for i in 0..n {
+        let (partners, blocks) = linear.row(i);
+        for (&j, block) in partners.iter().zip(blocks) {
+            for a in 0..D {
+                for b in 0..D {
+                    let c = linear.volume[i] * block[a][b];
+                    own[i][a][b] += c;
+                    across[i][a] += c.abs();
+                    down[j as usize][b] += c.abs();
+                }
+            }
+        }
+    }
+    let (mut rows, mut columns) = (0.0f64, 0.0f64);
+    for (i, mass) in linear.masses().into_iter().enumerate() {
+        for a in 0..D {
+            let row: f64 = (0..D).map(|b| own[i][a][b].abs()).sum();
+            let column: f64 = (0..D).map(|b| own[i][b][a].abs()).sum();
+            rows = rows.max((row + across[i][a]) / mass);
+            columns = columns.max((column + down[i][a]) / mass);
+        }
+    }
+    (rows * columns).sqrt()
 }
 
 /// Largest eigenvalue of an operator that is symmetric in an inner product, as a Ritz value and a margin.

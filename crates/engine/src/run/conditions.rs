@@ -12,6 +12,7 @@ use crate::boundary_condition::load::{Load, LoadKind};
 use crate::boundary_condition::point_force::{Placed, PointForce};
 use crate::boundary_condition::rigid_body::RigidBody;
 use crate::error::BuildError;
+use crate::execute::exact::Exact;
 use crate::expression::Expression;
 use crate::message;
 use crate::quantity::{Dimension, place};
@@ -40,16 +41,12 @@ fn density(kind: &ConditionKind) -> Option<(&[Option<Expression>; 3], Option<Opt
 fn spread<const D: usize>(
     body: &Body<D>,
     traction: Program<D>,
-    areas: &[f64],
-    volume: impl Fn(usize) -> f64,
+    (areas, volumes): (&[f64], &[f64]),
+    [area, volume]: [f64; 2],
 ) -> Program<D> {
-    let all = body.sum((0..areas.len()).map(&volume));
-    let same = body.sum(areas.iter().copied()) / all;
-    let each: Vec<f64> = areas
-        .iter()
-        .enumerate()
-        .map(|(k, a)| a / volume(k))
-        .collect();
+    let same = area / volume;
+    let each = areas.iter().zip(volumes).map(|(a, v)| a / v);
+    let each: Vec<f64> = each.collect();
     let other = each.iter().any(|w| !((w - same).abs() <= 1e-12 * same));
     match !body.exchange().any(other) {
         true => traction.scaled(same),
@@ -111,7 +108,7 @@ impl<const D: usize> Names<D> {
             )
             .help("coarsen again, from a deck with this load on this set"));
         }
-        let (condensed, ids) = Condensed::new(load_map, &members);
+        let (mut condensed, ids) = Condensed::new(load_map, &members);
         let mut program = Program::new(value, condensed.points());
         let mut whole = None;
         if let Some(area) = traction {
@@ -120,11 +117,21 @@ impl<const D: usize> Names<D> {
                 .faces
                 .condensed(load_map, period, set, &members, area)?;
             whole = Some(areas.iter().sum());
-            let volume = |k: usize| load_map.volume[members[k] as usize];
-            program = spread(body, program, &areas, volume);
+            let volumes = members.iter().map(|p| load_map.volume[*p as usize]);
+            let volumes: Vec<f64> = volumes.collect();
+            // every rank has all points that carry loads
+            let totals = [&areas, &volumes].map(|of| of.iter().copied().collect::<Exact>().value());
+            program = spread(body, program, (&areas, &volumes), totals);
         }
-        let slots = ids.iter().map(|id| body.slots()[*id as usize]);
-        let mut load = Load::condensed(program, slots.collect(), condensed);
+        let (whose, mut here, mut slots) = (body.whose(), vec![], vec![]);
+        for (k, id) in ids.into_iter().enumerate() {
+            if let Some(place) = whose.place(id) {
+                here.push(k);
+                slots.push(body.slots()[place]);
+            }
+        }
+        condensed.pick(&here);
+        let mut load = Load::condensed(program, slots, condensed);
         load.of = Some((0, whole));
         Ok(load)
     }
@@ -188,7 +195,7 @@ impl<const D: usize> Names<D> {
                 continue;
             }
             // groups of scripts may be empty
-            if slots.is_empty() && self.load_map.is_some() {
+            if self.load_map.is_some() && body.count(slots.len() as u64) == 0 {
                 return Err(BuildError::empty(
                     format!("conditions[{n}].set"),
                     format!("no point of `{}` was retained", c.set),
@@ -219,10 +226,13 @@ impl<const D: usize> Names<D> {
                 ConditionKind::Traction { value, area } => {
                     let areas = { self.faces.areas(body, &c.set, &slots, *area) }
                         .map_err(|e| e.at(format!("conditions[{n}]")))?;
-                    let volume = |k: usize| body.volume().at(slots[k] as usize);
-                    let program = spread(body, Program::new(value, &points), &areas, volume);
+                    let volumes = slots.iter().map(|s| body.volume().at(*s as usize));
+                    let volumes: Vec<f64> = volumes.collect();
+                    let totals = [&areas, &volumes].map(|of| body.sum(of.iter().copied()));
+                    let program = Program::new(value, &points);
+                    let program = spread(body, program, (&areas, &volumes), totals);
                     let mut made = load(LoadKind::Body(program));
-                    made.of = Some((n, Some(body.sum(areas.iter().copied()))));
+                    made.of = Some((n, Some(totals[0])));
                     loads.push(made);
                 }
                 ConditionKind::Displacement(e) => constraints.push(Constraint::new(

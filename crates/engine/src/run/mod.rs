@@ -77,6 +77,7 @@ use crate::space::Point;
 use crate::spec::{AnyLinearBody, Influence, Quantity, Stepper};
 use crate::state::Owner;
 use crate::statics::Solved;
+use peridyne_comm::Work;
 use std::sync::Arc;
 
 /// What a model is, for headers and reports.
@@ -298,6 +299,10 @@ pub trait Simulation: CoSimulation + Examined + Owner + Send {
     fn shares(&mut self, fields: &[&str], asked: &str) -> Option<Vec<Vec<u8>>> {
         let _ = (fields, asked);
         None
+    }
+    /// What ranks that share the model have had to do in a step since it was made, in their order; nothing of one process.
+    fn work_of_ranks(&mut self) -> Vec<Work> {
+        vec![]
     }
     /// What the model is now, in two numbers: for a look whether two runs went the same way.
     fn state_hash(&mut self) -> StateHash;

@@ -83,16 +83,6 @@ impl<const D: usize> State for View<'_, D> {
         self.system.body.density().at(self.slot(id))
     }
 
-    fn kinetic_energy_density(&self, id: usize) -> f64 {
-        let system = &*self.system;
-        let v = |id: usize| crate::array::from_fn::<_, D, _>(|a| system.v[a][self.slot(id)]);
-        let own = v(id);
-        match &system.inertia {
-            None => 0.5 * self.density(id) * full(&own).iter().map(|c| c * c).sum::<f64>(),
-            Some(inertia) => inertia.masses.kinetic_energy_density(id, &v),
-        }
-    }
-
     fn material(&self, id: usize) -> usize {
         self.system.body.material_of(self.slot(id))
     }
@@ -123,6 +113,26 @@ impl<const D: usize> State for View<'_, D> {
     fn energies(&mut self) -> &Observed {
         let system = &mut *self.system;
         self.seen.get_or_insert_with(|| system.observed())
+    }
+
+    fn kinetic_energy_density(&mut self) -> Vec<f64> {
+        let body = &self.system.body;
+        let v = body.values(&self.system.v);
+        let momentum = match &self.system.inertia {
+            None => body.by_id(|i| {
+                let rho = body.density().at(i);
+                crate::array::from_fn(|a| rho * self.system.v[a][i])
+            }),
+            Some(inertia) => {
+                let all = inertia.masses.times(body, &v);
+                let volume = body.by_id(|i| body.volume().at(i));
+                let each = all.iter().zip(volume);
+                each.map(|(p, volume)| p.map(|p| p / volume)).collect()
+            }
+        };
+        let each = v.iter().zip(&momentum);
+        each.map(|(v, p): (&[f64; D], &[f64; D])| 0.5 * (0..D).map(|a| v[a] * p[a]).sum::<f64>())
+            .collect()
     }
 
     fn damage(&mut self) -> Vec<f64> {

@@ -73,22 +73,6 @@ impl<const D: usize> Masses<D> {
         dot(x, &self.times(y))
     }
 
-    /// Kinetic energy of point `i` over its volume: `½ v_i·Σ_j M_ij v_j / V_i`.
-    pub fn kinetic_energy_density(&self, i: usize, v: &dyn Fn(usize) -> [f64; D]) -> f64 {
-        let (partners, blocks) = self.matrix.row(i);
-        let own = v(i);
-        let mut sum = 0.0;
-        for (&j, m) in partners.iter().zip(blocks) {
-            let other = v(j as usize);
-            for a in 0..D {
-                for b in 0..D {
-                    sum += own[a] * m[a][b] * other[b];
-                }
-            }
-        }
-        0.5 * sum / self.bonds.volume[i]
-    }
-
     /// Factors on the free components.
     ///
     /// # Errors

@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peridyne::state::{Archive, Owner, StateError};
+use peridyne_comm::Work;
+use serde_json::json;
 
 use super::atomic::{WriteError, create_directory, write_file};
 use super::folder::{CHECKPOINT, WAITING};
@@ -18,6 +20,8 @@ use super::folder::{CHECKPOINT, WAITING};
 const MAGIC: &[u8; 24] = b"peridyne checkpoint 011\n";
 /// Bytes of a block.
 const BLOCK: usize = 1 << 20;
+/// Beside the states: what ranks had to do, for whoever shares the body out again. No result.
+const WORK: &str = "work.json";
 /// What names of states begin and end with.
 const NAME: [&str; 2] = ["step_", ".state"];
 
@@ -409,6 +413,22 @@ impl Checkpoints {
         Ok(())
     }
 
+    /// Writes what ranks had to do, beside the states.
+    ///
+    /// # Errors
+    /// The operating system's.
+    pub fn write_work(&self, work: &[Work]) -> Result<(), WriteError> {
+        if work.is_empty() {
+            return Ok(());
+        }
+        let ranks: Vec<_> = { work.iter() }
+            .map(|of| json!({"points": of.points, "seconds_per_step": of.seconds}))
+            .collect();
+        write_file(&self.dir.join(CHECKPOINT).join(WORK), |w| {
+            serde_json::to_writer_pretty(w, &json!({ "ranks": ranks })).map_err(io::Error::from)
+        })
+    }
+
     /// The run is done: nobody goes on with it.
     ///
     /// # Errors
@@ -429,13 +449,30 @@ impl Checkpoints {
     }
 }
 
+/// What ranks had to do in the run that wrote states into a folder of results; nothing where nobody knows.
+pub fn work_before(dir: &Path) -> Vec<Work> {
+    let read = || {
+        let text = fs::read(dir.join(CHECKPOINT).join(WORK)).ok()?;
+        let all: serde_json::Value = serde_json::from_slice(&text).ok()?;
+        let each = all["ranks"].as_array()?.iter().map(|of| {
+            Some(Work {
+                points: of["points"].as_u64()? as usize,
+                seconds: of["seconds_per_step"].as_f64()?,
+            })
+        });
+        each.collect::<Option<Vec<_>>>()
+    };
+    read().unwrap_or_default()
+}
+
 /// Takes away all states and the frames of films that wait beside them; what else is there stays.
 fn clear(dir: &Path) -> Result<(), WriteError> {
     let folder = dir.join(CHECKPOINT);
     let entries = fs::read_dir(&folder).into_iter().flatten().flatten();
-    let waits = |path: &Path| path.extension().is_some_and(|e| e == WAITING);
-    let films = entries.map(|e| e.path()).filter(|p| waits(p));
-    for path in films.chain(states(dir)) {
+    let waits =
+        |path: &Path| path.extension().is_some_and(|e| e == WAITING) || path.ends_with(WORK);
+    let beside = entries.map(|e| e.path()).filter(|p| waits(p));
+    for path in beside.chain(states(dir)) {
         fs::remove_file(&path).map_err(WriteError::at("remove", &path))?;
     }
     // of somebody else's files none is taken away

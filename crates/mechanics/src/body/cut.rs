@@ -15,7 +15,7 @@ mod several;
 
 use super::{Body, Layout};
 pub(super) use blocks::CELLS;
-use blocks::by_ranks;
+use blocks::{by_ranks, shared_out};
 pub use cloud::Moved;
 pub use counted::Counted;
 use peridyne_comm::Comm;
@@ -31,7 +31,7 @@ impl<const D: usize> Body<D> {
 
     /// The same, with copies of these points of several bodies besides (ids in their order), whoever has them.
     pub fn subdomain_beside(&self, comm: &Arc<Comm>, reach: f64, beside: &[u32]) -> Body<D> {
-        let blocks = by_ranks(&self.points_of_blocks(), comm.ranks());
+        let blocks = shared_out(&self.points_of_blocks(), comm);
         match &self.layout {
             Layout::Several(_) => self.part_of_several(&blocks, comm, reach, beside),
             Layout::Grid(_) | Layout::Cloud(_) => self.part(&blocks, comm, reach),

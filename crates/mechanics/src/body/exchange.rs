@@ -9,7 +9,7 @@
 //! | materials, factors, constants of places and families (once they are known) | the first sweep |
 //! | displacements | every sweep |
 //! | velocities, strains of expansion | sweeps that end a step; every sweep |
-//! | what points made of their sums (pressures, slopes of embedding, [`Material::settle`](crate::law::material::Material::settle)) | after each pass, before the next and the forces |
+//! | what points made of their sums (pressures, slopes of embedding, [`Material::point_update`](crate::law::material::Material::point_update)) | after each pass, before the next and the forces |
 //! | what bonds remember, which the far end answers with | the forces after what they remembered changed |
 //! | critical stretches, damage, integrity | the next search for bonds that break; the forces |
 //!

@@ -385,7 +385,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
         None
     }
 
-    /// So many cycles pass: takes from these, which begin with those of [`fatigue_of_bonds`](Interaction::wearing), one for each of its bonds. Those that are worn
+    /// So many cycles pass: takes from these, which begin with those of [`fatigue_of_bonds`](Interaction::fatigue_of_bonds), one for each of its bonds. Those that are worn
     /// out break in the next sweep.
     fn accumulate_fatigue(&mut self, _bonds: &mut dyn Iterator<Item = BondFatigue>, _cycles: f64) {}
 

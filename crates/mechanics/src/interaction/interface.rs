@@ -322,7 +322,7 @@ impl<const D: usize> Interface<D> {
         self.bonds.expand(&points.cloud, &own)
     }
 
-    /// [`fatigue_of_bonds`](Interaction::wearing)
+    /// [`fatigue_of_bonds`](Interaction::fatigue_of_bonds)
     pub fn fatigue_of_bonds(&self, u: FieldView<D>, load: &Cycles) -> Option<Vec<BondFatigue>> {
         let mut own = self.points.cloud.at_rest();
         self.points.take(u, view_mut(&mut own));

@@ -59,8 +59,6 @@ pub trait State {
     fn force_density(&self, id: usize) -> Point;
     fn volume(&self, id: usize) -> f64;
     fn density(&self, id: usize) -> f64;
-    /// `½ ρ v·v`; of masses that couple points `½ v·(M v)/V`.
-    fn kinetic_energy_density(&self, id: usize) -> f64;
     fn material(&self, id: usize) -> usize;
     fn mark(&self, id: usize) -> i32;
     /// Number of bodies side by side, 1 where nobody named any.
@@ -74,6 +72,8 @@ pub trait State {
     /// Energy densities and dilatations, those of contact included. Computed once for a state.
     fn energies(&mut self) -> &Observed;
     fn damage(&mut self) -> Vec<f64>;
+    /// `½ ρ v·v` of each point; of masses that couple points `½ v·(M v)/V`.
+    fn kinetic_energy_density(&mut self) -> Vec<f64>;
     /// Number of the fragment of each point, 0 is the largest.
     fn fragments(&mut self) -> Vec<u32>;
     /// Every bond of the reference family from each of its points, but for those that a pre-crack made absent.

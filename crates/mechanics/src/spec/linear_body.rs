@@ -89,15 +89,6 @@ impl AnyLinearBody {
         }
     }
 
-    /// Do its points carry loads of a finer body?
-    pub fn has_load_map(&self) -> bool {
-        match self {
-            Self::One(b) => b.load_map.is_some(),
-            Self::Two(b) => b.load_map.is_some(),
-            Self::Three(b) => b.load_map.is_some(),
-        }
-    }
-
     /// Longest bond, whether it acts or not (length).
     pub fn longest(&self) -> f64 {
         match self {

@@ -110,7 +110,7 @@ impl<const D: usize> Problem<'_, D> {
         // conjugate gradients seek the step in the symmetric part of a tangent that has another: forces decide where it ends
         let skew = !factored && body.soundness().asymmetry > statics::SYMMETRIC;
         let mut body = if skew { body.symmetric() } else { body };
-        let coupled = inertia.and_then(|m| m.coupled.as_ref());
+        let coupled = inertia.and_then(|m| m.coupled.as_ref()?.whole());
         if let (Some(masses), Some(inertia)) = (coupled, inertia) {
             let (sum, own) = masses.with(&body, inertia.weight * inertia.acceleration);
             body = sum;

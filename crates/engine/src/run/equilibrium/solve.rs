@@ -248,7 +248,7 @@ impl<const D: usize> Problem<'_, D> {
         self.place_bodies(tried, inertia);
         let scale = self.imbalance(&tried.x, r, support).scale;
         let (bodies, [left, acting]) = self.missing_of_bodies(tried, inertia);
-        let found = inertia.take(tried, (r, &self.sums), support);
+        let found = inertia.take(&self.system.body, tried, (r, &self.sums), support);
         Missing {
             scale: libm::hypot(libm::hypot(scale, found.scale), acting),
             size: libm::hypot(found.size, left),

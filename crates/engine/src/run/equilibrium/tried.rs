@@ -1,8 +1,10 @@
 //! What Newton's method tries: displacements, and within a step in time the velocities and accelerations that go with them.
 
 use super::problem::Problem;
+use crate::body::Body;
 use crate::boundary_condition::rigid::{NewmarkStep, Wrench};
-use crate::statics::{Imbalance, Masses, Sums, Support};
+use crate::run::inertia::masses::CoupledMasses;
+use crate::statics::{Imbalance, Sums, Support};
 use std::sync::Arc;
 
 /// A state on trial, in order of ids.
@@ -66,7 +68,7 @@ pub(in crate::run) struct Inertia<const D: usize> {
     /// `[N]` over `1 + α`.
     pub mass: Vec<f64>,
     /// Masses that couple points, in place of those; not over `1 + α`.
-    pub coupled: Option<Arc<Masses<D>>>,
+    pub coupled: Option<Arc<CoupledMasses<D>>>,
     /// `[N]` `α f₀/(1 + α)` (force); empty: α is 0.
     pub past: Vec<[f64; D]>,
     /// `[N]` what it adds to the stiffness (force / length): `m ∂a/∂u/(1 + α) + c ∂v/∂u`, c what damping takes per velocity; without
@@ -96,11 +98,12 @@ impl<const D: usize> Inertia<D> {
     /// Takes `m a` from the forces on the free components: what is left of them, and how large it and `m v/Δt` are.
     pub fn take(
         &self,
+        body: &Body<D>,
         tried: &Tried<D>,
         (r, sums): (&mut [[f64; D]], &Sums),
         support: &Support<D>,
     ) -> Imbalance {
-        let coupled = self.coupled.as_ref().map(|m| m.times(&tried.a));
+        let coupled = self.coupled.as_ref().map(|m| m.times(body, &tried.a));
         let inertia = |n: usize, a: usize| match &coupled {
             None => self.mass[n] * tried.a[n][a],
             Some(force) => self.weight * force[n][a],

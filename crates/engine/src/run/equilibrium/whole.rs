@@ -29,6 +29,24 @@ pub(in crate::run) fn whole_support<const D: usize>(
     })
 }
 
+/// Vectors of all ranks' points, on the first.
+pub(in crate::run) fn whole_vectors<const D: usize>(
+    body: &Body<D>,
+    own: &[[f64; D]],
+) -> Option<Vec<[f64; D]>> {
+    let whole = body.whole(D, own.as_flattened().to_vec())?;
+    Some(whole.as_chunks().0.to_vec())
+}
+
+/// Those of the points that are here, of what the first rank has of all.
+pub(in crate::run) fn part_of_vectors<const D: usize>(
+    body: &Body<D>,
+    whole: Option<Vec<[f64; D]>>,
+) -> Vec<[f64; D]> {
+    let part = body.part_of(D, whole.map(Vec::into_flattened));
+    part.as_chunks().0.to_vec()
+}
+
 /// Components of all ranks' points that are free.
 pub(in crate::run) fn unknowns<const D: usize>(body: &Body<D>, support: &Support<D>) -> usize {
     body.count(support.unknowns() as u64) as usize

@@ -1,6 +1,7 @@
 //! Masses that couple points: accelerations are those of all forces together, `M a = F`, and velocity Verlet has `ρ a` in the place of the
 //! force density. Where motion is prescribed so are accelerations, and `M_ff a_f = F_f − M_fc a_c`.
 
+pub(super) mod masses;
 pub(super) mod state;
 
 use self::state::Inertia;
@@ -19,9 +20,10 @@ impl<const D: usize> System<D> {
         };
         let a = self.accelerations(&mut inertia);
         // who holds points asks what these take
-        let taken = match self.prescribed.constraints.is_empty() {
-            true => vec![],
-            false => inertia.masses.times(&a),
+        let held = !self.prescribed.constraints.is_empty();
+        let taken = match self.body.exchange().any(held) {
+            true => inertia.masses.times(&self.body, &a),
+            false => vec![],
         };
         inertia.taken.swap(0, 1);
         for (n, &s) in self.body.slots().iter().enumerate() {
@@ -47,7 +49,7 @@ impl<const D: usize> System<D> {
         let force = self
             .body
             .by_id(|i| crate::array::from_fn(|axis| volume(i) * self.f[axis][i]));
-        inertia.accelerate(&support, &force, &mut a);
+        inertia.accelerate(&self.body, &support, &force, &mut a);
         a
     }
 
@@ -65,14 +67,14 @@ impl<const D: usize> System<D> {
     /// Were points held or released since accelerations were found?
     pub(super) fn holds_others(&self) -> bool {
         let inertia = self.inertia.as_ref();
-        inertia.is_some_and(|i| i.support != self.held())
+        inertia.is_some_and(|i| self.body.exchange().any(i.support != self.held()))
     }
 
     /// Kinetic energy of masses that couple points; `None`: of points.
     pub(super) fn coupled_kinetic(&self) -> Option<f64> {
         let masses = &self.inertia.as_ref()?.masses;
         let v = self.body.values(&self.v);
-        Some(0.5 * masses.dot(&v, &v))
+        Some(0.5 * masses.dot(&self.body, &v, &v))
     }
 
     /// `M (v₁ − v₀)` over volumes (momentum density), where masses couple points.
@@ -83,7 +85,8 @@ impl<const D: usize> System<D> {
             *v = crate::array::from_fn(|a| v[a] - before[a]);
         }
         let mut field = zeros(self.body.len());
-        for (m, &s) in masses.times(&change).iter().zip(self.body.slots()) {
+        let gained = masses.times(&self.body, &change);
+        for (m, &s) in gained.iter().zip(self.body.slots()) {
             for a in 0..D {
                 field[a][s as usize] = m[a] / self.body.volume().at(s as usize);
             }

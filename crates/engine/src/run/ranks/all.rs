@@ -20,7 +20,7 @@ use crate::space::Point;
 use crate::spec::{AnyLinearBody, ConditionSpec, RigidBodySpec, Spec};
 use crate::state::{Archive, Owner};
 use crate::statics::Solved;
-use peridyne_comm::Comm;
+use peridyne_comm::{Comm, Work};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -54,6 +54,7 @@ impl<const D: usize> RankModel<D> {
                 Ask::LinearBody => drop(linear_of_all(&mut self.model)),
                 Ask::Modes(count) => drop(modes_of_all(&mut self.model, count)),
                 Ask::Hash => drop(self.state_hash()),
+                Ask::Work => drop(self.work_of_ranks()),
                 Ask::Measure => drop(self.model.measure()),
                 Ask::Watch(what) => self.model.watch(what),
                 Ask::Watched(what) => drop(self.watched(what)),
@@ -205,6 +206,11 @@ impl<const D: usize> Simulation for AllRanks<D> {
     fn state_hash(&mut self) -> StateHash {
         self.ask(&Ask::Hash);
         self.own.state_hash().expect("this rank gathers")
+    }
+
+    fn work_of_ranks(&mut self) -> Vec<Work> {
+        self.ask(&Ask::Work);
+        self.own.work_of_ranks()
     }
 
     fn set_column(&mut self, _: &str, _: &[f64]) -> bool {

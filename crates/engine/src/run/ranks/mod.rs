@@ -1,7 +1,6 @@
 //! A model whose body many ranks share: each moves its own points, and their numbers are the same bits as if one rank had all.
 //!
-//! [`shared()`] says of what ranks do not share yet. The model of all is an [`AllRanks`] on the first rank, which [answers](AllRanks) as any model;
-//! the other ranks [follow](RankModel::follow) it.
+//! The model of all is an [`AllRanks`] on the first rank, which [answers](AllRanks) as any model; the other ranks [follow](RankModel::follow) it.
 
 mod all;
 mod ask;
@@ -9,9 +8,7 @@ mod co_simulation;
 mod here;
 mod model;
 mod plan;
-mod shared;
 
 pub use all::{AllRanks, Before, build, build_from};
 pub use model::{RankModel, Share, WriteShare};
 pub use plan::{Meanwhile, Shares, StepCost, plan};
-pub use shared::shared;

@@ -1,7 +1,6 @@
 //! The part of a model that one rank has.
 
 use super::here::Here;
-use super::shared::shared;
 use crate::body::{Body, RunsOfIds, Subdomain};
 use crate::columns::{Declaration, On};
 use crate::error::{BuildError, RunError};
@@ -11,8 +10,9 @@ use crate::run::build::made_among;
 use crate::run::state_hash::hashed;
 use crate::run::{CoSimulation, Examined, Model, Options, Registry, Seen, Simulation, Watched};
 use crate::spec::Spec;
-use peridyne_comm::{Comm, Traffic};
+use peridyne_comm::{Comm, Traffic, Work};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Which points of all a frame has of those of a rank: so many from a first id on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,13 +29,16 @@ pub type WriteShare = fn(&str, &Snapshot, Share) -> Vec<u8>;
 pub struct RankModel<const D: usize> {
     pub(super) model: Model<D>,
     pub(super) here: Here,
+    /// Steps so far, and how long they took without waits (time of the clock).
+    steps: u64,
+    seconds: f64,
 }
 
 impl<const D: usize> RankModel<D> {
     /// All ranks come here at once, with the same spec.
     ///
     /// # Errors
-    /// As of [`build`](super::build), and what ranks do not share yet. One rank says what it is, the others that it
+    /// As of [`build`](super::build). One rank says what it is, the others that it
     /// [does](crate::error::BuildErrorKind::Elsewhere).
     pub fn new(
         spec: &Spec,
@@ -43,10 +46,14 @@ impl<const D: usize> RankModel<D> {
         registry: &Registry,
         comm: &Arc<Comm>,
     ) -> Result<RankModel<D>, BuildError> {
-        shared(spec)?;
         let model = made_among(spec, options, registry, Some(comm))?;
         let here = Here::default();
-        Ok(RankModel { model, here })
+        Ok(RankModel {
+            model,
+            here,
+            steps: 0,
+            seconds: 0.0,
+        })
     }
 
     fn body(&self) -> &Body<D> {
@@ -77,7 +84,23 @@ impl<const D: usize> RankModel<D> {
     /// # Errors
     /// As of [`Simulation::step`], the same on all ranks.
     pub fn step(&mut self) -> Result<(), RunError> {
-        self.model.step()
+        let waited = |own: &Self| 1e-9 * own.subdomain().comm().traffic().waited as f64;
+        let (begun, before) = (Instant::now(), waited(self));
+        let made = self.model.step();
+        self.seconds += begun.elapsed().as_secs_f64() - (waited(self) - before);
+        self.steps += 1;
+        made
+    }
+
+    /// What each rank has had to do in a step, in their order.
+    pub(super) fn work_of_ranks(&self) -> Vec<Work> {
+        let own = self.seconds / self.steps.max(1) as f64;
+        let all = self.body().all_of(&[self.ids().len() as f64, own]);
+        let work = all.iter().map(|of| Work {
+            points: of[0] as usize,
+            seconds: of[1],
+        });
+        work.collect()
     }
 
     /// Columns of points of the model of all ranks.

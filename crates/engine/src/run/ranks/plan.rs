@@ -4,7 +4,6 @@ use super::model::RankModel;
 use crate::error::BuildError;
 use crate::run::build::made_among;
 use crate::run::interfaces;
-use crate::run::ranks::shared;
 use crate::run::reference::current_neighbours;
 use crate::run::{Info, Options, Registry, Simulation};
 use crate::spec::{Spec, Stepper};
@@ -59,14 +58,13 @@ impl Shares {
 /// What a step of a spec costs, by so many steps of one process and of two ranks, and how these numbers of ranks share its body.
 ///
 /// # Errors
-/// What ranks do not share yet; equations may be solved by a matrix, which one rank has, and atoms be near to any others; as of [`build`](crate::run::build); steps end with an error.
+/// Equations may be solved by a matrix, which one rank has, and atoms be near to any others; as of [`build`](crate::run::build); steps end with an error.
 pub fn plan(
     spec: &Spec,
     options: Options,
     steps: usize,
     ranks: &[usize],
 ) -> Result<(Info, StepCost, Vec<Shares>), BuildError> {
-    shared(spec)?;
     let by_matrix = match spec.run.schedule.stepper {
         Stepper::Verlet | Stepper::Still => false,
         Stepper::Newmark(_) => true,

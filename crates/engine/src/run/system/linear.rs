@@ -167,8 +167,9 @@ impl<const D: usize> System<D> {
     pub fn linear_now(&mut self) -> Option<LinearBody<D>> {
         self.refresh_images();
         let made = statics::linear_body(&self.body, self.interaction.as_mut(), &self.u)?;
+        let masses = self.inertia.as_ref().and_then(|i| i.masses.whole());
         Some(LinearBody {
-            mass: self.inertia.as_ref().map(|i| i.masses.matrix().clone()),
+            mass: masses.map(|masses| masses.matrix().clone()),
             ..made
         })
     }

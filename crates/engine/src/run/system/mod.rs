@@ -28,6 +28,7 @@ use crate::interaction::{ContactForces, Interaction, PointEnergies};
 use crate::observe::Observed;
 use crate::run::fault::KnownFault;
 use crate::spec::Breakage;
+use crate::statics::Masses;
 
 /// A body in D dimensions, and all that acts on it.
 pub(super) struct System<const D: usize> {
@@ -73,7 +74,10 @@ impl<const D: usize> System<D> {
         self.body.bytes()
             + self.interaction.bytes()
             + self.contact.as_ref().map_or(0, ContactForces::bytes)
-            + self.inertia.as_ref().map_or(0, |i| i.masses.bytes())
+            + self
+                .inertia
+                .as_ref()
+                .map_or(0, |i| i.masses.whole().map_or(0, Masses::bytes))
             + 3 * D * 8 * self.body.len()
             + self
                 .diffusions

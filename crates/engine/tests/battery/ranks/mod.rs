@@ -6,6 +6,7 @@ mod counted;
 mod friction;
 mod heat;
 mod interfaces;
+mod linear;
 mod statics;
 mod tiles;
 
@@ -18,7 +19,7 @@ use peridyne::error::RunError;
 use peridyne::execute::simd::Simd;
 use peridyne::law::material::bonds::Bonds;
 use peridyne::observe::{Column, Ledger, StateHash, Values};
-use peridyne::run::ranks::{AllRanks, RankModel, shared};
+use peridyne::run::ranks::{AllRanks, RankModel};
 use peridyne::run::{Info, Options, Registry, Simulation, build_in, build_with};
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::space::rigid::RigidShape;
@@ -240,7 +241,6 @@ fn among<const D: usize>(
 
 /// The same bits on so many ranks. Whether something broke.
 fn same<const D: usize>(spec: &Spec, ranks: &[usize], simd: Option<Simd>) -> bool {
-    shared(spec).unwrap();
     let name = &spec.title;
     let mut sim = build_in::<D>(spec, options(None), &registry()).unwrap();
     let one = said(&mut sim, None, steps(spec));
@@ -1161,26 +1161,6 @@ fn factors_of_bonds_are_those_of_the_whole_body() {
             assert!(broke, "{}", spec.title);
         }
     }
-}
-
-#[test]
-fn what_ranks_do_not_share_is_named() {
-    let case = Case::of("pmb", place(LatticeKind::Square));
-    assert!(shared(&case.spec()).is_ok());
-    let mut sim = build(&case.spec(), Options::default()).unwrap();
-    let mut linear = sim.linear_body().of::<2>().unwrap();
-    assert!(shared(&Spec::of_linear(&linear)).is_ok());
-    let points = linear.position.len();
-    linear.mass = Some(MassMatrix {
-        start: (0..=points).collect(),
-        partner: (0..points as u32).collect(),
-        block: vec![[[1.0, 0.0], [0.0, 1.0]]; points],
-    });
-    let said = shared(&Spec::of_linear(&linear)).unwrap_err();
-    assert!(
-        said.message.to_string().contains("ranks do not share"),
-        "{said}"
-    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Bodies that ranks will share of which no rank ever has all points.
 
-use super::blocks::{by_ranks, of_points};
+use super::blocks::{of_points, shared_out};
 use super::cloud::{CountedCloud, Moved};
 use super::lattice::CountedLattice;
 use super::several::of_each;
@@ -71,7 +71,7 @@ impl<const D: usize> Counted<D> {
             Kind::Cloud(of) => of_points(of.points()),
         });
         let points: Vec<Vec<usize>> = points.collect();
-        let blocks = by_ranks(&points.concat(), comm.ranks());
+        let blocks = shared_out(&points.concat(), comm);
         let own = of_each(points.iter().map(Vec::len), &blocks);
         let parts = several.iter().zip(own).map(|(body, own)| match &body.0 {
             Kind::Lattice(of) => of.part(&own, comm),

@@ -38,7 +38,7 @@ impl<const D: usize, F: Family<D>> BondState<D, F> {
         near
     }
 
-    /// [`fatigue_of_bonds`](crate::interaction::Interaction::wearing)
+    /// [`fatigue_of_bonds`](crate::interaction::Interaction::fatigue_of_bonds)
     pub fn fatigue_of_bonds(
         &self,
         body: &Body<D>,

@@ -1,6 +1,5 @@
 //! `kinetic_energy_density`
 
-use super::by_id;
 use super::{Needs, Observable};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::observe::{State, Values};
@@ -20,7 +19,5 @@ pub static OBSERVABLE: Observable = Observable {
 };
 
 fn of(state: &mut dyn State) -> Option<Values> {
-    Some(Values::Scalars(by_id(state, |s, i| {
-        s.kinetic_energy_density(i)
-    })))
+    Some(Values::Scalars(state.kinetic_energy_density()))
 }
