@@ -4,7 +4,7 @@
     docs/check.py [--program target/release/peridyne] [--site FOLDER]
 
 Links and anchors of every Markdown file of the repository lead somewhere; versions, authors and licences of CITATION.cff, Cargo.toml, pyproject.toml
-and CHANGELOG.md are the same; every crate has a page; with --program nothing that docs/first-issues.md calls absent exists. With --site, links of the
+and CHANGELOG.md are the same; every crate has a page; what the map of folders names is there; with --program nothing that docs/first-issues.md calls absent exists. With --site, links of the
 built guide between its pages are checked, too, that searches find what they should, and that each deck is on its page. Addresses on the network are not asked. Needs Python 3.11.
 """
 
@@ -75,6 +75,21 @@ def links():
             elif anchor and not guide and there.suffix == ".md" and anchor not in anchors(there.read_text(encoding="utf-8")):
                 wrong(f"{page.relative_to(ROOT)}: no #{anchor} in {name or 'the page'}")
     print(f"{count} links of {len(pages())} Markdown files")
+
+
+def names_of_the_map():
+    """Words in lower case that docs/architecture/folders.md sets as code are files, folders, or names in the code."""
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True)
+    paths = [Path(name) for name in listed.stdout.split("\n") if name and (ROOT / name).exists()]
+    known = {part for path in paths for name in path.parts for part in [name, Path(name).stem]}
+    for path in paths:
+        if path.suffix == ".rs":
+            known |= set(re.findall(r"\w+", re.sub(r"//.*", "", (ROOT / path).read_text(encoding="utf-8"))))
+    page = ROOT / "docs/architecture/folders.md"
+    words = {word for code in re.findall(r"`([a-z_/]+)`", page.read_text(encoding="utf-8")) for word in code.split("/") if word}
+    for word in sorted(words - known):
+        wrong(f"{page.relative_to(ROOT)}: `{word}` is neither a file nor a name in the code")
+    print(f"{len(words)} names of the map of folders")
 
 
 def site(folder):
@@ -185,6 +200,7 @@ def main():
     parser.add_argument("--site", type=Path, help="the built guide")
     asked = parser.parse_args()
     links()
+    names_of_the_map()
     versions()
     if asked.program:
         first_issues(str(Path(asked.program).resolve()))

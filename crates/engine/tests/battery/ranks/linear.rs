@@ -82,7 +82,7 @@ fn held(linear: &LinearBody<2>, title: String) -> Spec {
             "end",
             ConditionKind::Traction {
                 value: [None, Some(e("0.02*t")), None],
-                area: None,
+                area: Some(45.0 * H),
             },
         ),
     ];
