@@ -55,7 +55,7 @@ mod variable_horizons;
 mod virial;
 
 pub use crate::constitutive::{Registry, Sweeps};
-pub use build::{Options, build, build_in, build_with};
+pub use build::{Options, build, build_with};
 pub use diffusions::DiffusionInfo;
 pub use model::Model;
 pub use sets::{materials_of, materials_of_bodies};
@@ -268,6 +268,8 @@ pub struct Summary {
     pub cycles: Option<f64>,
     /// What the solver did in the last increment; `None`: steps are steps in time.
     pub solved: Option<Solved>,
+    /// What ranks that share the model have had to do in a step since it was made, in their order; nothing of one process.
+    pub work: Vec<Work>,
 }
 
 /// A running model of any dimension, law and family. All arrays are in order of point id.
@@ -299,10 +301,6 @@ pub trait Simulation: CoSimulation + Examined + Owner + Send {
     fn shares(&mut self, fields: &[&str], asked: &str) -> Option<Vec<Vec<u8>>> {
         let _ = (fields, asked);
         None
-    }
-    /// What ranks that share the model have had to do in a step since it was made, in their order; nothing of one process.
-    fn work_of_ranks(&mut self) -> Vec<Work> {
-        vec![]
     }
     /// What the model is now, in two numbers: for a look whether two runs went the same way.
     fn state_hash(&mut self) -> StateHash;
@@ -502,6 +500,11 @@ impl dyn Simulation + '_ {
     /// [`Summary::solved`].
     pub fn solved(&self) -> Option<Solved> {
         self.summary().solved
+    }
+
+    /// [`Summary::work`].
+    pub fn work_of_ranks(&self) -> Vec<Work> {
+        self.summary().work
     }
 
     pub fn displacements(&mut self) -> Vec<Point> {

@@ -165,6 +165,7 @@ impl<const D: usize> Simulation for Model<D> {
             diffusions: self.system.diffusion_accounts(),
             cycles: self.system.regime.cycles.then_some(accounts.cycles),
             solved: self.stages.solved(),
+            work: vec![],
         }
     }
 

@@ -28,7 +28,7 @@ fn a_stencil_is_a_list() {
             let v = Random(13).vectors(sim.vectors("reference").len(), case.d(), 0.15);
             sim.set_velocities(&v);
             sim.start(true);
-            steps(sim.as_mut(), 50);
+            steps(sim.as_mut(), 30);
             let ledger = sim.ledger();
             runs.push((
                 sim.displacements(),

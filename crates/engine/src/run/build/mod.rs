@@ -52,8 +52,7 @@ pub fn build_with(
     }
 }
 
-/// Build the model of a spec in D dimensions.
-pub fn build_in<const D: usize>(
+fn build_in<const D: usize>(
     spec: &Spec,
     options: Options,
     registry: &Registry,

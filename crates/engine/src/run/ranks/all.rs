@@ -20,7 +20,7 @@ use crate::space::Point;
 use crate::spec::{AnyLinearBody, ConditionSpec, RigidBodySpec, Spec};
 use crate::state::{Archive, Owner};
 use crate::statics::Solved;
-use peridyne_comm::{Comm, Work};
+use peridyne_comm::Comm;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -47,14 +47,13 @@ impl<const D: usize> RankModel<D> {
                 Ask::Start(bonds) => self.model.start(bonds),
                 Ask::Step => drop(self.step()),
                 Ask::Ledger => drop(self.model.ledger()),
-                Ask::Summary => drop(self.model.summary()),
+                Ask::Summary => drop(self.summary()),
                 Ask::Fragments => _ = self.fragments(),
                 Ask::Observed => drop(self.observed()),
                 Ask::Forces => drop(self.forces()),
                 Ask::LinearBody => drop(linear_of_all(&mut self.model)),
                 Ask::Modes(count) => drop(modes_of_all(&mut self.model, count)),
                 Ask::Hash => drop(self.state_hash()),
-                Ask::Work => drop(self.work_of_ranks()),
                 Ask::Measure => drop(self.model.measure()),
                 Ask::Watch(what) => self.model.watch(what),
                 Ask::Watched(what) => drop(self.watched(what)),
@@ -208,11 +207,6 @@ impl<const D: usize> Simulation for AllRanks<D> {
         self.own.state_hash().expect("this rank gathers")
     }
 
-    fn work_of_ranks(&mut self) -> Vec<Work> {
-        self.ask(&Ask::Work);
-        self.own.work_of_ranks()
-    }
-
     fn set_column(&mut self, _: &str, _: &[f64]) -> bool {
         false
     }
@@ -249,7 +243,7 @@ impl<const D: usize> Simulation for AllRanks<D> {
 
     fn summary(&self) -> Summary {
         self.ask(&Ask::Summary);
-        self.own.model.summary()
+        self.own.summary()
     }
 
     fn fragments(&self) -> u64 {
@@ -394,7 +388,7 @@ impl<const D: usize> Examined for AllRanks<D> {
 /// All ranks come here at once. `write` is how each writes its share of frames ([`Simulation::shares`]).
 ///
 /// # Errors
-/// As of [`RankModel::new`].
+/// As of [`join`](super::join).
 pub fn build(
     spec: &Spec,
     options: Options,

@@ -1,6 +1,6 @@
 //! A model whose body many ranks share: each moves its own points, and their numbers are the same bits as if one rank had all.
 //!
-//! The model of all is an [`AllRanks`] on the first rank, which [answers](AllRanks) as any model; the other ranks [follow](RankModel::follow) it.
+//! The model of all is on the first rank, which [leads](Rank::lead) and answers as any model; the other ranks [follow](Rank::follow) it.
 
 mod all;
 mod ask;
@@ -8,7 +8,9 @@ mod co_simulation;
 mod here;
 mod model;
 mod plan;
+mod rank;
 
-pub use all::{AllRanks, Before, build, build_from};
-pub use model::{RankModel, Share, WriteShare};
+pub use all::{Before, build, build_from};
+pub use model::{Share, WriteShare};
 pub use plan::{Meanwhile, Shares, StepCost, plan};
+pub use rank::{Rank, join};

@@ -8,7 +8,9 @@ use crate::fracture::fragments::Fragments;
 use crate::observe::{Column, Observed, PointForce, Snapshot, StateHash, Values};
 use crate::run::build::made_among;
 use crate::run::state_hash::hashed;
-use crate::run::{CoSimulation, Examined, Model, Options, Registry, Seen, Simulation, Watched};
+use crate::run::{
+    CoSimulation, Examined, Model, Options, Registry, Seen, Simulation, Summary, Watched,
+};
 use crate::spec::Spec;
 use peridyne_comm::{Comm, Traffic, Work};
 use std::sync::Arc;
@@ -92,15 +94,18 @@ impl<const D: usize> RankModel<D> {
         made
     }
 
-    /// What each rank has had to do in a step, in their order.
-    pub(super) fn work_of_ranks(&self) -> Vec<Work> {
+    /// As [`Simulation::summary`], of all ranks.
+    pub(super) fn summary(&self) -> Summary {
         let own = self.seconds / self.steps.max(1) as f64;
         let all = self.body().all_of(&[self.ids().len() as f64, own]);
         let work = all.iter().map(|of| Work {
             points: of[0] as usize,
             seconds: of[1],
         });
-        work.collect()
+        Summary {
+            work: work.collect(),
+            ..self.model.summary()
+        }
     }
 
     /// Columns of points of the model of all ranks.

@@ -1,17 +1,14 @@
 //! What one rank meets alone, and all must know: states without an answer, mistakes, bodies of which it has nothing.
 
 use super::heat::spreading;
-use super::{among, colliding, meeting, options, place, registry, same, scattered, torn};
+use super::{among, colliding, made, meeting, mistakes, on_ranks, place, same, scattered, torn};
 use crate::atoms::{atoms, potentials};
 use crate::sample::*;
 use peridyne::error::{BuildErrorKind, RunError};
-use peridyne::run::ranks::{AllRanks, RankModel};
-use peridyne::run::{Simulation, build_in};
+use peridyne::run::Simulation;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::*;
-use peridyne_comm::on_threads;
-use std::sync::Arc;
 
 fn square() -> Place {
     place(LatticeKind::Square)
@@ -40,35 +37,21 @@ fn a_state_without_an_answer_is_known_to_all() {
         displacement: [Some(e("x > 1150 && x < 1151 ? 1.7 : 0")), None, None],
         velocity: [const { None }; 3],
     }];
-    let mut one = build_in::<1>(&spec, options(None), &registry()).unwrap();
-    let one = fault(&mut one);
+    let one = fault(made(&spec).as_mut());
     assert!(
         matches!(one[0], Some(RunError::Crossing { .. })),
         "{:?}",
         one[0]
     );
-    let all = on_threads(3, |comm| {
-        let comm = Arc::new(comm);
-        let own = RankModel::<1>::new(&spec, options(None), &registry(), &comm).unwrap();
-        match comm.rank() {
-            0 => Some(fault(&mut AllRanks::new(own, |_, _, _| vec![]))),
-            _ => {
-                own.follow(|_, _, _| vec![]);
-                None
-            }
-        }
-    });
-    assert_eq!(all[0], Some(one));
+    assert_eq!(on_ranks((&spec, None), 3, fault), one);
 }
 
 /// Of a law whose direction is none at the places of one rank.
 #[test]
 fn a_mistake_in_a_law_is_known_to_all() {
-    let kinds = |spec: &Spec| {
-        on_threads(3, |comm| {
-            let made = RankModel::<2>::new(spec, options(None), &registry(), &Arc::new(comm));
-            made.err().map(|e| e.kind)
-        })
+    let kinds = |spec: &Spec| -> Vec<_> {
+        let all = mistakes(spec).into_iter();
+        all.map(|e| e.map(|e| e.kind)).collect()
     };
     let found = |kinds: Vec<Option<BuildErrorKind>>| {
         let invalid = kinds
@@ -98,7 +81,7 @@ fn what_ghosts_repel_by_is_theirs() {
     };
     spec.bonds.variable_horizon = Some(e(&format!("{longest}*(0.85 + 0.15*sin(2*x))")));
     spec.bonds.calibration = Calibration::Continuum;
-    same::<2>(&spec, &[2, 3], None);
+    same(&spec, &[2, 3]);
 }
 
 /// Bodies of unlike materials, with friction between the faces of their cracks.
@@ -119,7 +102,7 @@ fn what_copies_repel_by_is_theirs() {
     let contact = spec.interactions.contact.as_mut().unwrap();
     contact.cohesion = None;
     contact.friction = Some(FrictionSpec::constant(0.4));
-    same::<2>(&spec, &[2, 3], None);
+    same(&spec, &[2, 3]);
 }
 
 /// Ranks beyond the blocks of a cloud whose bonds break by work, and what they say of it.
@@ -132,8 +115,8 @@ fn ranks_without_bonds_know_what_bonds_have() {
     for material in &mut spec.materials {
         material.fracture = Some(FractureSpec::new(Criterion::BondEnergy(1e-5)));
     }
-    assert!(same::<2>(&spec, &[4], None));
-    let (_, all) = among::<2>(&spec, 4, None, None);
+    assert!(same(&spec, &[4]));
+    let (_, all) = among(&spec, 4, None, None);
     assert!(all.columns.contains_key("critical_bond_work"));
 }
 
@@ -153,7 +136,7 @@ fn springs_expand_on_any_number_of_ranks() {
         DiffusionMethod::Explicit { safety: 0.5 },
         0.02,
     )];
-    same::<2>(&spec, &[2, 3], None);
+    same(&spec, &[2, 3]);
 }
 
 /// A traction that acts in statics before motion, on the face of a body whose points have moved from their sites.
@@ -201,5 +184,5 @@ fn tractions_of_statics_before_motion_have_the_areas_of_the_whole() {
         rigid_bodies: vec![],
         cuts: vec![],
     });
-    same::<2>(&spec, &[2, 3], None);
+    same(&spec, &[2, 3]);
 }

@@ -29,14 +29,6 @@ fn thrown(spec: &mut Spec, speed: f64) {
     }];
 }
 
-fn same_of(spec: &Spec, ranks: &[usize]) -> bool {
-    match spec.space.dimension {
-        1 => same::<1>(spec, ranks, None),
-        2 => same::<2>(spec, ranks, None),
-        _ => same::<3>(spec, ranks, None),
-    }
-}
-
 fn broken_by(spec: &mut Spec, criterion: Criterion) {
     for m in &mut spec.materials {
         m.fracture = Some(FractureSpec {
@@ -63,7 +55,7 @@ fn every_potential_has_the_same_bits_on_any_number_of_ranks() {
             let mut spec = atoms(kind, cells, &potential, family, n / 4 % 2 == 0);
             spec.title = format!("{name}, {kind:?}, {family:?}");
             thrown(&mut spec, 20.0);
-            same_of(&spec, &[2 + n % 2]);
+            same(&spec, &[2 + n % 2]);
         }
     }
 }
@@ -78,7 +70,7 @@ fn every_fan_has_the_same_bits_on_any_number_of_ranks() {
         spec.title = format!("{name}, {:?}", spec.bonds.family);
         spec.bonds.horizon = Horizon::Length(4.2);
         thrown(&mut spec, 60.0);
-        same_of(&spec, &[2 + n % 2]);
+        same(&spec, &[2 + n % 2]);
     }
 }
 
@@ -100,7 +92,7 @@ fn bonds_of_potentials_break_alike_on_any_number_of_ranks() {
         spec.title = format!("{name}, {criterion:?}");
         broken_by(&mut spec, criterion);
         thrown(&mut spec, speed);
-        broken += usize::from(same_of(&spec, &[2]));
+        broken += usize::from(same(&spec, &[2]));
     }
     for (n, (name, potential, edge, kinds)) in many_body().into_iter().enumerate() {
         for criterion in [Criterion::Stretch(0.02), Criterion::BondEnergy(1e-3)] {
@@ -110,7 +102,7 @@ fn bonds_of_potentials_break_alike_on_any_number_of_ranks() {
             spec.bonds.horizon = Horizon::Length(4.2);
             broken_by(&mut spec, criterion);
             thrown(&mut spec, 30.0);
-            broken += usize::from(same_of(&spec, &[2 + n % 2]));
+            broken += usize::from(same(&spec, &[2 + n % 2]));
         }
     }
     assert!(broken > 8, "{broken} of 11");
@@ -154,11 +146,11 @@ fn fields_on_nodes_have_the_same_bits_on_any_number_of_ranks() {
             if breaks {
                 broken_by(&mut spec, Criterion::Stretch(stretch));
             }
-            broken += usize::from(same_of(&spec, &[2]));
+            broken += usize::from(same(&spec, &[2]));
             if !breaks {
                 spec.run.schedule.time_step = TimeStep::Fixed(1e-4);
                 spec.run.schedule.stepper = Stepper::Newmark(Newmark::default());
-                same_of(&spec, &[2]);
+                same(&spec, &[2]);
             }
         }
     }
@@ -261,7 +253,7 @@ fn kinds_sums_and_molecules_have_the_same_bits_on_any_number_of_ranks() {
         spec.title = name.into();
         spec.interactions.bonded = bonded.map(Arc::new);
         thrown(&mut spec, 25.0);
-        same_of(&spec, &[2]);
+        same(&spec, &[2]);
         // as fast as they are by chance, and as slow as they must be
         spec.title = format!("{name}, warm");
         spec.loading.initial.clear();
@@ -271,7 +263,7 @@ fn kinds_sums_and_molecules_have_the_same_bits_on_any_number_of_ranks() {
         });
         spec.run.schedule.time_step = TimeStep::Auto;
         spec.run.schedule.force_unstable = false;
-        same_of(&spec, &[2]);
+        same(&spec, &[2]);
     }
 }
 
@@ -325,6 +317,6 @@ fn atoms_in_equilibrium_have_the_same_bits_on_any_number_of_ranks() {
                 ..Statics::default()
             }),
         };
-        same_of(&spec, &[2]);
+        same(&spec, &[2]);
     }
 }

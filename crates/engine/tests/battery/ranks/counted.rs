@@ -1,6 +1,6 @@
 //! Bodies of which no rank lists the points: several lattices, and lattices whose points are moved or have lists.
 
-use super::{among, place, same};
+use super::{among, mistakes, place, same};
 use crate::sample::*;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
@@ -121,11 +121,11 @@ fn of_two(spec: &mut Spec, axis: &str) {
     spec.sets.push(set("other", Members::Region(region)));
 }
 
-fn shares<const D: usize>(spec: &Spec, ranks: &[usize]) -> bool {
-    let broke = same::<D>(spec, ranks, None);
+fn shares(spec: &Spec, ranks: &[usize]) -> bool {
+    let broke = same(spec, ranks);
     // and what is told of it is that, too, in another order perhaps
     let one = build(spec, Options::default()).unwrap();
-    let (all, _) = among::<D>(spec, ranks[0], None, None);
+    let (all, _) = among(spec, ranks[0], None, None);
     let [one, all] = [one.info(), &all].map(|info| {
         let told = info.warnings.iter().map(|message| message.to_string());
         let mut told: Vec<String> = told.collect();
@@ -144,10 +144,10 @@ fn several_lattices_have_the_same_bits_on_any_number_of_ranks() {
         if n == 1 {
             of_two(&mut spec, "y");
         }
-        torn += u32::from(shares::<2>(&spec, &[[2, 5], [8, 3]][n]));
+        torn += u32::from(shares(&spec, &[[2, 5], [8, 3]][n]));
     }
     let spec = stacked("pmb", LatticeKind::Cubic, true);
-    torn += u32::from(shares::<3>(&spec, &[3]));
+    torn += u32::from(shares(&spec, &[3]));
     assert!(torn == 3, "{torn}");
 }
 
@@ -170,7 +170,7 @@ fn glued_lattices_have_the_same_bits_on_any_number_of_ranks() {
             .map(glue)
             .to_vec();
         of_two(&mut spec, "y");
-        torn += u32::from(shares::<2>(&spec, ranks));
+        torn += u32::from(shares(&spec, ranks));
     }
     assert_eq!(torn, 2);
 }
@@ -223,7 +223,7 @@ fn faces_of_several_lattices_are_those_of_the_whole() {
             // the thickness is a quarter
             assert!((area / (0.25 * 23.0 * H) - 1.0).abs() < 1e-9, "{area}");
         }
-        shares::<2>(&spec, &[2, 4]);
+        shares(&spec, &[2, 4]);
     }
 }
 
@@ -261,11 +261,7 @@ fn lattices_as_clouds_have_the_same_bits_on_any_number_of_ranks() {
                 spec.bonds.variable_horizon = Some(e(&format!("{longest}*(0.8 + 0.2*cos(x)^2)")));
             }
             let ranks = &[[2, 7], [3, 5]][n % 2];
-            match kind.dimension() {
-                1 => shares::<1>(&spec, ranks),
-                2 => shares::<2>(&spec, ranks),
-                _ => shares::<3>(&spec, ranks),
-            };
+            shares(&spec, ranks);
         }
     }
 }
@@ -280,13 +276,7 @@ fn mistakes_of_several_lattices_are_those_of_one_process() {
         };
         change(&mut pieces[2]);
         let one = build(&spec, Options::default()).err().unwrap();
-        let all = peridyne_comm::on_threads(3, |comm| {
-            let comm = std::sync::Arc::new(comm);
-            let (options, registry) = (super::options(None), super::registry());
-            let made = super::RankModel::<2>::new(&spec, options, &registry, &comm);
-            made.err().unwrap()
-        });
-        for said in all {
+        for said in mistakes(&spec).into_iter().flatten() {
             assert_eq!(
                 (said.path.as_str(), said.message.to_string()),
                 (one.path.as_str(), one.message.to_string())

@@ -37,10 +37,7 @@ fn rubs_the_same(spec: &Spec, ranks: &[usize]) {
         sim.state_hash()
     });
     assert_ne!(ends[0], ends[1], "nothing rubs");
-    match spec.space.dimension {
-        2 => same::<2>(spec, ranks, None),
-        _ => same::<3>(spec, ranks, None),
-    };
+    same(spec, ranks);
 }
 
 fn small(kind: LatticeKind) -> Place {

@@ -125,9 +125,9 @@ fn heat_and_species_spread_on_any_number_of_ranks() {
             }
             spec.title = format!("{} {method:?} {still}", spec.title);
             let broke = match kind.dimension() {
-                1 => same::<1>(&spec, &[3], None),
-                2 => same::<2>(&spec, &[2], None),
-                _ => same::<3>(&spec, &[3], None),
+                1 => same(&spec, &[3]),
+                2 => same(&spec, &[2]),
+                _ => same(&spec, &[3]),
             };
             assert_eq!(broke, !still, "{}", spec.title);
         }
@@ -179,6 +179,6 @@ fn heat_crosses_contact_on_any_number_of_ranks() {
             }
         }
         spec.run.schedule.time_step = TimeStep::Fixed(0.02 * H);
-        same::<2>(&spec, &[2, 3], None);
+        same(&spec, &[2, 3]);
     }
 }

@@ -50,15 +50,6 @@ fn glued(case: &Case, fracture: Option<FractureSpec>) -> Spec {
     spec
 }
 
-fn same_of(spec: &Spec, ranks: &[usize]) -> bool {
-    println!("{}", spec.title);
-    match spec.space.dimension {
-        1 => same::<1>(spec, ranks, None),
-        2 => same::<2>(spec, ranks, None),
-        _ => same::<3>(spec, ranks, None),
-    }
-}
-
 #[test]
 fn glued_bodies_are_the_same_on_any_number_of_ranks() {
     let [flat, solid] = [LatticeKind::Square, LatticeKind::Cubic];
@@ -96,7 +87,7 @@ fn glued_bodies_are_the_same_on_any_number_of_ranks() {
         if n == 0 {
             spec.bonds.factors = vec![BondFactorSpec::Field(e("1 + 0.1*sin(x + 2*y)"))];
         }
-        torn += u32::from(same_of(&spec, &[2, 3 + n % 2]));
+        torn += u32::from(same(&spec, &[2, 3 + n % 2]));
     }
     assert!(torn >= 4, "{torn}");
 }
@@ -125,7 +116,7 @@ fn heat_crosses_glue_on_any_number_of_ranks() {
         }
     }
     spec.interactions.diffusions = vec![heat];
-    same_of(&spec, &[3]);
+    same(&spec, &[3]);
 }
 
 /// The foot of the lower of two bodies is held, and the head of the upper one goes along the first axis and the last one.
@@ -263,7 +254,7 @@ fn glued_bodies_have_the_same_equilibria_on_any_number_of_ranks() {
     {
         let case = Case::of(name, small(kind));
         let spec = drawn(&case, stepper, Some(fracture));
-        torn.push(same_of(&spec, &[2 + n % 2]));
+        torn.push(same(&spec, &[2 + n % 2]));
     }
     assert_eq!(torn, [true; 7]);
 }
@@ -299,6 +290,6 @@ fn constants_of_pairs_are_those_of_the_whole_body() {
             alpha: 0.25,
         });
         spec.interactions.pairs = pairs.into();
-        assert!(same_of(&spec, &[2, 3]));
+        assert!(same(&spec, &[2, 3]));
     }
 }

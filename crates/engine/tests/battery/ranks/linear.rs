@@ -134,13 +134,13 @@ fn linear_bodies_have_the_same_bits_on_any_number_of_ranks() {
                 Stepper::Verlet => TimeStep::Auto,
                 _ => TimeStep::Fixed(0.1 * H),
             };
-            same::<2>(&spec, &[2], None);
+            same(&spec, &[2]);
         }
         if carries && !coupled {
             spec.run.schedule.steps = 2;
             spec.run.schedule.time_step = TimeStep::Fixed(0.5);
             spec.run.schedule.stepper = Stepper::Statics(Statics::default());
-            same::<2>(&spec, &[3], None);
+            same(&spec, &[3]);
         }
     }
 }

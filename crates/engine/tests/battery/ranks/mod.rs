@@ -15,12 +15,12 @@ use crate::own_law::Stiffening;
 use crate::sample::*;
 use peridyne::body::Body;
 use peridyne::columns::On;
-use peridyne::error::RunError;
+use peridyne::error::{BuildError, RunError};
 use peridyne::execute::simd::Simd;
 use peridyne::law::material::bonds::Bonds;
 use peridyne::observe::{Column, Ledger, StateHash, Values};
-use peridyne::run::ranks::{AllRanks, RankModel};
-use peridyne::run::{Info, Options, Registry, Simulation, build_in, build_with};
+use peridyne::run::ranks::join;
+use peridyne::run::{Info, Options, Registry, Simulation, build_with};
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
@@ -218,41 +218,61 @@ fn options(simd: Option<Simd>) -> Options {
     }
 }
 
-/// The same of ranks.
-fn among<const D: usize>(
-    spec: &Spec,
+/// The model of one process.
+fn made(spec: &Spec) -> Box<dyn Simulation> {
+    build_with(spec, options(None), &registry()).unwrap()
+}
+
+/// What the model of so many ranks says.
+fn on_ranks<T: Send>(
+    (spec, simd): (&Spec, Option<Simd>),
     ranks: usize,
-    simd: Option<Simd>,
-    from: Option<&[u8]>,
-) -> (Info, Said) {
+    asked: impl Fn(&mut dyn Simulation) -> T + Sync,
+) -> T {
     let all = on_threads(ranks, |comm| {
         let comm = Arc::new(comm);
-        let own = RankModel::<D>::new(spec, options(simd), &registry(), &comm).unwrap();
+        let own = join(spec, options(simd), &registry(), &comm).unwrap();
         if comm.rank() > 0 {
             own.follow(|_, _, _| vec![]);
             return None;
         }
-        let mut sim = AllRanks::new(own, |_, _, _| vec![]);
-        let said = said(&mut sim, from, steps(spec));
-        Some((sim.info().clone(), said))
+        Some(asked(own.lead(|_, _, _| vec![]).as_mut()))
     });
     all.into_iter().flatten().next().unwrap()
 }
 
+/// Why each of three ranks has no part of a model, if so.
+fn mistakes(spec: &Spec) -> Vec<Option<BuildError>> {
+    on_threads(3, |comm| {
+        join(spec, options(None), &registry(), &Arc::new(comm)).err()
+    })
+}
+
+/// What the model of so many ranks is, and says of itself.
+fn among(spec: &Spec, ranks: usize, simd: Option<Simd>, from: Option<&[u8]>) -> (Info, Said) {
+    on_ranks((spec, simd), ranks, |sim| {
+        let said = said(sim, from, steps(spec));
+        (sim.info().clone(), said)
+    })
+}
+
 /// The same bits on so many ranks. Whether something broke.
-fn same<const D: usize>(spec: &Spec, ranks: &[usize], simd: Option<Simd>) -> bool {
+fn same(spec: &Spec, ranks: &[usize]) -> bool {
+    same_by(None, spec, ranks)
+}
+
+fn same_by(simd: Option<Simd>, spec: &Spec, ranks: &[usize]) -> bool {
     let name = &spec.title;
-    let mut sim = build_in::<D>(spec, options(None), &registry()).unwrap();
-    let one = said(&mut sim, None, steps(spec));
+    let mut sim = made(spec);
+    let one = said(sim.as_mut(), None, steps(spec));
     if ranks.len() == 1 {
-        let mut again = build_in::<D>(spec, options(None), &registry()).unwrap();
-        let again = said(&mut again, Some(&one.states[0]), steps(spec));
+        let again = said(made(spec).as_mut(), Some(&one.states[0]), steps(spec));
         one.is(&again, &format!("{name}, gone on with"));
     }
     // and one rank more from what one process had half of the way
     let on = ranks.iter().map(|n| (*n, None));
     for (n, from) in on.chain([(ranks[0] + 1, Some(&one.states[0][..]))]) {
-        let (info, all) = among::<D>(spec, n, simd, from);
+        let (info, all) = among(spec, n, simd, from);
         let whole = Info {
             // copies are counted, too; what is told of gaps and torn points is of whole bodies
             bytes: info.bytes,
@@ -265,15 +285,6 @@ fn same<const D: usize>(spec: &Spec, ranks: &[usize], simd: Option<Simd>) -> boo
         one.is(&all, &format!("{name}, {n} ranks"));
     }
     one.broken > 0
-}
-
-fn same_of(case: &Case, periodic: bool, ranks: &[usize], simd: Option<Simd>) -> bool {
-    let spec = torn(case, periodic);
-    match case.d() {
-        1 => same::<1>(&spec, ranks, simd),
-        2 => same::<2>(&spec, ranks, simd),
-        _ => same::<3>(&spec, ranks, simd),
-    }
 }
 
 /// Materials on lattices on even turns, on clouds and in lists on odd ones; the ignored test below has each on both.
@@ -297,7 +308,7 @@ fn on_lattices(tries: impl Fn(usize) -> bool) {
         LatticeKind::Triangular,
         LatticeKind::Cubic,
     ];
-    let mut torn = 0;
+    let mut broken = 0;
     let mut tried = 0;
     let all = materials().into_iter().enumerate().filter(|m| tries(m.0));
     let many = all.clone().count();
@@ -313,11 +324,11 @@ fn on_lattices(tries: impl Fn(usize) -> bool) {
             material,
         };
         tried += 1;
-        torn += usize::from(same_of(&case, n % 2 == 0, &[2 + n % 2], None));
+        broken += usize::from(same(&torn(&case, n % 2 == 0), &[2 + n % 2]));
     }
     assert!(
-        tried > many * 9 / 10 && torn > many * 3 / 4,
-        "{tried} {torn}"
+        tried > many * 9 / 10 && broken > many * 3 / 4,
+        "{tried} {broken}"
     );
 }
 
@@ -341,7 +352,7 @@ fn every_lattice_has_the_same_bits_on_ranks_of_any_width() {
         for (k, name) in ["pmb", "lps", "elastic-plastic"].into_iter().enumerate() {
             let case = Case::of(name, place);
             let ranks = [1 + (n + k) % 4];
-            same_of(&case, (n + k) % 2 == 0, &ranks, widths.next());
+            same_by(widths.next(), &torn(&case, (n + k) % 2 == 0), &ranks);
         }
     }
 }
@@ -366,11 +377,7 @@ fn springs_have_the_same_bits_on_any_number_of_ranks() {
             };
             spec.materials[0].law = LawSpec::Springs(stiffness);
             spec.materials[0].fracture = None;
-            match kind.dimension() {
-                1 => same::<1>(&spec, &[2, 3], None),
-                2 => same::<2>(&spec, &[2, 3], None),
-                _ => same::<3>(&spec, &[2, 3], None),
-            };
+            same(&spec, &[2, 3]);
         }
     }
 }
@@ -461,11 +468,7 @@ fn on_clouds(tries: impl Fn(usize) -> bool) {
         }
         let ranks = [2 + n % 2];
         tried += 1;
-        torn_ones += usize::from(match case.d() {
-            1 => same::<1>(&spec, &ranks, None),
-            2 => same::<2>(&spec, &ranks, None),
-            _ => same::<3>(&spec, &ranks, None),
-        });
+        torn_ones += usize::from(same(&spec, &ranks));
     }
     let least = (many * 3 / 4, many * 5 / 8);
     assert!(
@@ -639,11 +642,7 @@ fn what_acts_and_the_stable_step_are_those_of_the_whole_body() {
                     }
                 }
             }
-            torn += u32::from(match kind.dimension() {
-                1 => same::<1>(&spec, &ranks, None),
-                2 => same::<2>(&spec, &ranks, None),
-                _ => same::<3>(&spec, &ranks, None),
-            });
+            torn += u32::from(same(&spec, &ranks));
         }
     }
     assert!(torn > 0);
@@ -725,10 +724,7 @@ fn bonds_break_on_ranks_by_whatever_they_break_by() {
                     below: e("0.03 + 0.01*t"),
                 });
             }
-            let broke = match kind.dimension() {
-                2 => same::<2>(&spec, &[2, 3], None),
-                _ => same::<3>(&spec, &[2, 3], None),
-            };
+            let broke = same(&spec, &[2, 3]);
             assert!(broke, "{name} {kind:?} {n}: nothing broke");
         }
     }
@@ -769,12 +765,12 @@ fn meeting(case: &Case, periodic: bool) -> Spec {
 }
 
 /// They touch from the beginning, and everything is as on one.
-fn touching<const D: usize>(spec: &Spec, ranks: &[usize]) {
-    let mut sim = build_in::<D>(spec, options(None), &registry()).unwrap();
+fn touching(spec: &Spec, ranks: &[usize]) {
+    let mut sim = made(spec);
     sim.start(true);
     let contact = sim.ledger().unwrap().contact;
     assert!(contact > 0.0, "{}", spec.title);
-    same::<D>(spec, ranks, None);
+    same(spec, ranks);
 }
 
 #[test]
@@ -797,11 +793,7 @@ fn what_meets_repels_whichever_rank_has_it() {
                 scattered(&mut spec);
             }
             let ranks = [2, 3 + (n + k) % 2];
-            match kind.dimension() {
-                1 => touching::<1>(&spec, &ranks),
-                2 => touching::<2>(&spec, &ranks),
-                _ => touching::<3>(&spec, &ranks),
-            }
+            touching(&spec, &ranks)
         }
     }
 }
@@ -819,20 +811,9 @@ fn forces_of_pairs_beside_contact_come_in_one_order() {
         }));
         all
     };
-    let mut one = build_in::<2>(&spec, options(None), &registry()).unwrap();
-    let one = told(&mut one);
-    let all = on_threads(3, |comm| {
-        let comm = Arc::new(comm);
-        let own = RankModel::<2>::new(&spec, options(None), &registry(), &comm).unwrap();
-        match comm.rank() {
-            0 => Some(told(&mut AllRanks::new(own, |_, _, _| vec![]))),
-            _ => {
-                own.follow(|_, _, _| vec![]);
-                None
-            }
-        }
-    });
-    let all = all.into_iter().flatten().next().unwrap();
+    let mut one = made(&spec);
+    let one = told(one.as_mut());
+    let all = on_ranks((&spec, None), 3, told);
     let off = one.iter().zip(&all).position(|(a, b)| a != b);
     assert_eq!((off, one.len()), (None, all.len()));
 }
@@ -956,8 +937,8 @@ fn several_bodies_meet_on_any_number_of_ranks() {
         {
             let spec = colliding(&Case::of(name, place));
             torn += u32::from(match kind.dimension() {
-                2 => same::<2>(&spec, &[2, 3], None),
-                _ => same::<3>(&spec, &[[3, 5][n % 2]], None),
+                2 => same(&spec, &[2, 3]),
+                _ => same(&spec, &[[3, 5][n % 2]]),
             });
         }
     }
@@ -975,14 +956,13 @@ fn a_run_that_goes_bad_does_so_on_all_ranks() {
         let error = (0..1000).find_map(|_| sim.step().err()).unwrap();
         (error, sim.state_hash(), sim.step_number())
     }
-    let mut sim = build_in::<3>(&spec, options(None), &registry()).unwrap();
-    let one = end(&mut sim);
+    let mut sim = made(&spec);
+    let one = end(sim.as_mut());
     assert!(matches!(one.0, RunError::TooFast { .. }));
     // what is left is the state before
-    let mut before = build_in::<3>(&spec, options(None), &registry()).unwrap();
+    let mut before = made(&spec);
     before.start(true);
     (0..one.2).for_each(|_| before.step().unwrap());
-    let [sim, before]: [&mut dyn Simulation; 2] = [&mut sim, &mut before];
     for name in ["displacement", "velocity"] {
         let both = sim.vectors(name).into_iter().zip(before.vectors(name));
         let off = both
@@ -990,18 +970,7 @@ fn a_run_that_goes_bad_does_so_on_all_ranks() {
             .fold(0.0, f64::max);
         assert!(off < 1e-12, "{name}: {off}");
     }
-    let all = on_threads(3, |comm| {
-        let comm = Arc::new(comm);
-        let own = RankModel::<3>::new(&spec, options(None), &registry(), &comm).unwrap();
-        match comm.rank() {
-            0 => Some(end(&mut AllRanks::new(own, |_, _, _| vec![]))),
-            _ => {
-                own.follow(|_, _, _| vec![]);
-                None
-            }
-        }
-    });
-    assert_eq!(all[0], Some(one));
+    assert_eq!(on_ranks((&spec, None), 3, end), one);
 }
 
 /// A mistake that lies where one rank has its points is told once.
@@ -1013,12 +982,9 @@ fn a_mistake_of_one_rank_is_known_to_all() {
         displacement: [const { None }; 3],
         velocity: [Some(e("1/max(20 - y, 0)")), None, None],
     }];
-    let ends = on_threads(3, |comm| {
-        let made = RankModel::<2>::new(&spec, options(None), &registry(), &Arc::new(comm));
-        made.err().map(|e| e.kind)
-    });
+    let ends = mistakes(&spec).into_iter().map(|e| e.map(|e| e.kind));
     use peridyne::error::BuildErrorKind::{Elsewhere, Invalid};
-    assert_eq!(ends, [Some(Elsewhere), Some(Elsewhere), Some(Invalid)]);
+    assert!(ends.eq([Some(Elsewhere), Some(Elsewhere), Some(Invalid)]));
     // of what spreads, whatever all have to say of its conditions
     let case = Case::of("pmb", place(LatticeKind::Square));
     let mut spec = torn(&case, false);
@@ -1030,11 +996,8 @@ fn a_mistake_of_one_rank_is_known_to_all() {
     );
     heat.initial = vec![("all".into(), e("1/max(20 - y, 0)"))];
     spec.interactions.diffusions = vec![heat];
-    let ends = on_threads(3, |comm| {
-        let made = RankModel::<2>::new(&spec, options(None), &registry(), &Arc::new(comm));
-        made.err().map(|e| e.kind)
-    });
-    assert_eq!(ends, [Some(Elsewhere), Some(Elsewhere), Some(Invalid)]);
+    let ends = mistakes(&spec).into_iter().map(|e| e.map(|e| e.kind));
+    assert!(ends.eq([Some(Elsewhere), Some(Elsewhere), Some(Invalid)]));
 }
 
 /// A bond that bears more than any point of its rank allows breaks by its other end.
@@ -1052,7 +1015,7 @@ fn bonds_break_by_the_weaker_end_whoever_has_it() {
             m.fracture.as_mut().unwrap().alpha = 0.25;
         }
         spec.run.schedule.time_step = TimeStep::Fixed(0.1 * H);
-        assert!(same::<3>(&spec, &[4, 5, 9], None));
+        assert!(same(&spec, &[4, 5, 9]));
     }
 }
 
@@ -1069,7 +1032,7 @@ fn what_is_sent_is_what_the_law_says_of_the_copies() {
         }
         let halos = on_threads(3, |comm| {
             let comm = Arc::new(comm);
-            let mut sim = RankModel::<2>::new(&spec, options(None), &registry(), &comm).unwrap();
+            let mut sim = join(&spec, options(None), &registry(), &comm).unwrap();
             sim.start();
             let (before, _) = sim.halo();
             (0..STEPS).for_each(|_| sim.step().unwrap());
@@ -1106,8 +1069,7 @@ fn messages_on_their_way_while_ranks_work() {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
                 pool.unwrap().install(|| {
                     let comm = Arc::new(comm);
-                    let mut sim =
-                        RankModel::<3>::new(&spec, options(None), &registry(), &comm).unwrap();
+                    let mut sim = join(&spec, options(None), &registry(), &comm).unwrap();
                     sim.start();
                     let (begun, before) = (Instant::now(), sim.halo().0);
                     (0..STEPS).for_each(|_| sim.step().unwrap());
@@ -1155,8 +1117,8 @@ fn factors_of_bonds_are_those_of_the_whole_body() {
                 spec.bonds.family = FamilyChoice::List;
             }
             let broke = match case.d() {
-                2 => same::<2>(&spec, &[2 + m], None),
-                _ => same::<3>(&spec, &[3 - m], None),
+                2 => same(&spec, &[2 + m]),
+                _ => same(&spec, &[3 - m]),
             };
             assert!(broke, "{}", spec.title);
         }
@@ -1175,12 +1137,12 @@ fn ranks_beyond_the_blocks_of_a_body_have_no_points() {
         for periodic in [false, true] {
             let mut spec = torn(case, periodic);
             spec.interactions.contact = Some(CONTACT);
-            assert!(same::<2>(&spec, &[4, 3], None));
+            assert!(same(&spec, &[4, 3]));
             scattered(&mut spec);
-            assert!(same::<2>(&spec, &[4], None));
+            assert!(same(&spec, &[4]));
         }
     }
-    let idle = among::<2>(&torn(&small, false), 4, None, None).0.idle_ranks;
+    let idle = among(&torn(&small, false), 4, None, None).0.idle_ranks;
     assert_eq!(idle, 1);
 }
 

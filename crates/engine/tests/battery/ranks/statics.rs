@@ -2,7 +2,7 @@
 
 use super::{acted, meeting, options, registry, same, scattered};
 use crate::sample::*;
-use peridyne::run::{Simulation, build_in};
+use peridyne::run::build_with;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 
@@ -77,17 +77,9 @@ fn newton() -> Statics {
     }
 }
 
-fn same_of(case: &Case, spec: &Spec, ranks: &[usize]) -> bool {
-    match case.d() {
-        1 => same::<1>(spec, ranks, None),
-        2 => same::<2>(spec, ranks, None),
-        _ => same::<3>(spec, ranks, None),
-    }
-}
-
 /// Why there are no equilibria.
-fn found<const D: usize>(spec: &Spec) -> Result<(), String> {
-    let made = build_in::<D>(spec, options(None), &registry());
+fn found(spec: &Spec) -> Result<(), String> {
+    let made = build_with(spec, options(None), &registry());
     let mut sim = made.map_err(|e| e.to_string())?;
     sim.start(true);
     (0..spec.run.schedule.steps).try_for_each(|_| sim.step().map_err(|e| e.to_string()))
@@ -117,17 +109,13 @@ fn every_material(tries: impl Fn(usize) -> bool) {
             scattered(&mut spec);
         }
         // some have no tangent, or none that is positive
-        let found = match case.d() {
-            1 => found::<1>(&spec),
-            2 => found::<2>(&spec),
-            _ => found::<3>(&spec),
-        };
+        let found = found(&spec);
         if let Err(why) = found {
             println!("{}: {why}", case.name());
             continue;
         }
         tried += 1;
-        assert!(!same_of(&case, &spec, &[2 + n % 2]), "{}", spec.title);
+        assert!(!same(&spec, &[2 + n % 2]), "{}", spec.title);
     }
     assert!(tried > many * 3 / 4, "{tried} of {many}");
 }
@@ -261,7 +249,7 @@ fn bonds_break_in_equilibrium_on_any_number_of_ranks() {
             scattered(&mut spec);
         }
         println!("{}", spec.title);
-        assert_eq!(same_of(&case, &spec, &[2 + n % 2]), breaks);
+        assert_eq!(same(&spec, &[2 + n % 2]), breaks);
     }
 }
 
@@ -292,12 +280,12 @@ fn implicit_steps_are_the_same_on_any_number_of_ranks() {
         spec.run.schedule.stepper = Stepper::Newmark(newmark);
         spec.run.schedule.time_step = TimeStep::Fixed(0.03 * H);
         println!("{}", spec.title);
-        same_of(&case, &spec, &[2 + n % 2]);
+        same(&spec, &[2 + n % 2]);
         // and bodies that meet
         let mut spec = meeting(&case, n % 2 == 0);
         spec.title = format!("{} {newmark:?}", spec.title);
         spec.run.schedule.stepper = Stepper::Newmark(newmark);
         spec.run.schedule.time_step = TimeStep::Fixed(0.03 * H);
-        same_of(&case, &spec, &[3 - n % 2]);
+        same(&spec, &[3 - n % 2]);
     }
 }

@@ -1,8 +1,8 @@
 //! What points are walked together with.
 
-use super::{STEPS, options, place, registry, said, torn};
+use super::{STEPS, made, place, said, torn};
 use crate::sample::*;
-use peridyne::run::{Simulation, build_in};
+use peridyne::run::Simulation;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 
@@ -37,11 +37,7 @@ fn what_the_others_of_a_tile_do_does_not_show() {
             quarters.extend(corner);
             spec.interactions.contact = None;
             let run = |sim: &mut dyn Simulation| (said(sim, None, STEPS), points, sim.info().parts);
-            match case.d() {
-                1 => run(&mut build_in::<1>(&spec, options(None), &registry()).unwrap()),
-                2 => run(&mut build_in::<2>(&spec, options(None), &registry()).unwrap()),
-                _ => run(&mut build_in::<3>(&spec, options(None), &registry()).unwrap()),
-            }
+            run(made(&spec).as_mut())
         });
         let [(alone, points, parts), (beside, _, parts_beside)] = ends;
         tried += 1;

@@ -6,7 +6,7 @@ use super::context::{Context, Result};
 use crate::deck::document::{Document, Rigid, RigidBody, Rotation};
 use crate::deck::quantity::{Inertia, Measure};
 use crate::deck::units::Dim;
-use crate::deck::value::{At, Quantity, Vector, span};
+use crate::deck::value::{At, Quantity, Vector, Written, span};
 use peridyne::expression::Expression;
 use peridyne::law::micromodulus::Moments;
 use peridyne::space::Point;
@@ -270,6 +270,18 @@ fn free(context: &Context, i: &RigidBody, mass: f64, center: &[Expression; 3]) -
         free.inertia = Some(tensor(context, inertia)?);
     }
     if let Some(spin) = &i.angular_velocity {
+        let counts_turns = |of: &Quantity<_>| match &of.value.written {
+            Written::Text(text) => text
+                .split(|c: char| !c.is_alphabetic())
+                .any(|w| w.ends_with("Hz")),
+            Written::Plain(_) => false,
+        };
+        if spin.value.0.iter().any(counts_turns) {
+            return Err(context.error(
+                &spin.span,
+                "`angular_velocity` is in radians per second, Hz counts turns: 1 Hz is \"6.2832 rad/s\"",
+            ));
+        }
         for (x, e) in free.spin.iter_mut().zip(about(context, spin)?) {
             let Some(c) = e.as_constant().filter(|c| c.is_finite()) else {
                 return Err(context.error(
