@@ -139,10 +139,10 @@ fn see(names: impl Iterator<Item = String>) -> String {
     format!(".SH \"SEE ALSO\"\n{}\n", all.join(",\n"))
 }
 
-/// The page of the program: its verbs in groups, with their pages.
-fn of_program(program: &Command) -> io::Result<Vec<u8>> {
+/// A page up to its options.
+fn begun(command: Command) -> io::Result<Vec<u8>> {
     let mut text = vec![];
-    let man = Man::new(program.clone())
+    let man = Man::new(command)
         .manual("peridyne")
         .source(concat!("peridyne ", env!("CARGO_PKG_VERSION")));
     man.render_title(&mut text)?;
@@ -150,6 +150,12 @@ fn of_program(program: &Command) -> io::Result<Vec<u8>> {
     man.render_synopsis_section(&mut text)?;
     man.render_description_section(&mut text)?;
     man.render_options_section(&mut text)?;
+    Ok(text)
+}
+
+/// The page of the program: its verbs in groups, with their pages.
+fn of_program(program: &Command) -> io::Result<Vec<u8>> {
+    let mut text = begun(program.clone())?;
     writeln!(text, ".SH VERBS")?;
     for (group, verbs) in GROUPS {
         writeln!(text, ".SS \"{}\"", roff(group))?;
@@ -174,15 +180,7 @@ fn of_verb(verb: &Command) -> io::Result<Vec<u8>> {
         .clone()
         .bin_name(format!("peridyne {name}"))
         .display_name(page(&name));
-    let mut text = vec![];
-    let man = Man::new(called)
-        .manual("peridyne")
-        .source(concat!("peridyne ", env!("CARGO_PKG_VERSION")));
-    man.render_title(&mut text)?;
-    man.render_name_section(&mut text)?;
-    man.render_synopsis_section(&mut text)?;
-    man.render_description_section(&mut text)?;
-    man.render_options_section(&mut text)?;
+    let mut text = begun(called)?;
     write!(text, "{ENDS}")?;
     // its group
     let group = { GROUPS.iter() }.find(|(_, verbs)| verbs.contains(&&*name));

@@ -116,22 +116,19 @@ impl<const D: usize> State for View<'_, D> {
     }
 
     fn kinetic_energy_density(&mut self) -> Vec<f64> {
-        let body = &self.system.body;
-        let v = body.values(&self.system.v);
-        let momentum = match &self.system.inertia {
-            None => body.by_id(|i| {
-                let rho = body.density().at(i);
-                crate::array::from_fn(|a| rho * self.system.v[a][i])
-            }),
-            Some(inertia) => {
-                let all = inertia.masses.times(body, &v);
-                let volume = body.by_id(|i| body.volume().at(i));
-                let each = all.iter().zip(volume);
-                each.map(|(p, volume)| p.map(|p| p / volume)).collect()
-            }
+        let (body, v) = (&self.system.body, &self.system.v);
+        let dot = |x: &[f64; D], y: &[f64; D]| (0..D).map(|a| x[a] * y[a]).sum::<f64>();
+        let Some(inertia) = &self.system.inertia else {
+            return body.by_id(|i| {
+                let v = crate::array::from_fn(|a| v[a][i]);
+                0.5 * body.density().at(i) * dot(&v, &v)
+            });
         };
-        let each = v.iter().zip(&momentum);
-        each.map(|(v, p): (&[f64; D], &[f64; D])| 0.5 * (0..D).map(|a| v[a] * p[a]).sum::<f64>())
+        let v = body.values(v);
+        let momentum = inertia.masses.times(body, &v);
+        let volume = body.by_id(|i| body.volume().at(i));
+        let each = v.iter().zip(&momentum).zip(volume);
+        each.map(|((v, p), volume)| 0.5 * dot(v, p) / volume)
             .collect()
     }
 

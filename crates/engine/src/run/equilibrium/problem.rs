@@ -3,7 +3,7 @@
 //! Of a body that ranks share each rank has the numbers of its own points, in order of ids, and decides by sums over all of them. A matrix, and who holds
 //! together with whom, is on the first rank, which tells the others what follows.
 
-use super::whole::{told, whole_support};
+use super::whole::{part_of_vectors, told, whole_support, whole_vectors};
 use crate::error::SolveError;
 use crate::run::system::System;
 use crate::statics::{Solved, Sums, Support};
@@ -33,17 +33,16 @@ impl<'a, const D: usize> Problem<'a, D> {
             return solve(support, b, x);
         }
         let support = whole_support(body, support);
-        let [b, start] = [b, x].map(|own| body.whole(D, own.as_flattened().to_vec()));
+        let [b, start] = [b, x].map(|own| whole_vectors(body, own));
         let all = support.zip(b).zip(start);
         let found = all.map(|((support, b), mut x)| {
-            let found = solve(&support, b.as_chunks().0, x.as_chunks_mut().0);
+            let found = solve(&support, &b, &mut x);
             found.map(|solved| (solved, x))
         });
         let found = told(body, found.transpose())?;
         let (solved, whole) = found.unzip();
         let solved = body.told(solved.map(|s| [s.iterations as f64, s.residual]));
-        x.as_flattened_mut()
-            .copy_from_slice(&body.part_of(D, whole));
+        x.copy_from_slice(&part_of_vectors(body, whole));
         Ok(Solved {
             iterations: solved[0] as usize,
             residual: solved[1],

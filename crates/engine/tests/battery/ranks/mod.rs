@@ -25,7 +25,7 @@ use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
 use peridyne::state::Archive;
-use peridyne_comm::{on_threads, on_threads_apart};
+use peridyne_comm::{Work, on_threads, on_threads_apart};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -1121,6 +1121,42 @@ fn factors_of_bonds_are_those_of_the_whole_body() {
                 _ => same(&spec, &[3 - m]),
             };
             assert!(broke, "{}", spec.title);
+        }
+    }
+}
+
+/// A body that is shared out by the time that ranks took before is cut elsewhere, and no bit of what follows shows it.
+#[test]
+fn shares_by_time_have_the_same_bits() {
+    for kind in [LatticeKind::Square, LatticeKind::Cubic] {
+        let mut spec = torn(&Case::of("lps", place(kind)), false);
+        for cloud in [false, true] {
+            if cloud {
+                scattered(&mut spec);
+            }
+            let one = said(made(&spec).as_mut(), None, STEPS);
+            let points = one.columns["places"].len() / 3;
+            let half = points / 2;
+            let earlier = [(half, 1.0), (points - half, 4.0)];
+            let earlier = earlier.map(|(points, seconds)| Work { points, seconds });
+            let all = on_threads(2, |comm| {
+                comm.share_by(earlier.to_vec());
+                let comm = Arc::new(comm);
+                let own = join(&spec, options(None), &registry(), &comm).unwrap();
+                if comm.rank() > 0 {
+                    own.follow(|_, _, _| vec![]);
+                    return None;
+                }
+                let mut sim = own.lead(|_, _, _| vec![]);
+                let said = said(sim.as_mut(), None, STEPS);
+                Some((said, sim.work_of_ranks()))
+            });
+            let (all, work) = all.into_iter().flatten().next().unwrap();
+            one.is(&all, &format!("{kind:?} {cloud}"));
+            // five eighths and three of them, but for whole blocks
+            assert!(work[0].points > half && work[1].points > 0, "{work:?}");
+            assert_eq!(work[0].points + work[1].points, points);
+            assert!(work.iter().all(|w| w.seconds > 0.0), "{work:?}");
         }
     }
 }
